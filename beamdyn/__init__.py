@@ -117,15 +117,17 @@ if TYPE_CHECKING:
     )
     from beamdyn.scene.mount import Damping, Mount
     from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice
-    from beamdyn.scene.points import PointMass, PointSpring, TipMass
+    from beamdyn.scene.points import PointMass, PointSpring, TipLoad, TipMass
     from beamdyn.scene.profile import Profile, Table
     from beamdyn.scene.rotor import RotorDrawing, draw
     from beamdyn.scene.scene import Scene
     from beamdyn.scene.section_matrices import SectionMatrices
+    from beamdyn.steady.best_resistance import BestResistance, best_resistance
     from beamdyn.steady.crossings import Crossing, Crossings
-    from beamdyn.steady.harvest import Harvest, best_resistance, harvest
+    from beamdyn.steady.harvest import Harvest, harvest
     from beamdyn.steady.resonance import resonance_speeds
     from beamdyn.steady.response import SteadyResponse, steady_response
+    from beamdyn.steady.road_harvest import RoadHarvest
     from beamdyn.studies.beside_data.compare import compare
     from beamdyn.studies.beside_data.curve_comparison import CurveComparison
     from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
@@ -160,8 +162,8 @@ if TYPE_CHECKING:
 
 @cache
 def _modules() -> dict[str, str]:
-    """Modules of the public names: those that stand above for type checkers, read from this file."""
-    import ast  # here, as it takes a fifth of the time of importing this package
+    """Return the modules of the public names, from the imports for type checkers in this file."""
+    import ast  # imported here, as it takes a fifth of the time of importing this package
 
     with open(__file__, encoding="utf-8") as file:
         tree = ast.parse(file.read())

@@ -2,5 +2,6 @@
 
 from benchmarks.measured_page import main
 
-if __name__ == "__main__":  # in a module of its own, so that the processes it starts can import it
+# Imported in a module of its own, so that the processes it starts can import it, too.
+if __name__ == "__main__":
     main()

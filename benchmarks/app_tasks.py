@@ -19,7 +19,7 @@ from benchmarks.rows import Row, show
 from benchmarks.served import browser, free_port, go, open_page, start, stop
 
 SIZE = {"width": 1440, "height": 1000}
-_SETTLES = 250  # until a page has heard what was done [ms]
+_SETTLES = 250  # time after which a page has received what was done [ms]
 _HEADLINE = """() => {
   const it = [...document.querySelectorAll('dl.headline')].find((e) => e.offsetParent);
   return Object.fromEntries([...(it?.children ?? [])].map((e) =>
@@ -34,7 +34,7 @@ _NEVER, _STEPS = "never", 40
 
 @dataclass
 class Person:
-    """A person at the page of a program.
+    """A person at the page of a program, who counts the actions.
 
     Parameters
     ----------
@@ -82,15 +82,15 @@ class Person:
         self._does(lambda: made.press(key))
 
     def reads(self, words: str) -> str:
-        """A result that stands first on the screen."""
+        """Return a result among those that come first on the screen."""
         return str(self.page.evaluate(_HEADLINE).get(words, ""))
 
     def sees(self, text: str) -> str:
-        """The line of the page in front with a text."""
+        """Return the line of text on the page in front that has some words."""
         return self._seen(self.page.get_by_text(text)).inner_text()
 
     def field(self, path: str) -> Any:
-        """A field of the screen in front."""
+        """Return a field of the screen in front."""
         return self._seen(self.page.locator(f'[data-path="{path}"]'))
 
     def _seen(self, found: Any) -> Any:
@@ -106,7 +106,7 @@ class Person:
 def find_the_slope(person: Person) -> str:
     """The slope at which the truck no longer stops: its end is moved down until it says so, and back."""
     person.goes_to("Vehicle")
-    last: dict[bool, str] = {}  # slopes, by whether the truck never stops there
+    last: dict[bool, str] = {}  # slopes at which the truck stops, and at which it does not
     for key in ("Shift+ArrowDown", "ArrowUp"):
         while (never := person.reads("stopping distance") == _NEVER) != key.endswith("Down"):
             last[never] = person.field("stop.slope").input_value()
@@ -131,7 +131,7 @@ def move_the_pivot(person: Person) -> str:
     return f"{person.reads(ratio)} with the pivot at {person.field('dimensions.side_pivot').input_value()}"
 
 
-# Places of the clamp's points [mm], and its joints and loads: Hibbeler, Statics, 14th edition, problem 6-80.
+# Points of the clamp [mm], its joints and loads: Hibbeler, Statics, 14th edition, problem 6-80.
 _POINTS = {"A": "0 -40", "B": "0 0", "C": "20 20", "D": "40 54.641016", "E": "60 -40", "grip": "80 12"}
 _PARTS: tuple[tuple[str, str, dict[str, str]], ...] = (
     ("pin", "pin.0", {"body": "arm", "at": "A"}),

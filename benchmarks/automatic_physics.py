@@ -8,7 +8,6 @@ not chosen would change, solved alone, counts as an error, too.
 
 from __future__ import annotations
 
-import argparse
 import os
 import warnings
 from collections.abc import Iterator, Sequence
@@ -17,7 +16,8 @@ from functools import partial
 from time import perf_counter
 from typing import Any
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported, as the workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -28,24 +28,24 @@ from beamdyn.modes.model_error.left_out_changes import bends
 from beamdyn.scene.physics import PhysicsChoice
 from benchmarks.cases.random_physics import Section, random_twist, speed_of_deflection
 from benchmarks.cases.scenes import time_unit
-from benchmarks.resumable import Cases, add_options
-from benchmarks.rows import Row, show, time_text
+from benchmarks.resumable import Cases, measure_random
+from benchmarks.rows import Row, time_text
 from benchmarks.stated_model_errors import solved_change
 
 SEED = 1515
 TOLERANCE = 1e-3
 _MODES = 3
-_WITHIN, _NEEDED = 0.99, 0.8  # shares of the scenes that are aimed at
-_USELESS = 1e-4  # change below which an added effect was not needed
+_WITHIN, _NEEDED = 0.99, 0.8  # shares of the scenes that are the goal
+_USELESS = 1e-4  # change of frequencies below which an added effect was not needed
 _STEEL = 200e9, 7850.0  # Young's modulus [Pa] and density [kg/m3]
 _QUARTER = np.pi / 2
-_DEFLECTION = 0.03, 0.4  # least and most of the linear static deflection of bent scenes over the length
+_DEFLECTION = 0.03, 0.4  # least and largest linear static deflection of bent scenes, over the length
 _ALL = bd.Physics(planes=2, shear=True, rotary_inertia=True, stretch=True)
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What was chosen for one scene, and what is so; changes are relative, the largest of all modes.
+    """The choice for one scene, and the true changes; changes are relative, the largest of all modes.
 
     `needed` is what the plain beam leaves out, `error` what the chosen physics does, `stated` its own
     estimate of it; nan where it is not known, inf where modes are others.  `removed` is what leaving each
@@ -63,9 +63,8 @@ class Answer:
 
 
 def measure(number: int, seed: int) -> list[Answer]:
-    """The answer for the scene with this number: the odd ones need an effect."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of beams that no material has
+    """Compute the answer for the scene with a number; odd numbers need an effect."""
+    with warnings.catch_warnings(action="ignore"):  # warnings of beams that no material has
         scene, speed, needed = _draw(np.random.default_rng([seed, number]), number)
         start = perf_counter()
         try:
@@ -87,7 +86,7 @@ def measure(number: int, seed: int) -> list[Answer]:
 
 
 def _draw(rng: np.random.Generator, number: int) -> tuple[bd.Scene, float, float]:
-    """A scene, its speed, and what the plain beam leaves out: more than the tolerance if it has a kind."""
+    """Draw a scene, its speed, and what the plain beam leaves out: more than the tolerance for any kind."""
     while True:
         kinds = random_kinds(rng, number)
         scene, speed = random_scene(rng, kinds)
@@ -97,7 +96,7 @@ def _draw(rng: np.random.Generator, number: int) -> tuple[bd.Scene, float, float
 
 
 def true_error(modes: bd.Modes) -> float:
-    """What all effects that a scene leaves out would change, by solving with them."""
+    """Compute what all effects that a scene leaves out would change, by solving with them."""
     physics = modes.scene.physics
     if physics.large_deflection:
         within = bd.Physics(rotary_inertia=True, large_deflection=True)
@@ -105,7 +104,8 @@ def true_error(modes: bd.Modes) -> float:
         return _direct(modes, within) + _solved(straight, replace(_ALL, rotary_inertia=False))
     oblique = min(abs(np.cos(modes.scene.mount.bending_angle)), abs(np.sin(modes.scene.mount.bending_angle)))
     bent = 0.0
-    if oblique < 1e-12 and bends(Model(modes.scene, bd.Ritz(5))):  # else it cannot be modelled, or is nothing
+    # Otherwise the effect cannot be modelled, or is negligible.
+    if oblique < 1e-12 and bends(Model(modes.scene, bd.Ritz(5))):
         alone = replace(modes.scene, physics=bd.Physics(rotary_inertia=physics.rotary_inertia))
         straight = bd.natural_modes(alone, modes.speed, _MODES)
         bent = _direct(straight, replace(alone.physics, large_deflection=True))
@@ -113,22 +113,22 @@ def true_error(modes: bd.Modes) -> float:
 
 
 def _direct(modes: bd.Modes, physics: bd.Physics) -> float:
-    """Largest change of frequencies with other physics in one plane: they keep their order."""
+    """Compute the largest change of frequencies with other physics in one plane, in unchanged order."""
     try:
         other = bd.natural_modes(replace(modes.scene, physics=physics), modes.speed, _MODES)
-    except ArithmeticError:  # there is no such equilibrium
+    except ArithmeticError:  # the equilibrium does not exist
         return float(np.nan)
     return float(np.abs(other.frequency / modes.frequency - 1).max())
 
 
 def _solved(modes: bd.Modes, physics: bd.Physics) -> float:
-    """Largest change of the modes with more physics; inf where one is lost among others."""
+    """Compute the largest change of the modes with more physics; inf where a mode is lost among others."""
     change = solved_change(modes, replace(modes.scene, physics=physics))
     return float(np.nan_to_num(np.abs(change), nan=np.inf).max())
 
 
 def _change_without(name: str, scene: bd.Scene, speed: float, choice: PhysicsChoice) -> float:
-    """What leaving one of the added effects out would change."""
+    """Compute what leaving one of the added effects out would change."""
     others = add_effects(scene, [NAMED[other] for other in choice.included if other != name])
     without = bd.natural_modes(others, speed, _MODES)
     if choice.physics.large_deflection:
@@ -140,7 +140,7 @@ def _change_without(name: str, scene: bd.Scene, speed: float, choice: PhysicsCho
 
 
 def random_kinds(rng: np.random.Generator, number: int) -> list[str]:
-    """What makes the scene with this number need an effect: nothing in every other scene.
+    """Draw what makes the scene with a number need an effect: nothing in every other scene.
 
     Every fourth is bent by the rotation in its plane, enough for large deflection to matter.  The rest are
     one or two of these: stocky, twisted, oblique in the bending angle, or turned to any setting angle.
@@ -153,7 +153,7 @@ def random_kinds(rng: np.random.Generator, number: int) -> list[str]:
 
 
 def random_scene(rng: np.random.Generator, kinds: Sequence[str]) -> tuple[bd.Scene, float]:
-    """A beam of steel of these kinds with all properties, of the plain physics, and a speed.
+    """Draw a steel beam of these kinds, and a speed.
 
     Of no kind, it is slender, straight and points at the axis or away from it.
     """
@@ -176,7 +176,7 @@ def random_scene(rng: np.random.Generator, kinds: Sequence[str]) -> tuple[bd.Sce
 
 
 def cases(seed: int = SEED) -> Cases[Answer]:
-    """The random scenes of a seed."""
+    """Return the random scenes of a seed."""
     return Cases(partial(measure, seed=seed), Answer)
 
 
@@ -184,7 +184,7 @@ def cases(seed: int = SEED) -> Cases[Answer]:
 
 
 def summarize(answers: Sequence[Answer]) -> Iterator[Row]:
-    """The share of scenes within the tolerance or said not to be, and of those with nothing useless."""
+    """Yield the shares of scenes within the tolerance or marked, and of those without useless effects."""
     found = [a for a in answers if not a.refusal]
     yield "random scenes", str(len(answers)), "200"
     yield "... refused", str(len(answers) - len(found)), "0"
@@ -215,20 +215,12 @@ def summarize(answers: Sequence[Answer]) -> Iterator[Row]:
 
 
 def measure_sample() -> Iterator[Row]:
-    """The first 24 scenes."""
+    """Measure the first 24 scenes."""
     yield from summarize(cases().measure_all(range(24)))
 
 
 PARTS = (measure_sample,)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    add_options(parser, scenes=200, seed=SEED)
-    given = parser.parse_args()
-    answers = cases(given.seed).run(given)
-    show("automatic physics", lambda: summarize(answers))
-
-
 if __name__ == "__main__":
-    main()
+    measure_random(__doc__, "automatic physics", cases, summarize, 200, SEED)

@@ -14,7 +14,8 @@ from dataclasses import replace
 from itertools import count, islice
 from time import process_time
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: small matrices gain nothing by more
+# Set before numpy is imported; small matrices gain nothing by more threads.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -24,18 +25,19 @@ from benchmarks.cases.reference.resolved import known_frequencies
 from benchmarks.peers import pybmodes, twisted
 from benchmarks.rows import RUNS, Row, best_time, show, time_text
 
-RATED = {"iea_15": 7.56, "nrel_5": 12.1, "bmodes_test01": 60.0}  # rpm
+RATED = {"iea_15": 7.56, "nrel_5": 12.1, "bmodes_test01": 60.0}  # rated speeds [rpm]
 TOLERANCES = (1e-6, 1e-9, None)
-_MODES = 6  # three a plane
-_NUMBERS = count(1)  # of scenes
-_SPEEDS = 1000  # of a locus
+_MODES = 6  # three modes in each plane
+_NUMBERS = count(1)  # numbers that make scenes differ
+_SPEEDS = 1000  # number of speeds of a locus
 _TWO_PLANES = bd.Physics(planes=2)
-_FASTER, _SLOWER = 5.0, 1.0  # times pyBModes is aimed to take, at 1e-6 and by default
-_LOCUS = 3.0  # time of a locus over that of one call
+# Factors by which pyBModes is to be slower, at a tolerance of 1e-6 and by default.
+_FASTER, _SLOWER = 5.0, 1.0
+_LOCUS = 3.0  # largest time of a locus, over that of one call
 
 
 def measure_errors() -> Iterator[Row]:
-    """Largest true errors of the frequencies, twisted and not, by collocation of the equations."""
+    """Yield largest true errors of the frequencies, twisted and not, by collocation of the equations."""
     for name in NAMES:
         for rpm in (0.0, RATED[name]):
             for is_twisted in (False, True):
@@ -53,7 +55,7 @@ def measure_errors() -> Iterator[Row]:
 
 
 def measure_times() -> Iterator[Row]:
-    """Times of one call at rated speed, and of a peer; both planes."""
+    """Yield times of one call at rated speed, and of another program, for both planes."""
     for name in NAMES:
         theirs = their_time(name)
         if theirs is not None:
@@ -67,7 +69,7 @@ def measure_times() -> Iterator[Row]:
 
 
 def measure_loci() -> Iterator[Row]:
-    """Time of a locus of 1000 speeds over that of one call, three modes of flap at 1e-9."""
+    """Yield the time of a locus of 1000 speeds over that of one call, for three modes of flap at 1e-9."""
     for name in NAMES:
         one, many = (_time(call) for call in calls_of_flap(name))
         said = f"{time_text(many)}, {many / one:.1f} times one call"
@@ -75,7 +77,7 @@ def measure_loci() -> Iterator[Row]:
 
 
 def calls_of_flap(name: str) -> tuple[Callable[[], object], Callable[[], object]]:
-    """One call for three modes at rated speed, and one for a locus up to it."""
+    """Return calls for three modes at rated speed, and for a locus up to that."""
     top, scenes = RATED[name] * math.pi / 30, distinct_scenes(name, 2 * RUNS, bd.Physics())
     speeds = np.linspace(0, top, _SPEEDS)
     return (
@@ -85,7 +87,7 @@ def calls_of_flap(name: str) -> tuple[Callable[[], object], Callable[[], object]
 
 
 def a_call(name: str, is_twisted: bool, tolerance: float | None) -> Callable[[], object]:
-    """One call for six modes of two planes."""
+    """Return one call for six modes of two planes."""
     scenes, speed = distinct_scenes(name, RUNS, twisted=is_twisted), RATED[name] * math.pi / 30
     return lambda: bd.natural_modes(next(scenes), speed, _MODES, tolerance=tolerance)
 
@@ -96,14 +98,14 @@ def distinct_scenes(
     physics: bd.Physics = _TWO_PLANES,
     twisted: bool = False,
 ) -> Iterator[bd.Scene]:
-    """Scenes of a blade, none of them equal to another."""
+    """Yield scenes of a blade, none of them equal to another."""
     scene = blade_scene(name, physics, twisted)
     lengths = [scene.beam.length * (1 + 1e-13 * k) for k in islice(_NUMBERS, number)]
     return iter([replace(scene, beam=replace(scene.beam, length=length)) for length in lengths])
 
 
 def their_time(name: str) -> float | None:
-    """Time of pyBModes, without reading of its files; None where it is missing."""
+    """Measure the time of pyBModes without reading of its files; None where it is missing."""
     if pybmodes.version() is None:
         return None
     with pybmodes.model(twisted.main_file(name, RATED[name], 1), twisted.sections(name)) as blade:
@@ -111,7 +113,7 @@ def their_time(name: str) -> float | None:
 
 
 def _time(action: Callable[[], object]) -> float:
-    """Shortest time of the processor [s], which all of these calls take in one thread."""
+    """Measure the shortest processor time [s] of calls, which all run in one thread."""
     return best_time(action, clock=process_time)
 
 

@@ -12,7 +12,8 @@ from dataclasses import replace
 from itertools import count
 from time import process_time
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: small matrices gain nothing by more
+# Set before numpy is imported; small matrices gain nothing by more threads.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -23,12 +24,13 @@ from benchmarks.cases.reference import bmodes
 from benchmarks.rows import Row, best_time, show, time_text
 
 NAME, SPEED = "bmodes_test01", 2 * math.pi  # 60 rpm
-_MODES, _LEAST, _MOST = 5, 0.3, 2.0  # percent; times the time without torsion
-_NUMBERS = count(1)  # of scenes, which differ in their last digits
+# Number of modes, least difference in percent, and largest ratio to the time without torsion.
+_MODES, _LEAST, _MOST = 5, 0.3, 2.0
+_NUMBERS = count(1)  # numbers that make scenes differ in their last digits
 
 
 def trace() -> Iterator[Row]:
-    """The first frequencies over the printed ones, in percent: by its matrices and by ours."""
+    """Yield the first frequencies over the printed ones, in percent: by BModes' matrices and by ours."""
     data = stations(NAME)
     for parts in (1, 2, 8):
         ends = np.interp(np.arange(12 * parts + 1) / parts, np.arange(13), data["element_ends"])
@@ -60,7 +62,7 @@ def trace() -> Iterator[Row]:
 
 
 def measure_time() -> Iterator[Row]:
-    """Time of three modes at 1e-6 with torsion and offsets, over that of the twisted blade without."""
+    """Yield the time of three modes at 1e-6 with torsion and offsets, over that of the twisted blade."""
     plain, whole = (_time(scene) for scene in (blade_scene(NAME), whole_blade_scene(NAME)))
     said = f"{time_text(whole)} over {time_text(plain)}: {whole / plain:.2f}"
     yield "torsion and offsets: three modes, 1e-6", said, f"{_MOST:g}"
@@ -77,7 +79,7 @@ def _over_print(found: np.ndarray) -> str:
 
 
 def _time(scene: bd.Scene) -> float:
-    """Shortest time of the processor [s] of a call that uses nothing computed before."""
+    """Measure the shortest processor time [s] of a call that uses nothing computed before."""
     lengths = (scene.beam.length * (1 + 1e-13 * k) for k in _NUMBERS)
     scenes = (replace(scene, beam=replace(scene.beam, length=length)) for length in lengths)
     made = [next(scenes) for _ in range(9)]

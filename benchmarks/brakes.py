@@ -26,11 +26,11 @@ from brakes.planar import solve, stroke
 
 MECHANISMS, LEVERS, TRUCKS = 10_000, 100_000, 10_000
 DESIGNS, QUESTIONS, SEED = 100_000, 1000, 34
-ROOMS = ("vehicle", "chain", "common", "machines")  # beyond forces in drums, calipers and the forklift
+ROOMS = ("vehicle", "chain", "common", "machines")  # rooms of brakes besides drums, calipers and the forklift
 
 
 def check_planar() -> Iterator[Row]:
-    """Random mechanisms by virtual work, and a stroke of the eeBrake with all reactions."""
+    """Check random mechanisms by virtual work, and a stroke of the eeBrake with all reactions."""
     (all_motions, free), moved = mechanisms.worst_virtual_work(MECHANISMS)
     yield f"virtual work of {MECHANISMS} random mechanisms, scaled: largest", f"{all_motions:.1e}", "1e-9"
     yield "... by their free motions alone", f"{free:.1e}", "1e-9"
@@ -43,13 +43,13 @@ def check_planar() -> Iterator[Row]:
 
 
 def run_strokes(points: int) -> None:
-    """The cable of the eeBrake pulled by 3.5 mm."""
+    """Pull the cable of the eeBrake by 3.5 mm, in a number of positions."""
     brake = mechanisms.eebrake()
     solve(brake, stroke(brake, "cable", np.linspace(0, 3.5e-3, points)).position)
 
 
 def check_duo_servo() -> Iterator[Row]:
-    """Random duo-servo brakes and designs."""
+    """Check random duo-servo brakes and designs."""
     rng = np.random.default_rng(19970101)
     answer = internal_forces(
         draw_levers(rng), torque=10 ** rng.uniform(0, 6, LEVERS), piston_force=10 ** rng.uniform(0, 6, LEVERS)
@@ -65,14 +65,14 @@ def check_duo_servo() -> Iterator[Row]:
 
 
 def draw_levers(rng: np.random.Generator) -> Levers:
-    """Random levers: arms up to the drum's radius, angles up to 45 deg."""
+    """Draw random levers: arms up to the drum's radius, angles up to 45 deg."""
     r = rng.uniform(0.05, 0.4, LEVERS)
     a1, a2, b = (r * rng.uniform(0.02, 0.99, LEVERS) for _ in range(3))
     return Levers(r, a1, a2, b, b, *rng.uniform(-np.pi / 4, np.pi / 4, (3, LEVERS)))
 
 
 def run_trucks() -> forklift.Procedure:
-    """Random trucks through all three stages."""
+    """Solve random trucks in all three stages."""
     rng = np.random.default_rng(10_000)
     truck, conditions = draw_stops(rng, TRUCKS)
     motion = forklift.BENDIX_12_5.move_shoes(rng.uniform(0.005, 0.021, TRUCKS))
@@ -80,7 +80,7 @@ def run_trucks() -> forklift.Procedure:
 
 
 def run_chain() -> chain.Heat:
-    """Random trucks from the pedal's force through brakes and stop to the heat of the drums."""
+    """Solve random trucks from the pedal's force through brakes and stop to the heat of the drums."""
     rng = np.random.default_rng(34)
     truck, conditions = draw_stops(rng, DESIGNS)
     motion = forklift.BENDIX_12_5.move_shoes(rng.uniform(0.005, 0.021, DESIGNS))
@@ -93,7 +93,7 @@ def run_chain() -> chain.Heat:
 
 
 def draw_stops(rng: np.random.Generator, count: int) -> tuple[Truck, forklift.StopConditions]:
-    """Random trucks, and the conditions of their stops."""
+    """Draw random trucks, and the conditions of their stops."""
 
     def between(low: float, high: float) -> np.ndarray:
         return rng.uniform(low, high, count)
@@ -117,7 +117,7 @@ def draw_stops(rng: np.random.Generator, count: int) -> tuple[Truck, forklift.St
 
 
 def check_backwards(given: argparse.Namespace | None = None) -> Iterator[Row]:
-    """Random brakes and vehicles forwards, and backwards from one result to one input."""
+    """Solve random brakes and vehicles forwards, and backwards from one result to one input."""
     seed = given.seed if given else SEED
     cases = Cases(partial(measure, seed=seed), Outcome)
     asked = cases.run(given) if given else cases.measure_all(range(QUESTIONS))
@@ -137,14 +137,14 @@ def check_backwards(given: argparse.Namespace | None = None) -> Iterator[Row]:
 
 
 def check_chain() -> Iterator[Row]:
-    """Designs from pedal to heat, beside those through the forklift's three stages."""
+    """Check designs from pedal to heat against those through the forklift's three stages."""
     whole, stages = best_time(run_chain, 5) / DESIGNS, best_time(run_trucks) / TRUCKS
     name = f"{DESIGNS} designs from pedal to heat: time of one over that of {TRUCKS} through three stages"
     yield name, f"{whole / stages:.2f}", "1"
 
 
 def check_size() -> Iterator[Row]:
-    """Files that one type of brake takes, and how long the code is."""
+    """Count the files that one type of brake takes, and the lines of code."""
     modules = [path for path in sources() if path.is_relative_to(ROOT / "brakes")]
     named = [path for path in modules if names_it(path, "band")]
     files = len(named) + len([*(ROOT / "examples").glob("band.toml")])
@@ -155,7 +155,7 @@ def check_size() -> Iterator[Row]:
 
 
 def names_it(path: Path, name: str) -> bool:
-    """Whether a module is called so, or imports the class or has the word of this name."""
+    """Whether a module has a name, imports a class of it, or has the word of it."""
     nodes = [*ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
     words = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
     imported = {each.name for node in nodes if isinstance(node, ast.ImportFrom) for each in node.names}

@@ -1,4 +1,4 @@
-"""Designs sought backwards: questions with known answers, found or said to have none.
+"""Designs sought backwards: questions with known answers, found or proven to have none.
 
 Run: python -m benchmarks.design            (three minutes)
 """
@@ -11,18 +11,19 @@ from benchmarks.cases.wanted_designs import Wanted, questions
 from benchmarks.rows import Row, show
 
 _FOUND = 1e-6  # largest relative error of the numbers, or of the best answer
-_MOST = 60  # solves
+_MOST = 60  # most solves
 
 
 def ask() -> Iterator[Row]:
-    """How many questions are answered right, and by how many solves."""
+    """Yield how many questions are answered right, and by how many solves."""
     asked = [*questions()]
     answers = [each.found() for each in asked]
     right = [error <= _FOUND for error, _ in answers]
     yield f"{len(asked)} questions with a known answer: right", str(sum(right)), str(len(asked))
     there = [error for (error, _), each in zip(answers, asked, strict=True) if not _has_none(each)]
     yield "... largest relative error of those with a design", f"{max(there):.1e}", f"{_FOUND:g}"
-    yield "... questions without a design", str(sum(map(_has_none, asked))), ""
+    none = [good for good, each in zip(right, asked, strict=True) if _has_none(each)]
+    yield "... without a design: proven", str(sum(none)), str(len(none))
     solves = [count for _, count in answers]
     yield "... most solves, and in the mean", f"{max(solves)}, {sum(solves) / len(solves):.0f}", str(_MOST)
     for each, (error, count), good in zip(asked, answers, right, strict=True):

@@ -29,7 +29,7 @@ DAMPED = replace(HARVESTER, damping_ratio=0.01)
 BENT = replace(HARVESTER, mount=bd.Mount(0.215, math.pi / 4))
 FREQUENCIES = np.geomspace(20.0, 500.0, 200)
 BENDING = bd.PowerSpectrum([5.0, 500.0], [1.0, 1.0])
-Call = Callable[..., object]  # with a tolerance
+Call = Callable[..., object]  # a call with a tolerance
 
 ANALYSES: dict[str, Call] = {
     "natural_modes, 3 modes": partial(bd.natural_modes, HARVESTER, SPEED, 3),
@@ -52,14 +52,13 @@ ANALYSES: dict[str, Call] = {
 
 @one_blas_thread()
 def measure(call: Call) -> list[float]:
-    """Times of an analysis at each tolerance [s]."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    """Measure the times of an analysis at each tolerance [s]."""
+    with warnings.catch_warnings(action="ignore"):
         return [rows.best_time(partial(call, tolerance=each), RUNS, process_time) for each in TOLERANCES]
 
 
 def tabulate() -> str:
-    """The table of the page: a row an analysis, a column a tolerance."""
+    """Make the table of the page: a row for each analysis, a column for each tolerance."""
     head = ("analysis", *(f"{each:.0e}" for each in TOLERANCES))
     return markdown_table(head, ((name, *_cells(measure(call))) for name, call in ANALYSES.items()))
 
@@ -70,7 +69,7 @@ def _cells(times: list[float]) -> Iterator[str]:
 
 
 def compare() -> Iterator[Row]:
-    """The tightest tolerance over the loosest."""
+    """Yield the time at the tightest tolerance over that at the loosest."""
     for name, call in ANALYSES.items():
         times = measure(call)
         yield f"{name}: {TOLERANCES[-1]:.0e} over {TOLERANCES[0]:.0e}", f"{times[-1] / times[0]:.1f}", ""

@@ -32,11 +32,11 @@ from benchmarks.rows import Row, show
 from benchmarks.served import PATIENCE, browser, free_port, go, open_page, start, stop, up_to_date
 from brakes.app.program import BRAKES
 
-RUNS = 15  # how often each is timed
-DRAG, STEP = 3.0, 0.004  # length of a drag, and between two moves of the mouse [s]
+RUNS = 15  # number of times that each drawing is timed
+DRAG, STEP = 3.0, 0.004  # duration of a drag, and time between two moves of the mouse [s]
 LABELS, SHAPES, BOUND, PAINTED = 40, 180, 5, 20
-AT_REST, BUSY = 300, 300  # bounds of the full answer and of the busy sign [ms]
-REACH = 14  # how far the mouse goes to both sides [px]
+AT_REST, BUSY = 300, 300  # largest times until the full answer and until the busy sign [ms]
+REACH = 14  # distance that the mouse goes to both sides [px]
 POINTS = {
     "Vehicle": "centre of gravity of the load",
     "Kinematics": "tip of the shoe",
@@ -89,7 +89,7 @@ TOLD = "() => window.told"
 
 
 def time_labels() -> Iterator[Row]:
-    """Places of many labels among many lines."""
+    """Time the placement of many labels among many lines."""
     draw = np.random.default_rng(19)
     ends = draw.uniform((40, 40, 40, 40), (640, 480, 640, 480), (SHAPES, 4))
     obstacles = Obstacles((4.0, 4.0, 676.0, 516.0), ends, ends[:, 2:])
@@ -110,7 +110,7 @@ def time_labels() -> Iterator[Row]:
 
 
 def time_screens() -> Iterator[Row]:
-    """Drawings of the screens of `brakes app`, as they are while a point is dragged."""
+    """Time the drawings of the screens of `brakes app`, as they are while a point is dragged."""
     for document in BRAKES.documents:
         work = OpenDocument(document)
         for screen in document.screens:
@@ -124,7 +124,7 @@ def time_screens() -> Iterator[Row]:
 
 
 def _time(action: Callable[[], object]) -> float:
-    """Least processor time of an action [s]."""
+    """Measure the least processor time of an action [s]."""
     times = []
     for _ in range(RUNS):
         start = time.process_time()
@@ -134,7 +134,7 @@ def _time(action: Callable[[], object]) -> float:
 
 
 def drag(program: str, things: Mapping[str, str]) -> Iterator[Row]:
-    """How each screen of a program follows a drag, and how soon it is solved after the release."""
+    """Measure how each screen of a program follows a drag, and how soon it is solved after the release."""
     process = start(port := free_port(), program)
     try:
         with browser() as made:
@@ -161,7 +161,7 @@ def drag(program: str, things: Mapping[str, str]) -> Iterator[Row]:
 
 
 def play(program: str, names: Iterable[str]) -> Iterator[Row]:
-    """How often the picture of each screen changes while its slider is played."""
+    """Measure how often the picture of each screen changes while its slider is played."""
     process = start(port := free_port(), program)
     try:
         with browser() as made:
@@ -179,7 +179,7 @@ def play(program: str, names: Iterable[str]) -> Iterator[Row]:
 
 
 def wait_for_sign() -> Iterator[Row]:
-    """How soon screens that take long say that they compute, or answer, after a key has moved a slider."""
+    """Measure how soon slow screens say that they compute, or answer, after a key has moved a slider."""
     process = start(port := free_port(), "beamdyn")
     try:
         with browser() as made:
@@ -205,7 +205,7 @@ def rest(program: int) -> None:
 
 
 def processor_time(ids: Iterable[int]) -> float:
-    """Time that processes have had the processor [s], as /proc tells it."""
+    """Return the processor time of processes [s], from /proc."""
     ticks = 0
     for process in ids:
         with suppress(OSError):
@@ -215,21 +215,21 @@ def processor_time(ids: Iterable[int]) -> float:
 
 
 def _held(page: Any, name: str, point: str) -> list[tuple[str, str]]:
-    """What is dragged on a screen: a point, and each slider of its form."""
+    """List what is dragged on a screen: a point, and each slider of its form."""
     go(page, name)
     sliders = page.locator(".left .q-slider:visible [role=slider]").all()
     return [(name, label) for label in [point, *(it.get_attribute("aria-label") for it in sliders)] if label]
 
 
 def _thing(page: Any, label: str) -> Any:
-    """The handle of a point or of a slider in front."""
+    """Return the handle of a point or of a slider in front."""
     found = page.get_by_role("slider", name=label, exact=True).locator("visible=true")
     thumb = found.locator("[tabindex='0']")
     return thumb if thumb.count() else found
 
 
 def _drag(page: Any, label: str) -> tuple[float, float]:
-    """Drag; pictures a second, and the time from release to the answer [ms]."""
+    """Drag a handle; return pictures per second, and the time from release to the answer [ms]."""
     handle = _thing(page, label)
     handle.scroll_into_view_if_needed()
     x, y = _middle(handle)
@@ -257,12 +257,12 @@ def _middle(thing: Any) -> tuple[float, float]:
 
 
 def _around(x: float, y: float, now: float) -> tuple[float, float]:
-    """Where the mouse is with a point of a drawing: on a small figure about where it was."""
+    """Return the place of the mouse with a point of a drawing: on a small figure about its start."""
     return x + REACH * np.sin(2.9 * now), y + 9 * np.sin(4.7 * now)
 
 
 def _across(box: Mapping[str, float]) -> Callable[[float], tuple[float, float]]:
-    """Where it is with a slider: once across, so that each of its places comes once."""
+    """Return the place of the mouse with a slider: once across, so that each position comes once."""
     return lambda now: (box["x"] + box["width"] * now / DRAG, box["y"] + box["height"] / 2)
 
 

@@ -15,7 +15,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # set before numpy is imported
 
 import numpy as np
 
@@ -24,11 +24,12 @@ from benchmarks.peers.solids import BENDING, Strip, reference
 from benchmarks.rows import Row, show
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-_MODES, _ALLOWED, _SHARE = 3, 2.0, 0.6  # of the critical speed, or of the first frequency at rest
+# Number of modes, allowed ratio of errors, and share of critical speed or first frequency.
+_MODES, _ALLOWED, _SHARE = 3, 2.0, 0.6
 
 
 def scenes() -> Iterator[tuple[str, bd.Scene]]:
-    """Scenes of beams with a rectangular section, each section once."""
+    """Yield scenes of beams with a rectangular section, each section once."""
     seen = set()
     for path in sorted(EXAMPLES.glob("*.toml")):
         try:
@@ -44,7 +45,7 @@ def scenes() -> Iterator[tuple[str, bd.Scene]]:
 
 
 def strip_of(scene: bd.Scene, speed: float) -> Strip:
-    """The beam of a scene as a solid."""
+    """Return the beam of a scene as a solid."""
     section, mount, end = scene.beam.section, scene.mount, np.zeros(1)
     assert section is not None
     t, b = float(section.thickness(end)[0]), float(section.width(end)[0])
@@ -60,7 +61,7 @@ def strip_of(scene: bd.Scene, speed: float) -> Strip:
 
 
 def speeds_of(scene: bd.Scene) -> list[float]:
-    """At rest; and one speed, where the beam points at the axis or away from it."""
+    """Return the speed 0, and one more if the beam points at the axis or away from it."""
     if math.sin(scene.mount.setting_angle) > 1e-9:
         return [0.0]
     critical = bd.critical_speed(scene)
@@ -69,12 +70,11 @@ def speeds_of(scene: bd.Scene) -> list[float]:
 
 
 def compare() -> Iterator[Row]:
-    """Each scene: the largest true difference of its modes, the model error stated of it, and the bound."""
+    """Yield for each scene the largest true difference of its modes, its model error, and the bound."""
     for name, scene in scenes():
         for speed in speeds_of(scene):
             solid = [mode for mode in reference(strip_of(scene, speed)) if mode.kind == BENDING][:_MODES]
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")  # of what is compared here
+            with warnings.catch_warnings(action="ignore"):  # of what is compared here
                 found = bd.natural_modes(scene, speed, _MODES)
                 stated = found.model_error
             true = np.abs([m.frequency / f - 1 for m, f in zip(solid, found.frequency, strict=False)])

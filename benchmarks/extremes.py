@@ -18,7 +18,8 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -38,16 +39,16 @@ _EPS = float(np.finfo(float).eps)
 
 _QUARTER = np.pi / 2
 SEED = 11
-_NEAR = 1e-9  # relative distance from a critical speed at which rounding leaves bounds a sign
-_QUICK_TENSION = 1e4  # over EI / L^2, for which the series of a critical speed takes a second
-_FASTEST_GAMMA = 1e6  # up to which a proof is asked for where there is no critical speed
-_WARNED = 1e-6  # stated error from which an answer carries a warning
+_NEAR = 1e-9  # relative distance from a critical speed at which bounds still have a sign despite rounding
+_QUICK_TENSION = 1e4  # tension over EI / L^2 up to which the series of a critical speed takes a second
+_FASTEST_GAMMA = 1e6  # largest gamma up to which a missing critical speed must be proven
+_WARNED = 1e-6  # stated error above which an answer has a warning
 _STEEL = 200e9, 7850.0
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one draw."""
+    """The outcome of one draw."""
 
     kind: str
     verdict: str  # "right", "right, with a warning", "refused" or "wrong in silence"
@@ -59,7 +60,7 @@ class Outcome:
 
 
 def draw_beam(rng: np.random.Generator, taper: bool = True, tip: bool = True) -> bd.Beam:
-    """Ten micrometres to 100 m long, slenderness 10 to 1e6, up to 1e6 beam masses at its tip."""
+    """Draw a beam 10 um to 100 m long, slenderness 10 to 1e6, with up to 1e6 beam masses at its tip."""
     length = 10 ** rng.uniform(-5, 2)
     thickness = length / 10 ** rng.uniform(1, 6)
     tapers = rng.uniform(0, 0.9, 2) * rng.integers(0, 2) * taper
@@ -70,7 +71,7 @@ def draw_beam(rng: np.random.Generator, taper: bool = True, tip: bool = True) ->
 
 
 def draw_mount(rng: np.random.Generator, length: float) -> bd.Mount:
-    """Hubs to 1e6 lengths, all angles, many of them at or near a quarter turn."""
+    """Draw a mount with hubs to 1e6 lengths, all angles, many of them at or near a quarter turn."""
     angles = [0.0, np.pi, _QUARTER, _QUARTER + rng.choice([-1, 1]) * 1e-12, rng.uniform(-np.pi, np.pi)]
     return bd.Mount(
         length * rng.choice([0.0, 10 ** rng.uniform(-3, 6)]),
@@ -80,7 +81,7 @@ def draw_mount(rng: np.random.Generator, length: float) -> bd.Mount:
 
 
 def draw_scene_that_may_buckle(rng: np.random.Generator) -> bd.Scene:
-    """Half of the tip bodies with inertia and also inboard; half of the directions nearly tangential."""
+    """Draw a scene; half of the tip bodies are inboard, half of the directions nearly tangential."""
     beam = draw_beam(rng)
     mount = draw_mount(rng, beam.length)
     if beam.tip is not None and rng.integers(0, 2):
@@ -94,7 +95,7 @@ def draw_scene_that_may_buckle(rng: np.random.Generator) -> bd.Scene:
 
 
 def draw_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """Any scene and speed: gamma to 1e4, past the critical speed."""
+    """Draw any scene and speed: gamma to 1e4, past the critical speed."""
     beam = draw_beam(rng)
     scene = bd.Scene(beam, draw_mount(rng, beam.length))
     gamma = rng.choice([0.0, 10 ** rng.uniform(-8, 4)]) / time_unit(beam)
@@ -108,7 +109,7 @@ def draw_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def check_by_bounds(rng: np.random.Generator) -> Outcome:
-    """Three modes against the guaranteed bounds of their squares."""
+    """Check three modes against the guaranteed bounds of their squares."""
     scene, speed = draw_scene(rng)
     modes = bd.natural_modes(scene, speed)
     bounds = bd.frequency_bounds(scene, speed)
@@ -125,7 +126,7 @@ def check_by_bounds(rng: np.random.Generator) -> Outcome:
 
 
 def check_by_series(rng: np.random.Generator) -> Outcome:
-    """Three modes against the power series, which is exact, up to a tension of 1e5 EI / L^2."""
+    """Check three modes against the power series, which is exact, up to a tension of 1e5 EI / L^2."""
     scene, speed = draw_scene(rng)
     speed = float(np.sign(speed) * min(abs(speed), np.sqrt(MOST_TENSION / largest_tension(scene))))
     modes = bd.natural_modes(scene, speed)
@@ -136,7 +137,7 @@ def check_by_series(rng: np.random.Generator) -> Outcome:
 
 
 def check_at_rest(rng: np.random.Generator) -> Outcome:
-    """Up to 200 modes of a uniform beam at rest against the roots of cos x cosh x = -1."""
+    """Check up to 200 modes of a uniform beam at rest against the roots of cos x cosh x = -1."""
     beam = draw_beam(rng, taper=False, tip=False)
     count = int(10 ** rng.uniform(0, np.log10(200)))
     modes = bd.natural_modes(bd.Scene(beam, bd.Mount(0.0)), 0.0, count)
@@ -147,7 +148,7 @@ def check_at_rest(rng: np.random.Generator) -> Outcome:
 
 
 def check_critical_by_bounds(rng: np.random.Generator) -> Outcome:
-    """A critical speed against guaranteed bounds beside it; none, at speeds up to where it was looked."""
+    """Check a critical speed against guaranteed bounds beside it; a missing one up to a high speed."""
     scene = draw_scene_that_may_buckle(rng)
     discretization = rng.choice(["ritz", "fem"], p=[0.9, 0.1])
     point = bd.critical_point(scene, str(discretization), draw_tolerance(rng))
@@ -167,7 +168,7 @@ def check_critical_by_bounds(rng: np.random.Generator) -> Outcome:
 
 
 class Prover:
-    """Proofs that the stiffness of a scene at a speed is positive, or is not, in two sizes of the bounds."""
+    """Prover that the stiffness of a scene at a speed is positive, or is not, by bounds of two sizes."""
 
     def __init__(self, scene: bd.Scene) -> None:
         scaled, self.time = _nondimensional(scene)
@@ -175,7 +176,7 @@ class Prover:
         self.splits = [PlaneEnclosure(scaled, size, 0.0, flexibility) for size in (32, 64)]
 
     def is_stable(self, speed: float) -> bool | None:
-        """Whether the stiffness is proved positive or not; None if neither is."""
+        """Whether the stiffness is proven positive, or not; None if neither is proven."""
         for split in self.splits:
             lower = split.stiffness_form((speed * self.time) ** 2)
             if lower is not None and np.isfinite(lower).all() and np.linalg.eigvalsh(lower)[0] >= 0:
@@ -187,12 +188,12 @@ class Prover:
 
 
 def draw_tolerance(rng: np.random.Generator) -> float | None:
-    """None, or 0.1 to 1e-9."""
+    """Draw no tolerance, or one of 0.1 to 1e-9."""
     return None if rng.integers(0, 2) else float(10 ** rng.uniform(-9, -1))
 
 
 def check_critical_by_series(rng: np.random.Generator) -> Outcome:
-    """A critical speed against the power series, which is exact, at a tension of up to 1e4 EI / L^2."""
+    """Check a critical speed against the power series, up to a tension of 1e4 EI / L^2."""
     tension = np.inf
     while tension > _QUICK_TENSION:  # past it, and where there is none, the series would take long
         scene = draw_scene_that_may_buckle(rng)
@@ -205,7 +206,7 @@ def check_critical_by_series(rng: np.random.Generator) -> Outcome:
 
 
 def find_root(n: int) -> float:
-    """The n-th root of cos x = -1 / cosh x."""
+    """Find the n-th root of cos x = -1 / cosh x."""
     middle = (n - 0.5) * np.pi
     return (
         middle
@@ -215,7 +216,7 @@ def find_root(n: int) -> float:
 
 
 def check_with_stretch(rng: np.random.Generator) -> Outcome:
-    """Stretch with axial stiffness ratios EA L^2 / EI to 1e16, against finite elements."""
+    """Check stretch with ratios EA L^2 / EI to 1e16 against finite elements."""
     beam = draw_beam(rng, tip=False)
     ratio = 10 ** rng.uniform(3, 16)
     soft = bd.Beam.from_stiffness(
@@ -237,12 +238,12 @@ def check_with_stretch(rng: np.random.Generator) -> Outcome:
 
 
 def judge(kind: str, modes: bd.Modes, fits: bool, known: float, detail: str) -> Outcome:
-    """The outcome for modes that agree with what is known, or do not."""
+    """Return the outcome for modes that agree with the known values, or do not."""
     return judge_answer(kind, bool(modes.error.max() > _WARNED), fits, known, detail)
 
 
 def judge_answer(kind: str, warned: bool, fits: bool, known: float, detail: str) -> Outcome:
-    """The outcome for an answer that agrees with what is known, or does not."""
+    """Return the outcome for an answer that agrees with the known value, or does not."""
     if not fits:
         return Outcome(kind, "wrong in silence", known, detail)
     return Outcome(kind, "right, with a warning" if warned else "right", known)
@@ -259,12 +260,11 @@ _KINDS: tuple[tuple[str, float, Callable[[np.random.Generator], Outcome]], ...] 
 
 
 def draw_and_check(number: int, seed: int) -> Outcome:
-    """The outcome of the draw with this number."""
+    """Return the outcome of the draw with a number."""
     rng = np.random.default_rng([seed, number])
     name, _, check = _KINDS[rng.choice(len(_KINDS), p=[share for _, share, _ in _KINDS])]
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
+        with warnings.catch_warnings(action="ignore"):
             return check(rng)
     except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
         return Outcome(name, "refused", np.nan, str(error))
@@ -274,7 +274,7 @@ def draw_and_check(number: int, seed: int) -> Outcome:
 
 
 def summarize(outcomes: Sequence[Outcome]) -> Iterator[Row]:
-    """Counts of verdicts, and what was refused."""
+    """Yield counts of verdicts, and what was refused."""
     verdicts = Counter(o.verdict for o in outcomes)
     yield "random draws", str(len(outcomes)), "100000"
     yield "wrong in silence", str(verdicts["wrong in silence"]), "0"
@@ -300,18 +300,18 @@ def summarize(outcomes: Sequence[Outcome]) -> Iterator[Row]:
 
 
 def draw_all(first: int, scenes: int, workers: int, seed: int) -> list[Outcome]:
-    """All draws from a first one, on several processes."""
+    """Compute all draws from a first one on, in several processes."""
     with ProcessPoolExecutor(workers) as pool:
         return list(pool.map(partial(draw_and_check, seed=seed), range(first, first + scenes), chunksize=64))
 
 
 def measure_sample() -> Iterator[Row]:
-    """The first 1000 draws."""
+    """Measure the first 1000 draws."""
     yield from summarize(draw_all(0, 1000, 2, SEED))
 
 
 def measure_linear_models() -> Iterator[Row]:
-    """Linear models of steel beams of 1 um to 1 km that are nondimensionally one."""
+    """Measure linear models of steel beams of 1 um to 1 km that are the same without dimensions."""
     apart = [deviation(10.0**power, planes) for power in range(-6, 4) for planes in (1, 2)]
     yield "linear models of 1 um to 1 km, over those of 1 m", f"{max(apart):.0e}", "1e-9"
 

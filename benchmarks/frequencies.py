@@ -25,7 +25,7 @@ from benchmarks.peers import pybmodes
 from benchmarks.peers.ours import BLADE_SCENE
 from benchmarks.rows import Row, best_time, show, time_text
 
-_CALLS = 50  # of milliseconds, of which the shortest counts
+_CALLS = 50  # number of calls of milliseconds, of which the shortest counts
 _FIRST_CALL = """
 import beamdyn as bd
 bd.natural_modes(bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0)), 1.0)
@@ -33,7 +33,7 @@ bd.natural_modes(bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0)),
 
 
 def compare_with_tables() -> Iterator[Row]:
-    """All published and generated rotating beams, by both discretizations."""
+    """Compare all published and generated rotating beams, by both discretizations."""
     for discretization, bound in (("ritz", "1e-9"), ("fem", "1e-6")):
         worst, covered, values = 0.0, 0, 0
         for case in generated_cases():
@@ -55,14 +55,14 @@ def compare_with_tables() -> Iterator[Row]:
 
 
 def find_deviation(case: dict, discretization: str) -> np.ndarray:
-    """Relative deviations from the digits of a published case."""
+    """Compute relative deviations from the digits of a published case."""
     expected = np.array(case["frequency"])
     modes = bd.natural_modes(of_case(case), case["gamma"], len(expected), discretization)
     return np.abs(2 * np.pi * modes.frequency / expected - 1)
 
 
 def compare_published_scene() -> Iterator[Row]:
-    """Frequencies, buckling speed and setting-angle limits of the tyre harvester."""
+    """Compare frequencies, buckling speed and setting-angle limits of the tyre harvester."""
     for speed, ansys in ((0.0, 65.230), (50.0, 61.963), (100.0, 50.907)):
         f = bd.natural_modes(HARVESTER, speed, 1).frequency[0]
         yield f"Table 2 at {speed:g} rad/s [Hz]", f"{f:.8f}", f"ANSYS {ansys:.3f} +- 0.001"
@@ -75,7 +75,7 @@ def compare_published_scene() -> Iterator[Row]:
 
 
 def check_many_functions() -> Iterator[Row]:
-    """Largest error as the basis grows: no digit may be lost."""
+    """Yield the largest error as the basis grows: no digit may be lost."""
     for gamma in (0, 12):
         expected, worst = exact_eigenvalues(gamma), 0.0
         for n in (20, 40, 80, 120, 160, 200):
@@ -84,7 +84,7 @@ def check_many_functions() -> Iterator[Row]:
 
 
 def time_locus() -> Iterator[Row]:
-    """Time and error of a locus, time of the command's help."""
+    """Yield time and error of a locus, and the time of the command's help."""
     speeds = np.linspace(0, 150, 1000)
     locus = bd.frequency_locus(HARVESTER, speeds, 3)
     time = best_time(lambda: bd.frequency_locus(HARVESTER, speeds, 3))
@@ -102,7 +102,7 @@ def time_locus() -> Iterator[Row]:
 
 
 def time_one_call() -> Iterator[Row]:
-    """Times of one call for a uniform blade, beside a peer with 5 elements, and of the first call."""
+    """Yield times of one call for a uniform blade, of a peer with 5 elements, and of the first call."""
     scenes = (
         replace(BLADE_SCENE, beam=replace(BLADE_SCENE.beam, length=1 + 1e-13 * k)) for k in range(_CALLS)
     )
@@ -121,7 +121,7 @@ def time_one_call() -> Iterator[Row]:
 
 
 def time_process(script: str) -> float:
-    """Shortest time of the processor [s] of fresh processes that run a script.
+    """Measure the shortest processor time [s] of fresh processes that run a script.
 
     Bytecode is kept between them, as that of an installed package is.
     """
@@ -140,9 +140,5 @@ def time_process(script: str) -> float:
 PARTS = compare_with_tables, compare_published_scene, check_many_functions, time_locus, time_one_call
 
 
-def main() -> None:
-    show("frequencies", *PARTS)
-
-
 if __name__ == "__main__":
-    main()
+    show("frequencies", *PARTS)

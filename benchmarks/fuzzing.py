@@ -27,7 +27,8 @@ from random import Random
 from types import FrameType
 from typing import Any
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: several threads would only wait
+# Several threads would only wait for each other on small matrices.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("MPLBACKEND", "agg")
 
 import beamdyn.cli
@@ -39,9 +40,9 @@ from benchmarks.rows import Row, show
 
 ROOT = Path(__file__).parents[1]
 SEED, CASES = 13, 2000
-LIMIT = 20.0  # s of computing of one case: other programs on the machine do not count
-_HUNG = 300.0  # s after which a case that waits, or that no signal interrupts, is shown and ends everything
-_MEMORY = 8 << 30  # bytes; a program says so if it needs more
+LIMIT = 20.0  # processor time of one case [s], so that other programs do not count
+_HUNG = 300.0  # time [s] after which a case that waits, or that no signal interrupts, ends the run
+_MEMORY = 8 << 30  # largest memory [bytes]; a program reports if it needs more
 _OURS = tuple(f"{ROOT / package}{os.sep}" for package in ("beamdyn", "brakes"))
 _REFUSALS = (ValueError, TypeError, ArithmeticError)
 
@@ -74,7 +75,7 @@ class Kind:
 
 
 def kinds() -> tuple[Kind, ...]:
-    """The examples by kind."""
+    """List the examples by kind."""
     folder = ROOT / "examples"
     special = {folder / "drum.toml": _DRUM, folder / "forklift.toml": _FORKLIFT}
     blade = folder / "twisted_blade.toml"
@@ -110,7 +111,7 @@ class Outcome:
 
     @property
     def failed(self) -> bool:
-        """Whether it is no answer and no refusal of the program's own."""
+        """Whether the case has neither an answer nor a refusal of the program itself."""
         return self.verdict not in ("answered", "refused")
 
 
@@ -118,7 +119,7 @@ class Outcome:
 
 
 class TookTooLongError(BaseException):
-    """A case is not done in time; nothing in the programs catches it."""
+    """Raised if a case is not done in time; nothing in the programs catches it."""
 
 
 @contextmanager
@@ -139,7 +140,7 @@ def _time_limit(seconds: float) -> Iterator[None]:
 
 
 def watch(case: str, run: Callable[[], tuple[str, str]], limit: float = LIMIT) -> Outcome:
-    """The outcome of a case: what it returns, or how it fails."""
+    """Return the outcome of a case: its answer, or how it fails."""
     start = time.process_time()
     with _foreign_warnings() as warned:
         try:
@@ -178,7 +179,7 @@ def _foreign_warnings() -> Iterator[list[str]]:
 
 
 def _is_ours(error: BaseException) -> bool:
-    """Whether a statement of ours raises it: not an operation that fails, nor another package."""
+    """Whether a statement of the packages raises the error, not an operation that fails."""
     last = error.__traceback__
     while last is not None and last.tb_next is not None:
         last = last.tb_next
@@ -200,7 +201,7 @@ def _where(error: BaseException) -> str:
 
 
 def check_file(number: int, seed: int = SEED) -> Outcome:
-    """The outcome of a command on the mutated file of this number; it stands in the current folder."""
+    """Return the outcome of a command on the mutated file with a number, in the current folder."""
     random = Random(f"file {seed} {number}")
     kind = random.choices(kinds(), (5, 4, 2, 2, 1))[0]
     path, command = random.choice(kind.files), random.choice(kind.commands)
@@ -214,7 +215,7 @@ def check_file(number: int, seed: int = SEED) -> Outcome:
 
 
 def _run(main: Callable[[Sequence[str]], int], arguments: Sequence[str]) -> tuple[str, str]:
-    """Verdict on a command, and what it says on standard error."""
+    """Return the verdict on a command, and its text on standard error."""
     out, err = io.StringIO(), io.StringIO()
     with redirect_stdout(out), redirect_stderr(err):
         code = main(arguments)
@@ -230,7 +231,7 @@ def _run(main: Callable[[Sequence[str]], int], arguments: Sequence[str]) -> tupl
 
 
 def check_call(number: int, seed: int = SEED) -> Outcome:
-    """The outcome of the wrong call of this number."""
+    """Return the outcome of the wrong call with a number."""
     call = draw_wrong_call(right_calls(), wrong_values(), Random(f"call {seed} {number}"))
     return watch(f"call {number}: {call}", lambda: _answer(call))
 
@@ -248,7 +249,7 @@ CHECKS = {"mutated files": check_file, "wrong calls": check_call}
 
 
 def check_all(check: Callable[[int, int], Outcome], cases: range, seed: int = SEED) -> list[Outcome]:
-    """The outcomes of some cases, in a folder of their own."""
+    """Return the outcomes of some cases, run in a temporary folder."""
     before = Path.cwd()
     with tempfile.TemporaryDirectory() as folder:
         try:
@@ -259,7 +260,7 @@ def check_all(check: Callable[[int, int], Outcome], cases: range, seed: int = SE
 
 
 def _unhung(check: Callable[[int, int], Outcome], number: int, seed: int) -> Outcome:
-    """The outcome of a case; one that hangs in a library is shown with its place, and ends the process."""
+    """Return the outcome of a case; end the process if it hangs in a library, and show the place."""
     faulthandler.dump_traceback_later(_HUNG, exit=True, file=sys.__stderr__)
     try:
         return check(number, seed)
@@ -268,7 +269,7 @@ def _unhung(check: Callable[[int, int], Outcome], number: int, seed: int) -> Out
 
 
 def summarize(name: str, outcomes: Sequence[Outcome]) -> Iterator[Row]:
-    """Counts of verdicts, the longest case, and every failure."""
+    """Yield counts of verdicts, the longest case, and every failure."""
     verdicts = Counter(outcome.verdict for outcome in outcomes)
     failures = [outcome for outcome in outcomes if outcome.failed]
     yield name, str(len(outcomes)), str(CASES)

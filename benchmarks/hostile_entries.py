@@ -36,7 +36,7 @@ from brakes.cli.commands import make_program as make_brakes
 
 MAKERS: dict[str, Callable[[], Program]] = {"brakes": make_brakes, "beamdyn": make_beamdyn}
 OTHER = {"brakes": ("Drum brake", "shoe.force_arm"), "beamdyn": ("Frequencies", "mount.radius")}
-_PAUSE = 0.02  # between two entries of the hostile tab [s]
+_PAUSE = 0.02  # time between two entries of the hostile tab [s]
 _NUMBERS = ("1e300", "-1e300", "1e-300", "1e9", "-1", "0", "-0.0", "1e999", "nan", "-inf", "1,5", "9" * 400)
 _TEXTS = (
     *("", " ", "-", "text", "[", "[" * 5000, "{}", "[]", '""', '"', "true", "1979-05-27", "NaN m", "inf"),
@@ -46,7 +46,7 @@ _TEXTS = (
 
 
 def hostile_texts(entry: Input, count: int, seed: int) -> list[str]:
-    """Entries that no one should make, for one field, in an order that follows from the seed.
+    """Return entries for one field that no one should make, in an order that follows from the seed.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def hostile_texts(entry: Input, count: int, seed: int) -> list[str]:
 
 @dataclass
 class Found:
-    """What the entries of a program met with."""
+    """Outcomes of the entries of a program."""
 
     kinds: Counter[str] = field(default_factory=Counter)
     unknown: dict[str, str] = field(default_factory=dict)
@@ -141,7 +141,7 @@ async def _one(processes: Processes, found: Found, case: Any, room: asyncio.Sema
 
 
 def memory_of(ids: Iterable[int]) -> float:
-    """Memory of processes [MB], as /proc tells it; what has ended has none."""
+    """Return the memory of processes [MB], from /proc; processes that have ended have none."""
     pages = 0
     for process in ids:
         with suppress(OSError):
@@ -150,7 +150,7 @@ def memory_of(ids: Iterable[int]) -> float:
 
 
 def children_of(process: int) -> list[int]:
-    """The processes that a process has started, and that there still are."""
+    """List the processes that a process has started, and that still run."""
     try:
         return [int(child) for child in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
     except OSError:
@@ -158,7 +158,7 @@ def children_of(process: int) -> list[int]:
 
 
 def each_alone(program: Program, count: int, seed: int) -> Iterator[Row]:
-    """What the entries of each field met with."""
+    """Yield the outcomes of the entries of each field, made one at a time."""
     found = asyncio.run(_alone(program.name, program, count, seed))
     yield "entries solved one by one", str(found.kinds.total()), ""
     for kind, number in found.kinds.most_common():
@@ -211,14 +211,14 @@ _TYPING = 100.0  # that a field waits for a pause in typing [ms]
 
 
 class Memory(threading.Thread):
-    """Watches the memory of a process and of those that it has started."""
+    """A thread that watches the memory of a process and of those that it has started."""
 
     def __init__(self, process: int) -> None:
         super().__init__(daemon=True)
         self.most, self._root, self._on = 0.0, process, True
 
     def run(self) -> None:
-        """Watch until `stop`."""
+        """Watch until `stop` is called."""
         while self._on:
             self.most = max(self.most, memory_of([self._root, *children_of(self._root)]))
             time.sleep(0.2)
@@ -230,7 +230,7 @@ class Memory(threading.Thread):
 
 
 def beside_another_tab(program: Program, count: int, seed: int) -> Iterator[Row]:
-    """How another tab fares while one sends the entries of all fields."""
+    """Measure how another tab responds while one sends the entries of all fields."""
     process = start(port := free_port(), program.name)
     memory = Memory(process.pid)
     memory.start()
@@ -238,7 +238,8 @@ def beside_another_tab(program: Program, count: int, seed: int) -> Iterator[Row]
     try:
         with browser() as made:
             hostile, other = (open_page(made.new_context(), port) for _ in range(2))
-            numbers = (f"0.{digits} m" for digits in range(1100, 1_000_000))  # none twice: each is an entry
+            # No number occurs twice, so that each counts as an entry.
+            numbers = (f"0.{digits} m" for digits in range(1100, 1_000_000))
             times = [
                 time
                 for screen in _screens(program)
@@ -262,7 +263,7 @@ def _screens(program: Program) -> list[tuple[Document, Screen]]:
 
 
 def _entries(place: tuple[Document, Screen], count: int, seed: int) -> list[tuple[str, str]]:
-    """Paths and texts for all fields of a screen, in an order that follows from the seed."""
+    """Return paths and texts for all fields of a screen, in an order that follows from the seed."""
     document, screen = place
     entries = [
         (entry.path, text)
@@ -282,7 +283,7 @@ def _beside(
     entries: list[tuple[str, str]],
     numbers: Iterator[str],
 ) -> Iterator[tuple[float, float]]:
-    """Times of the other tab [ms] while all fields of one screen get their entries."""
+    """Yield times of the other tab [ms] while all fields of one screen get their entries."""
     name, path = OTHER[program.name]
     hostile.reload()
     hostile.wait_for_function("window.did_handshake")

@@ -46,7 +46,7 @@ COMMANDS = (
 PATTERN = {("brakes", room) for room in ("answers", "config", "drawings", "machines")}
 BODIES = {"<module>", "<lambda>", "<listcomp>", "<setcomp>", "<dictcomp>", "<genexpr>"}
 PROSE = re.compile(r"warning|sentence|message|note(?!d)|remark|advice|refusal|said|error")
-NAMED = re.compile(r"(name|label|place|field|number)\b")  # a subject that is no prose
+NAMED = re.compile(r"(name|label|place|field|number)\b")  # names of subjects that are no prose
 TESTS = {"startswith", "endswith", "find", "count", "index"}
 PATTERNS = {"compile", "match", "fullmatch", "search", "sub", "split", "findall", "finditer"}
 # Modules whose patterns read what a person or another program wrote: options, entries of forms, files.
@@ -64,6 +64,7 @@ READERS = {
     "beamdyn/common/drawing/text_width.py",
     "beamdyn/common/edge/toml_columns.py",
     "beamdyn/common/edge/csv_columns.py",
+    "beamdyn/common/edge/rendering.py",
     "beamdyn/common/edge/data_text.py",
     "beamdyn/common/edge/units.py",
     "beamdyn/common/edge/varied_inputs.py",
@@ -98,7 +99,7 @@ class Profile:
             self.entered.add(frame.f_code)
 
     def functions(self) -> set[tuple[str, str, int]]:
-        """File, name and line of each function or comprehension."""
+        """List file, name and line of each function or comprehension that was entered."""
         ours = [str(ROOT / package) for package in PACKAGES]
         return {
             (code.co_filename, code.co_name, code.co_firstlineno)
@@ -127,7 +128,7 @@ def probe(arguments: Sequence[str]) -> None:
 
 
 def modules_run(command: Sequence[str]) -> list[str]:
-    """Files of the modules that a command runs."""
+    """List the files of the modules that a command runs."""
     done = subprocess.run(
         [sys.executable, "-c", PROBE, *command], cwd=ROOT, capture_output=True, text=True, check=True
     )
@@ -136,7 +137,7 @@ def modules_run(command: Sequence[str]) -> list[str]:
 
 
 def functions_of_modes() -> set[tuple[str, str, int]]:
-    """File, name and line of each named function that one warm `natural_modes` enters."""
+    """List file, name and line of each named function that one warm `natural_modes` enters."""
     import beamdyn as bd
 
     beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
@@ -158,13 +159,14 @@ def _tree(path: Path) -> ast.Module:
 
 
 def sources() -> list[Path]:
-    """All modules of both packages."""
+    """List all modules of both packages."""
     return sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
 
 
 def _is_prose(node: ast.AST, made_of: dict[str, ast.expr]) -> bool:
-    """Whether a value is called, or is made of something called, what sentences are called."""
-    if isinstance(node, ast.Attribute) and node.attr == "field":  # of an error: a key, no sentence
+    """Whether a value has a name that sentences have, or is made of one that has."""
+    # The attribute of an error is a key, no sentence.
+    if isinstance(node, ast.Attribute) and node.attr == "field":
         return False
     names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
     called = names | {n.attr for n in ast.walk(node) if isinstance(n, ast.Attribute)}
@@ -180,7 +182,7 @@ def _is_prose(node: ast.AST, made_of: dict[str, ast.expr]) -> bool:
 
 
 def sentence_tests(tree: ast.Module) -> Iterator[ast.expr]:
-    """Tests of whether something stands in a sentence."""
+    """Yield tests of whether something occurs in a sentence."""
     for function in (node for node in ast.walk(tree) if isinstance(node, Function)):
         loops = (n for n in ast.walk(function) if isinstance(n, (ast.For, ast.comprehension)))
         made_of = {loop.target.id: loop.iter for loop in loops if isinstance(loop.target, ast.Name)}
@@ -197,7 +199,7 @@ def sentence_tests(tree: ast.Module) -> Iterator[ast.expr]:
 
 
 def patterns(tree: ast.Module) -> Iterator[ast.expr]:
-    """Regular expressions that are written in a module, but for those applied to names and numbers."""
+    """Yield regular expressions written in a module, except those applied to names and numbers."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             module = node.func.value
@@ -208,7 +210,7 @@ def patterns(tree: ast.Module) -> Iterator[ast.expr]:
 
 
 def late_imports(tree: ast.Module) -> int:
-    """Number of import statements and of calls of `import_module` inside functions."""
+    """Count import statements and calls of `import_module` inside functions."""
     inside = {node for f in ast.walk(tree) if isinstance(f, Function) for node in ast.walk(f)}
     statements = sum(isinstance(node, (ast.Import, ast.ImportFrom)) for node in inside)
     return statements + sum(_imports(node) for node in ast.walk(tree))
@@ -220,7 +222,7 @@ def _imports(node: ast.AST) -> bool:
 
 
 def circles() -> list[list[str]]:
-    """Groups of modules that import each other, `import_module("...")` included."""
+    """List groups of modules that import each other, `import_module("...")` included."""
     import grimp
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import connected_components
@@ -237,7 +239,7 @@ def circles() -> list[list[str]]:
 
 
 def _dynamic_imports() -> Iterator[tuple[str, str]]:
-    """A module, and one that it imports by `import_module` of a text."""
+    """Yield a module, and one that it imports by `import_module` of a text."""
     for path in sources():
         name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
         for node in ast.walk(_tree(path)):
@@ -246,14 +248,14 @@ def _dynamic_imports() -> Iterator[tuple[str, str]]:
 
 
 def names_used_again() -> list[str]:
-    """Names that several modules of a package have, outside the rooms with a fixed pattern of names."""
+    """List names that several modules of a package have, outside rooms with a fixed pattern."""
     rooms = {p: p.relative_to(ROOT).parts for p in sources() if p.stem != "__init__"}
     stems = Counter((parts[0], p.stem) for p, parts in rooms.items() if parts[:2] not in PATTERN)
     return [f"{package}: {stem}" for (package, stem), n in stems.items() if n > 1]
 
 
 def code_lines(path: Path) -> int:
-    """Number of lines that are neither blank nor comment nor docstring."""
+    """Count lines that are neither blank nor comment nor docstring."""
     documented: set[int] = set()
     for node in ast.walk(_tree(path)):
         if isinstance(
@@ -268,14 +270,14 @@ def code_lines(path: Path) -> int:
 
 
 def count_what_runs() -> Iterator[Row]:
-    """Modules of two commands, and functions of one answer."""
+    """Yield the modules of two commands, and the functions of one answer."""
     for command, bound in COMMANDS:
         yield f"modules run by `{' '.join(command)}`", f"{len(modules_run(command))}", bound
     yield "named functions entered by a warm natural_modes", f"{len(functions_of_modes())}", "130"
 
 
 def count_readings_of_prose() -> Iterator[Row]:
-    """Tests and patterns by which code reads its own sentences."""
+    """Yield tests and patterns by which code reads its own sentences."""
     tests = sum(1 for path in sources() for _ in sentence_tests(_tree(path)))
     yield "substring tests on sentences", f"{tests}", "0"
     prose = (path for path in sources() if path.relative_to(ROOT).as_posix() not in READERS)
@@ -283,7 +285,7 @@ def count_readings_of_prose() -> Iterator[Row]:
 
 
 def count_modules() -> Iterator[Row]:
-    """What is imported late and in circles, and sizes."""
+    """Yield what is imported late and in circles, and sizes."""
     yield "imports inside functions", f"{sum(late_imports(_tree(path)) for path in sources())}", "90"
     yield "circles, `import_module` counted", f"{len(circles())}", "0"
     yield "module names used more than once, but for the pattern of rooms", f"{len(names_used_again())}", "10"
@@ -293,7 +295,7 @@ def count_modules() -> Iterator[Row]:
 
 
 def main() -> None:
-    if "--list" in sys.argv:  # what the rows count, to be looked at
+    if "--list" in sys.argv:  # lists what the rows count
         for path in sources():
             name = path.relative_to(ROOT).as_posix()
             for node in sentence_tests(_tree(path)):

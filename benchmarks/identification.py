@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from benchmarks.rows import Row, show
 
 NOISE = 0.005
 _FOUND = 1e-7  # largest relative error without noise
-_MOST = 40  # solves a number
+_MOST = 40  # most solves for each number
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class Answer:
 
 
 def outcome(seed: int, noise: float) -> list[Answer]:
-    """What is found of the scene of a seed."""
+    """Identify the scene of a seed, and return the outcome."""
     true = unknowns(seed)
     found, values = identify(true, noise, seed), np.array([*true.values()])
     error = np.abs(found.value / values - 1)

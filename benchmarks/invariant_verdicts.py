@@ -22,8 +22,8 @@ from benchmarks.rows import Row, show
 from brakes import planar
 
 SEED = 29
-_GRID = 0.25  # m
-_TRAVEL = 0.2  # m, along the curve of positions
+_GRID = 0.25  # width of the grid [m]
+_TRAVEL = 0.2  # distance along the curve of positions [m]
 _POINTS = ("at", "to", "at_other", "on", "centre")
 _DIRECTIONS = ("direction", "normal", "along")
 _NUMBERS = ("radius", "length", "free_length", "stiffness", "magnitude")
@@ -38,7 +38,7 @@ def transform(
     shift: complex = 0j,
     noise: float = 0.0,
 ) -> planar.Mechanism:
-    """The mechanism in another unit of length, turned, shifted, its points and directions perturbed."""
+    """Return the mechanism in another unit of length, turned, shifted, with perturbed points."""
     rng, turn = np.random.default_rng(SEED), np.exp(1j * angle)
 
     def perturbed(z: complex) -> complex:
@@ -71,7 +71,7 @@ def transform(
 
 
 def _power(part: Any, name: str) -> int:
-    """Power of the unit of length in a number of a joint or load, forces being kept."""
+    """Return the power of the unit of length in a number of a joint or load, for unchanged forces."""
     if isinstance(part, planar.Moment | planar.TorsionSpring):
         return 1
     return {"stiffness": -1, "magnitude": 0}.get(name, 1)
@@ -89,7 +89,7 @@ TRANSFORMS: dict[str, Transform] = {
 
 
 def draw_mechanism(rng: np.random.Generator) -> tuple[planar.Mechanism, str]:
-    """A mechanism of mobility 1 with friction, every other on a grid, and the load that drives it."""
+    """Draw a mechanism of mobility 1 with friction, every other on a grid, and the load that drives it."""
     is_on_grid = rng.random() < 0.5
     while True:
         drawn = mechanisms.random_mechanism(rng)
@@ -110,7 +110,7 @@ def draw_mechanism(rng: np.random.Generator) -> tuple[planar.Mechanism, str]:
 
 
 def _with_friction(joint: planar.Joint, rng: np.random.Generator) -> planar.Joint:
-    """The joint with a random coefficient of friction, if it can have one."""
+    """Return the joint with a random coefficient of friction, if it can have one."""
     if isinstance(joint, planar.Pin):
         return replace(joint, radius=float(rng.uniform(0.01, 0.1)), friction=float(rng.uniform(0.1, 0.6)))
     if isinstance(joint, planar.Slot | planar.Contact):
@@ -119,7 +119,7 @@ def _with_friction(joint: planar.Joint, rng: np.random.Generator) -> planar.Join
 
 
 def _on_grid(mechanism: planar.Mechanism) -> planar.Mechanism:
-    """All points and directions rounded to a grid."""
+    """Round all points and directions to a grid."""
 
     def rounded(p: Any) -> tuple[float, float]:
         x, y = (_GRID * np.round(np.array(p) / _GRID)).tolist()
@@ -139,7 +139,7 @@ def _on_grid(mechanism: planar.Mechanism) -> planar.Mechanism:
 
 
 def verdicts(mechanism: planar.Mechanism, driver: str, scale: float = 1.0) -> tuple[Any, ...]:
-    """What is decided: toggle positions by load, states with friction, kinds of warnings."""
+    """Return toggle positions by load, states with friction, and kinds of warnings."""
     try:
         path = planar.trace(mechanism, driver, _TRAVEL * scale, 5)
         toggles: Any = sorted(str(toggle.load) for toggle in path.toggles)
@@ -157,14 +157,14 @@ def verdicts(mechanism: planar.Mechanism, driver: str, scale: float = 1.0) -> tu
 
 
 def _kind(sentence: str) -> str:
-    """A sentence without its numbers and units."""
+    """Return a sentence without its numbers and units."""
     return re.sub(r"-?\d[\d.]*(e[-+]?\d+)?", "#", sentence)
 
 
 def count_changes(
     number: int, seed: int = SEED
 ) -> Iterator[tuple[int, str, tuple[Any, ...], tuple[Any, ...]]]:
-    """Mechanisms whose verdicts a transform changes: number, transform, verdicts before and after."""
+    """Yield mechanisms whose verdicts a transform changes: number, transform, verdicts before and after."""
     rng = np.random.default_rng(seed)
     for k in range(number):
         mechanism, driver = draw_mechanism(rng)
@@ -177,7 +177,7 @@ def count_changes(
 
 
 def rows(number: int) -> Iterator[Row]:
-    """Mechanisms of which a verdict changed, and each change."""
+    """Yield the number of mechanisms with changed verdicts, and each change."""
     changes = list(count_changes(number))
     changed = {k for k, *_ in changes}
     yield f"{number} mechanisms times {len(TRANSFORMS)} transforms: changed", str(len(changed)), "0"

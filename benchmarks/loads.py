@@ -31,36 +31,36 @@ MASS, EI, EA = RHO * WIDTH * THICK, E * WIDTH * THICK**3 / 12, E * WIDTH * THICK
 BEAM = bd.Beam.rectangular(LENGTH, WIDTH, THICK, E, RHO)
 BODY = bd.TipMass(0.03, offset=0.02, inertia=2e-5)
 RADIUS, SPEED, ANGLE = 0.1, 60.0, 2.9
-SHAKEN, ACCELERATION = 40.0, 3.0  # of the root [rad/s, m/s2]
+SHAKEN, ACCELERATION = 40.0, 3.0  # angular frequency [rad/s] and acceleration [m/s2] of the root
 AT = np.linspace(0, LENGTH, 21)
 ROOT_AND_MIDDLE = [0, 10]
 _BOUND = "1e-08"
-_FUNCTIONS = 60  # of the unreduced model
+_FUNCTIONS = 60  # number of functions of the unreduced model
 _MODES = 14
 
 
 @dataclass(frozen=True)
 class Found:
-    """Moments, strains by bending and shear forces at the stations, up to a sign of all."""
+    """Moments, bending strains and shear forces at the stations, up to a common sign."""
 
     moment: np.ndarray
     shear: np.ndarray
 
     @property
     def strain(self) -> np.ndarray:
-        """Of the outer fibre."""
+        """Strain of the outer fibre."""
         return self.moment / EI * THICK / 2
 
     @classmethod
     def of(cls, loads: bd.SpanLoads, case: int = 0) -> Found:
-        """What the loads of a case are."""
+        """Return moments, strains and forces of a case of loads."""
         axial = loads.force[case, :, 0] / EA
-        moment = (loads.strain[case, :, 0] - axial) * EI / (THICK / 2)  # by the strain of the point at -h/2
+        moment = (loads.strain[case, :, 0] - axial) * EI / (THICK / 2)  # from the strain of the point at -h/2
         return cls(moment, loads.force[case, :, 1])
 
 
 def _rows(name: str, found: Found, exact: Found, against: str) -> Iterator[Row]:
-    """Deviations of each quantity at the root and at mid-span."""
+    """Yield deviations of each quantity at the root and at mid-span."""
     for quantity in ("moment", "strain", "shear"):
         ours, truth = getattr(found, quantity), getattr(exact, quantity)
         sign = np.sign(ours[0] * truth[0])
@@ -76,7 +76,7 @@ def _say(deviations: np.ndarray) -> str:
 
 
 def weighed() -> Iterator[Row]:
-    """Under its own weight, and the body's."""
+    """Check a beam under its own weight, without and with a tip body."""
     for words, tip in (("weight", None), ("weight with a tip body", BODY)):
         scene = bd.Scene(replace(BEAM, tip=tip), bd.Mount(RADIUS, math.pi), gravity=G)
         rest, mass, arm = LENGTH - AT, tip.mass if tip else 0.0, tip.offset if tip else 0.0
@@ -85,7 +85,7 @@ def weighed() -> Iterator[Row]:
 
 
 def spun() -> Iterator[Row]:
-    """Spun: the axial force of a beam that points outward, and the moment of one beside the axis."""
+    """Check spinning beams: the axial force of an outward one, and the moment of one beside the axis."""
     for words, tip in (("spun", None), ("spun with a tip body", BODY)):
         beam = replace(BEAM, tip=tip)
         straight = bd.static_loads(bd.Scene(beam, bd.Mount(RADIUS, math.pi)), SPEED, at=AT)
@@ -101,7 +101,7 @@ def spun() -> Iterator[Row]:
 
 
 def _bent_by_rotation(tip: bd.TipMass | None) -> Found:
-    """Moment and shear of a spun beam whose centrifugal forces have a component across it.
+    """Compute moment and shear of a spinning beam with centrifugal forces across it.
 
     With the hub radius along and across the beam, d and h: EI u'''' = (N u')' + m omega^2 (u + h), and at
     the tip the same of the body.
@@ -132,7 +132,7 @@ def _bent_by_rotation(tip: bd.TipMass | None) -> Found:
 
 
 def shaken() -> Iterator[Row]:
-    """A root that shakes across, without and with a tip body: by modes, against both references."""
+    """Check a root that shakes across, without and with a tip body, against both references."""
     for words, tip in (("shaken", None), ("shaken with a tip body", BODY)):
         beam, exact = replace(BEAM, tip=tip), _forced(tip)
         by_modes, whole = (_vibration(beam, modes) for modes in (_MODES, None))
@@ -148,7 +148,7 @@ def _shake(t: np.ndarray) -> bd.MotionSample:
 
 
 def _vibration(beam: bd.Beam, modes: int | None) -> Found:
-    """Loads of the forced vibration at its largest, by modes; of all functions by their EI u''."""
+    """Compute loads of the forced vibration at its largest, by modes; of all functions by EI u''."""
     scene = bd.Scene(beam, bd.Mount(0.0, bending_angle=math.pi / 2))
     model = Model(scene, bd.Ritz(_FUNCTIONS))
     equations = model.equations
@@ -165,7 +165,7 @@ def _vibration(beam: bd.Beam, modes: int | None) -> Found:
 
 
 def _forced(tip: bd.TipMass | None) -> Found:
-    """Amplitudes of a uniform cantilever whose root shakes; its body pushes with inertia and arm."""
+    """Compute amplitudes of a uniform cantilever whose root shakes; its body pushes with inertia and arm."""
     w2 = SHAKEN**2
     b = (MASS * w2 / EI) ** 0.25
 
@@ -187,9 +187,5 @@ def _forced(tip: bd.TipMass | None) -> Found:
 PARTS = (weighed, spun, shaken)
 
 
-def main() -> None:
-    show("loads at the root and at mid-span", *PARTS)
-
-
 if __name__ == "__main__":
-    main()
+    show("loads at the root and at mid-span", *PARTS)

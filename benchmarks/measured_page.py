@@ -95,7 +95,7 @@ the size of the full run. Times are those of two cores, and scatter by a tenth.
 
 
 def describe_machine() -> tuple[str, str]:
-    """Machine, and versions, on which the figures depend."""
+    """Return machine and versions, on which the figures depend."""
     packages = ("numpy", "scipy", "scikit-fem")
     machine = (
         f"Python {platform.python_version()}, {platform.system()} {platform.machine()}, {cpu_count()} cores"
@@ -104,13 +104,13 @@ def describe_machine() -> tuple[str, str]:
 
 
 def write_section(title: str, rows: list[Row]) -> str:
-    """A table in Markdown."""
+    """Write a table in Markdown."""
     lines = [f"\n## {title}\n", "| what | measured | bound or published |", "|---|---|---|"]
     return "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows)]) + "\n"
 
 
 def measure(title: str) -> list[Row]:
-    """Rows of a section, which are printed too, and the time that it took."""
+    """Measure the rows of a section, and print them with the time that it took."""
     start = perf_counter()
     rows = show(title, *SECTIONS[title].PARTS)
     print(f"{title}: {perf_counter() - start:.0f} s", flush=True)
@@ -118,7 +118,7 @@ def measure(title: str) -> list[Row]:
 
 
 def measure_apart(title: str) -> list[Row]:
-    """Rows of a section, in a process of its own: neither memory nor caches of one count for the next."""
+    """Measure a section in a new process, so that memory and caches of one do not affect the next."""
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         return pool.submit(measure, title).result()
 

@@ -23,7 +23,7 @@ RUNS = 3
 
 
 def record(noise: float = 0.0) -> bd.Scene:
-    """A minute of rotation at 1 kHz, with normal errors of a size [rad/s]."""
+    """Make a minute of rotation at 1 kHz, with normal errors of a size [rad/s]."""
     x = np.minimum(MINUTE / 10, 1)
     speed = 55 * x**2 * (3 - 2 * x) + 0.2 * np.sin(3 * MINUTE) ** 2
     speed = speed + noise * np.random.default_rng(1).standard_normal(len(MINUTE))
@@ -31,7 +31,7 @@ def record(noise: float = 0.0) -> bd.Scene:
 
 
 def jump() -> bd.Scene:
-    """10 s in 5000 samples, with a jump by 5 rad/s at half time."""
+    """Make 10 s in 5000 samples, with a jump by 5 rad/s at half time."""
     t = np.linspace(0, 10.0, 5000)
     x = np.minimum(t / (10.0 / 3), 1)
     return replace(TILTED, motion=bd.SampledRotation(t, 50 * x**2 * (3 - 2 * x) + 5.0 * (t > 5.0)))
@@ -58,7 +58,7 @@ MOTIONS = {  # scene, end [s], tolerance, bound over Table 3's transient
 
 
 def time_motions() -> Iterator[Row]:
-    """Times of each kind of motion, modes by the tolerance, alternating with Table 3's transient."""
+    """Yield times of each kind of motion, modes by the tolerance, alternating with Table 3's transient."""
     for name, (scene, t_end, tolerance, bound) in MOTIONS.items():
         runs = [time_beside_table_3(scene, t_end, tolerance) for _ in range(RUNS)]
         time, table_3 = np.min(runs, axis=0)
@@ -67,13 +67,13 @@ def time_motions() -> Iterator[Row]:
 
 
 def time_beside_table_3(scene: bd.Scene, t_end: float, tolerance: float) -> tuple[float, float]:
-    """CPU times [s] of a run, and of Table 3's transient before it."""
+    """Measure processor times [s] of a run, and of Table 3's transient before it."""
     table_3 = best_time(lambda: bd.simulate(ROLLING, 30.0, 5, tolerance=1e-5), 2, process_time)
     return best_time(lambda: bd.simulate(scene, t_end, tolerance=tolerance), 1, process_time), table_3
 
 
 def check_record() -> Iterator[Row]:
-    """Errors of the record's transient, against a finer run with more modes."""
+    """Yield errors of the record's transient, against a finer run with more modes."""
     scene, _, tolerance, _ = MOTIONS["a minute of a 1 kHz record, tolerance 1e-3"]
     run, fine = (bd.simulate(scene, 20.0, tolerance=each) for each in (tolerance, 1e-2 * tolerance))
     t = np.linspace(0, 20.0, 20_001)
@@ -89,9 +89,5 @@ def check_record() -> Iterator[Row]:
 PARTS = time_motions, check_record
 
 
-def main() -> None:
-    show("motions of other kinds", *PARTS)
-
-
 if __name__ == "__main__":
-    main()
+    show("motions of other kinds", *PARTS)

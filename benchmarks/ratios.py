@@ -38,12 +38,12 @@ IMPORTS = {
 
 @cache
 def time_radau() -> float:
-    """Time of the stock run [s]."""
+    """Measure the time of the stock run [s]."""
     return solve_stock(*STOCK[0])[1]
 
 
 def compare_transients() -> Iterator[Row]:
-    """The stock run over ours, and ours with modes by the tolerance over ours with the basis it chose."""
+    """Yield the stock run over ours, and modes by the tolerance over the basis that these chose."""
     chosen = bd.simulate(ROLLING, T_END, tolerance=TOLERANCE).request
     runs = [
         (
@@ -62,14 +62,14 @@ def compare_transients() -> Iterator[Row]:
 
 
 def compare_sweeps() -> Iterator[Row]:
-    """Sweeps of 151 speeds on two workers, over the stock run."""
+    """Yield sweeps of 151 speeds on two workers, over the stock run."""
     for modes, name, bound in ((MODES, f"{MODES} modes", "0.10"), ("auto", "modes by the tolerance", "0.12")):
         ratio = f"{run_sweep(modes)[1] / time_radau():.3f}"
         yield f"sweep of 151 speeds, 1e-5, two workers, {name}, over the Radau run", ratio, bound
 
 
 def compare_steady() -> Iterator[Row]:
-    """The steady response at 1000 speeds, over the stock run."""
+    """Yield the steady response at 1000 speeds, over the stock run."""
     speeds = np.linspace(1, 150, 1000)
     time = best_time(lambda: bd.steady_response(STEADY_ROLLING, speeds, 3))
     ratio = f"{time / time_radau():.4f}"
@@ -77,7 +77,7 @@ def compare_steady() -> Iterator[Row]:
 
 
 def compare_record() -> Iterator[Row]:
-    """A minute of a record at 1 kHz, over Table 3's transient."""
+    """Yield a minute of a record at 1 kHz, over Table 3's transient."""
     runs = [motions.time_beside_table_3(motions.record(), 60.0, 1e-3) for _ in range(3)]
     record, table_3 = np.min(runs, axis=0)
     name = "a minute of a 1 kHz record, 1e-3, modes by the tolerance, over Table 3's transient"
@@ -85,7 +85,7 @@ def compare_record() -> Iterator[Row]:
 
 
 def compare_import() -> Iterator[Row]:
-    """Import and a first answer, over the import of scipy.linalg, each in fresh processes."""
+    """Yield import and a first answer, over the import of scipy.linalg, each in fresh processes."""
     programs = [[sys.executable, "-c", program] for program in IMPORTS.values()]
     runs = [[time_once(lambda p=p: subprocess.run(p, check=True)) for p in programs] for _ in range(RUNS)]
     first, scipy_linalg = np.min(runs, axis=0)
@@ -93,7 +93,7 @@ def compare_import() -> Iterator[Row]:
 
 
 def compare_start() -> Iterator[Row]:
-    """A command on a file, over the import of scipy.linalg, each in fresh processes."""
+    """Yield a command on a file, over the import of scipy.linalg, each in fresh processes."""
     command = [sys.executable, "-m", "beamdyn", "modes", "examples/tyre_harvester.toml"]
     programs = [command, [sys.executable, "-c", IMPORTS["import scipy.linalg"]]]
     runs = [
@@ -105,7 +105,7 @@ def compare_start() -> Iterator[Row]:
 
 
 def compare_tolerances() -> Iterator[Row]:
-    """A frequency response at a loose tolerance, over one at a tight one."""
+    """Yield a frequency response at a loose tolerance, over one at a tight one."""
     scene, frequencies = replace(STEADY_ROLLING, damping_ratio=0.01), np.linspace(1.0, 2000.0, 200)
     loose, tight = (
         best_time(lambda t=t: bd.frequency_response(scene, 50.0, frequencies, tolerance=t))
@@ -115,7 +115,7 @@ def compare_tolerances() -> Iterator[Row]:
 
 
 def time_once(action: Callable[[], object]) -> float:
-    """Wall time of a call [s]."""
+    """Measure the wall time of a call [s]."""
     start = perf_counter()
     action()
     return perf_counter() - start
@@ -132,9 +132,5 @@ PARTS = (
 )
 
 
-def main() -> None:
-    show("ratios", *PARTS)
-
-
 if __name__ == "__main__":
-    main()
+    show("ratios", *PARTS)

@@ -9,7 +9,7 @@ README = Path(__file__).parents[1] / "README.md"
 
 
 def write_between(name: str, lines: Sequence[str], path: Path = README) -> None:
-    """Put lines in the place of what stands between ``<!-- NAME -->`` and ``<!-- end of NAME -->``."""
+    """Replace the lines between ``<!-- NAME -->`` and ``<!-- end of NAME -->``."""
     start, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
     before, found, rest = path.read_text(encoding="utf-8").partition(start)
     _, closed, after = rest.partition(end)

@@ -20,7 +20,7 @@ STEP, SAMPLES = 2.5e-3, 41
 
 
 def damped_scene() -> bd.Scene:
-    """The scene."""
+    """Make the scene."""
     tip = bd.TipMass(1e-4, offset=1e-3, inertia=1e-10)
     beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, tip)
     damping = bd.Damping(tip_damper=1e-3, stiffness_factor=1e-6)
@@ -28,7 +28,7 @@ def damped_scene() -> bd.Scene:
 
 
 def compare() -> Iterator[Row]:
-    """Deviations, each over the largest value, beside the bounds of the tests."""
+    """Yield deviations, each over the largest value, beside the bounds of the tests."""
     scene = damped_scene()
     elements = bd.frequency_response(scene, SPEED, FREQUENCIES, discretization=ELEMENTS)
     direct = _solve_directly(scene)
@@ -60,7 +60,7 @@ def _solve_directly(scene: bd.Scene) -> np.ndarray:
 
 
 def _quadrature(scene: bd.Scene) -> float:
-    """Relative deviation of a mean square from Gauss quadrature of the density, dense at the resonance."""
+    """Compute the relative deviation of a mean square from Gauss quadrature of the density."""
     psd = bd.PowerSpectrum([5.0, 40.0, 150.0], [1.0, 3.0, 0.2])
     found = bd.random_response(scene, SPEED, psd, modes=4)
     resonance = float(bd.natural_modes(scene, SPEED, 1).frequency[0])
@@ -74,7 +74,7 @@ def _quadrature(scene: bd.Scene) -> float:
 
 
 def _in_time(scene: bd.Scene) -> float:
-    """Largest deviation of lsim from simulate, of the same functions, over the largest deflection."""
+    """Compute the largest deviation of lsim from simulate, over the largest deflection."""
     from scipy.signal import lsim
 
     steps = np.random.default_rng(1).normal(size=SAMPLES)
@@ -92,9 +92,5 @@ def _in_time(scene: bd.Scene) -> float:
 PARTS = (compare,)
 
 
-def main() -> None:
-    show("responses", *PARTS)
-
-
 if __name__ == "__main__":
-    main()
+    show("responses", *PARTS)

@@ -1,20 +1,20 @@
-"""Long runs keep their answers in a file, and can go on: of random cases on several processes, of tables.
+"""Files in which long runs keep their answers, so that they can go on.
 
-The file has one answer, or the rows of one table, as JSON, on each line.
+A file has one answer, or the rows of one table, as JSON, on each line.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from beamdyn.common.results.files import write_text
-from benchmarks.rows import Row
+from benchmarks.rows import Row, show
 
 Answer = TypeVar("Answer")
 
@@ -36,29 +36,32 @@ class Cases(Generic[Answer]):
     kind: type[Answer]
 
     def measure_all(self, numbers: Iterable[int], workers: int = 2) -> list[Answer]:
-        """Answers for all cases."""
+        """Measure all cases on several processes."""
         with ProcessPoolExecutor(workers) as pool:
             return [answer for answers in pool.map(self.measure, numbers) for answer in answers]
 
     def resume(self, path: Path, numbers: Iterable[int], workers: int = 2) -> list[Answer]:
-        """Measure the cases that the file lacks, and add them; all answers that are then in the file."""
+        """Measure the cases that the file lacks, and add them.
+
+        Return all answers that are then in the file.
+        """
         numbers, rows = list(numbers), _rows(path)
         path.write_text("".join(f"{json.dumps(row)}\n" for row in rows), encoding="utf-8")
         done = {row["number"] for row in rows}
         with path.open("a", encoding="utf-8") as file, ProcessPoolExecutor(workers) as pool:
             cases = [pool.submit(self.measure, number) for number in numbers if number not in done]
-            for answers in (case.result() for case in as_completed(cases)):  # a slow one holds up no other
+            for answers in (case.result() for case in as_completed(cases)):  # a slow case holds up no other
                 file.write("".join(f"{json.dumps(vars(answer))}\n" for answer in answers))
                 file.flush()
         wanted = set(numbers)
         return [answer for answer in self.load(path) if vars(answer)["number"] in wanted]
 
     def load(self, path: Path) -> list[Answer]:
-        """Answers in a file; none if there is no such file."""
+        """Load the answers in a file; none if there is no such file."""
         return [self.kind(**{name: _frozen(value) for name, value in row.items()}) for row in _rows(path)]
 
     def run(self, given: argparse.Namespace) -> list[Answer]:
-        """What the options of `add_options` ask for."""
+        """Measure what the options of `add_options` ask for."""
         numbers = range(given.first, given.first + given.scenes)
         if given.save:
             return self.resume(given.save, numbers, given.workers)
@@ -81,7 +84,7 @@ class SavedRows:
     versions: str
 
     def rows(self, title: str, measure: Callable[[str], list[Row]]) -> list[Row]:
-        """The rows of a table: those in the file, else those that `measure` finds, which are added to it."""
+        """Return the rows of a table: from the file, or from `measure`, whose rows are added to it."""
         if self.path is None:
             return measure(title)
         saved = _rows(self.path)
@@ -97,7 +100,7 @@ class SavedRows:
 
 
 def add_options(parser: argparse.ArgumentParser, scenes: int, seed: int) -> None:
-    """Give a command the options of a run, with the number of its cases and its seed."""
+    """Add the options of a run to a command, with the number of its cases and its seed."""
     parser.add_argument("--scenes", type=int, default=scenes)
     parser.add_argument("--first", type=int, default=0, help="number of the first case, to go on in parts")
     parser.add_argument("--workers", type=int, default=2)
@@ -105,8 +108,24 @@ def add_options(parser: argparse.ArgumentParser, scenes: int, seed: int) -> None
     parser.add_argument("--save", type=Path, help="file of answers, to which a run adds what it lacks")
 
 
+def measure_random(
+    about: str | None,
+    title: str,
+    cases: Callable[[int], Cases[Answer]],
+    summarize: Callable[[list[Answer]], Iterator[Row]],
+    scenes: int,
+    seed: int,
+) -> None:
+    """Read the options of a run from the command line, measure its random cases, and print the summary."""
+    parser = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add_options(parser, scenes, seed)
+    given = parser.parse_args()
+    found = cases(given.seed).run(given)
+    show(title, lambda: summarize(found))
+
+
 def _rows(path: Path) -> list[dict[str, Any]]:
-    """Lines of a file, without one that a run did not finish."""
+    """Read the lines of a file, without one that a run did not finish."""
     text = path.read_text(encoding="utf-8") if path.exists() else ""
     return [json.loads(line) for line in text[: text.rfind("\n") + 1].splitlines()]
 

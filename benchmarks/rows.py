@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from time import perf_counter
+from typing import TypeVar
 
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-Row = tuple[str, str, str]  # what, measured, bound
-RUNS = 7  # of which the shortest counts
+AnyRow = TypeVar("AnyRow", bound=Sequence[str])
+Row = tuple[str, str, str]  # what is measured, the measured value, and the bound
+RUNS = 7  # number of runs, of which the shortest counts
 
 
 def best_time(
     action: Callable[[], object], runs: int = RUNS, clock: Callable[[], float] = perf_counter
 ) -> float:
-    """Shortest of several runs [s]: other programs on the machine only ever lengthen a run."""
+    """Measure the shortest of several runs [s], as other programs on the machine only lengthen a run."""
     times = []
     for _ in range(runs):
         start = clock()
@@ -27,22 +29,28 @@ def best_time(
 
 def show(title: str, *parts: Callable[[], Iterator[Row]]) -> list[Row]:
     """Print the rows of all parts as one table, and return them."""
-    table = Table("what", "measured", "bound", title=title)
-    rows = [row for part in parts for row in part()]
-    for row in rows:
+    return show_table(("what", "measured", "bound"), (row for part in parts for row in part()), title, 120)
+
+
+def show_table(
+    head: Sequence[str], rows: Iterable[AnyRow], title: str | None = None, width: int = 160
+) -> list[AnyRow]:
+    """Print rows below a head, and return them."""
+    table, shown = Table(*head, title=title), list(rows)
+    for row in shown:
         table.add_row(*map(escape, row))
-    Console(width=120).print(table)
-    return rows
+    Console(width=width).print(table)
+    return shown
 
 
 def markdown_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> str:
-    """A table in Markdown."""
+    """Write a table in Markdown."""
     lines = [head, ["---"] * len(head), *body]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def time_text(time: float) -> str:
-    """A time [s] to three digits, in s, ms or µs."""
+    """Word a time [s] with three digits, in s, ms or µs."""
     for unit, size in (("s", 1.0), ("ms", 1e-3)):
         if time >= size:
             return f"{time / size:.3g} {unit}"

@@ -30,8 +30,8 @@ from benchmarks.cases.scenes import ROLLING
 from benchmarks.resumable import SavedRows
 from benchmarks.rows import Row, show
 
-SAMPLE, SPEED_SAMPLE = 20_000, 40  # designs, and speeds, that are also solved in one process
-COMPARED = 100  # designs that are compared with single calls
+SAMPLE, SPEED_SAMPLE = 20_000, 40  # numbers of designs and of speeds that are also solved in one process
+COMPARED = 100  # number of designs that are compared with single calls
 SCENE = bd.Scene(bd.Beam.rectangular(0.05, 0.01, 2e-4, 200e9, 7850.0, bd.TipMass(0.0)), bd.Mount())
 RANGES = {
     "beam.thickness": (1e-4, 4e-4),
@@ -42,12 +42,12 @@ RANGES = {
 
 
 def peak_memory() -> float:
-    """Largest memory that this process has had [MB]."""
+    """Return the largest memory that this process has had [MB]."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 def designs(count: int) -> dict[str, np.ndarray]:
-    """Random designs."""
+    """Draw random designs."""
     random = np.random.default_rng(17)
     return {name: random.uniform(*ends, count) for name, ends in RANGES.items()}
 
@@ -68,7 +68,7 @@ class Accident:
     victim: int
     calls: list[int] = field(default_factory=list)
     killed: bool = False
-    memory: float = 0.0  # largest of a worker [MB], as the scheduler hears of it
+    memory: float = 0.0  # largest memory of a worker [MB] that the scheduler has heard of
 
     def __call__(self, done: int, total: int) -> None:
         self.calls.append(done)
@@ -82,7 +82,7 @@ class Accident:
 
 @contextmanager
 def cluster(workers: int) -> Iterator[Accident]:
-    """A cluster of processes of this machine, which has begun, and the accident that will befall it."""
+    """Start a cluster of processes of this machine; yield the accident that will happen to it."""
     from distributed import Client, LocalCluster
 
     options: dict[str, Any] = {"threads_per_worker": 1, "processes": True, "dashboard_address": None}
@@ -97,14 +97,14 @@ def _import() -> None:
 
 
 def timed(action: Callable[[], Any]) -> tuple[float, Any]:
-    """Wall time [s] and result."""
+    """Run an action; return wall time [s] and result."""
     start = perf_counter()
     result = action()
     return perf_counter() - start, result
 
 
 def many_designs(count: int, workers: int) -> Iterator[Row]:
-    """Random designs on the cluster, a worker killed in the middle, beside one process."""
+    """Yield results of random designs on the cluster, with a worker killed, beside one process."""
     sample = min(count, SAMPLE)
     alone, own = timed(lambda: bd.study(SCENE, designs(sample), combine="zip"))
     before = peak_memory()
@@ -137,7 +137,7 @@ def many_designs(count: int, workers: int) -> Iterator[Row]:
 
 
 def worst(study: bd.Study) -> float:
-    """Largest deviation of some designs from single calls, over the stated errors of both."""
+    """Compute the largest deviation of some designs from single calls, over the stated errors of both."""
     random, largest = np.random.default_rng(1), 0.0
     for place in random.integers(study.shape[0], size=COMPARED).tolist():
         single = bd.natural_modes(study.scene_at(place), study.design(place)["speed"])
@@ -147,7 +147,7 @@ def worst(study: bd.Study) -> float:
 
 
 def many_speeds(count: int, workers: int) -> Iterator[Row]:
-    """A sweep of transients on the cluster, a worker killed in the middle, beside one process."""
+    """Yield results of a sweep on the cluster, with a worker killed, beside one process."""
     sample = min(count, SPEED_SAMPLE)
 
     def run(number: int, executor: Executor | None = None, **more: Any) -> bd.Sweep:

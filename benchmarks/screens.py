@@ -23,12 +23,12 @@ from beamdyn.common.screens.screens import Document, Program, Screen
 from benchmarks.rows import Row, show
 from brakes.app.program import BRAKES
 
-RUNS, BOUND = 9, 100  # how often each is timed; the longest answer that feels immediate [ms]
-POSITIONS = 20  # a second, which feel fluent
+RUNS, BOUND = 9, 100  # number of runs; longest answer that feels immediate [ms]
+POSITIONS = 20  # positions in a second that feel fluent
 
 
 def time_screens(program: Program) -> Iterator[Row]:
-    """Every screen of a program, on the design that it opens with."""
+    """Time every screen of a program, on the design that it opens with."""
     for document in program.documents:
         work = OpenDocument(document)
         for screen in document.screens:
@@ -42,7 +42,7 @@ def time_screens(program: Program) -> Iterator[Row]:
 
 
 def _positions(document: Document, screen: Screen, entries: Entries) -> Row:
-    """Positions a second that one process solves and makes into what the page is sent, by processor time."""
+    """Measure how many positions a second one process solves and prepares for the page."""
     times = []
     for _ in range(RUNS):
         start = process_time()
@@ -50,19 +50,20 @@ def _positions(document: Document, screen: Screen, entries: Entries) -> Row:
         assert isinstance(found, ShownAnswer)
         _show(screen, found.answer)
         times.append(process_time() - start)
-    bound = f"{POSITIONS}" if screen.coarser({}) else ""  # of screens that are solved coarsely meanwhile
+    # Only screens that are solved coarsely meanwhile have a bound.
+    bound = f"{POSITIONS}" if screen.coarser({}) else ""
     return f"{screen.name}: positions a second while dragging", f"{1 / min(times):.0f}", bound
 
 
 def _show(screen: Screen, answer: Any) -> None:
-    """Make what the page is sent of an answer."""
+    """Prepare what the page is sent of an answer."""
     draw_sheet(screen, answer, screen.last)
     for chart in screen.charts(answer, screen.last) if screen.charts else ():
         json.dumps(options_of(chart))
 
 
 def _time(action: Callable[[], object]) -> float:
-    """Median time of an action [s]; the first run, which fills caches, does not count."""
+    """Measure the median time of an action [s]; the first run, which fills caches, does not count."""
     action()
     times = []
     for _ in range(RUNS):
@@ -73,21 +74,17 @@ def _time(action: Callable[[], object]) -> float:
 
 
 def time_brakes() -> Iterator[Row]:
-    """Screens of `brakes app`."""
+    """Time the screens of `brakes app`."""
     return time_screens(BRAKES)
 
 
 def time_beamdyn() -> Iterator[Row]:
-    """Screens of `beamdyn app`."""
+    """Time the screens of `beamdyn app`."""
     return time_screens(BEAMDYN)
 
 
 PARTS = time_brakes, time_beamdyn
 
 
-def main() -> None:
-    show("interactive programs", *PARTS)
-
-
 if __name__ == "__main__":
-    main()
+    show("interactive programs", *PARTS)

@@ -2,8 +2,9 @@
 
 Run: python -m benchmarks.screenshots [--folder DIR] [--program brakes|beamdyn] [--width 390]
 
-Each screen at four widths, light and dark: serious findings of axe-core (where axe-playwright-python is
-there), horizontal scrolling, and controls that neither keyboard nor finger can reach.
+Each screen at five widths, light and dark: serious findings of axe-core (where axe-playwright-python is
+there), horizontal scrolling, controls that neither keyboard nor finger can reach, tables that are cut, halves
+of a page that are empty for more than a third of its height, and code in texts.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from benchmarks.rows import Row, show
 from benchmarks.served import browser, free_port, go, open_page, start, stop
 from brakes.app.program import BRAKES
 
-WIDTHS, SCHEMES = (390, 800, 1280, 1920), ("light", "dark")
+WIDTHS, SCHEMES = (390, 800, 1024, 1440, 1920), ("light", "dark")
 PROGRAMS = {program.name: program for program in (BRAKES, BEAMDYN)}
 _TO_TOP = "document.querySelectorAll('html, .left').forEach((e) => e.scrollTo(0, 0))"
 NO_AXE = "axe-core: pip install axe-playwright-python"
@@ -28,7 +29,7 @@ _SERIOUS = ("serious", "critical")
 _LEFT = (
     200  # Quasar's tabs can be stopped at again 30 ms after the focus has left them; keys outrun timers [ms]
 )
-_STEPS, _MOST = 12, 30  # of the Tab key between two looks whether it has come round, and looks
+_STEPS, _MOST = 12, 30  # presses of the Tab key between two checks whether it has come round, and most checks
 _BEGIN = """() => {
   document.activeElement.blur();
   if (!window.reached) document.addEventListener("focusin", (event) => window.reached.push(event.target));
@@ -54,9 +55,48 @@ _NOT_BY_TOUCH = """() => [...document.querySelectorAll("button, input, textarea,
       || (e.matches(".handle") && hit.matches(".handle"))));
   }).map((e) => e.getAttribute("aria-label") || e.innerText || e.outerHTML.slice(0, 80))"""
 
+# First words of visible tables that are wider than what shows them, or the column of it.
+_CUT = """() => [...document.querySelectorAll("table")]
+  .filter((e) => e.checkVisibility({visibilityProperty: true}))
+  .filter((e) => [...e.getClientRects()].some((part) => part.width > e.parentElement.clientWidth + 1))
+  .map((e) => `${Math.round(e.getBoundingClientRect().width)} px: ${e.innerText.slice(0, 60)}`)"""
+# Of the part beside the form, each half in which there is nothing over more than a third of the page's
+# height; the form stays in sight, and needs no room of its own.
+_EMPTY = """() => {
+  const page = document.documentElement.scrollHeight;
+  const right = [...document.querySelectorAll(".right")].find((e) => e.checkVisibility());
+  if (!right) return [];  // on a phone its parts stand in the page itself
+  const boxes = [...right.querySelectorAll("*")].map((e) => [...e.childNodes].some((n) => n.nodeType == 3
+      && n.textContent.trim()) || e.matches("svg, img, canvas, table, button, input, .chart")
+    ? e.getBoundingClientRect() : null).filter((box) => box && box.width > 1);
+  const bottom = Math.max(...boxes.map((box) => box.bottom));
+  const whole = right.getBoundingClientRect(), middle = whole.left + whole.width / 2;
+  const gap = (beside) => {
+    let [seen, most] = [whole.top, 0];
+    for (const box of boxes.filter(beside).sort((a, b) => a.top - b.top)) {
+      most = Math.max(most, box.top - seen);
+      seen = Math.max(seen, box.bottom);
+    }
+    return Math.max(most, bottom - seen);
+  };
+  return [["left", gap((box) => box.left < middle)], ["right", gap((box) => box.right > middle)]]
+    .filter(([, most]) => most > page / 3).map(([name, most]) => `${name} half over ${Math.round(most)} px`);
+}"""
+# Visible texts with a name that only code has, a call, an optional value of Python, or a list.
+_CODE = """() => {
+  const found = [], texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  while (texts.nextNode()) {
+    const said = texts.currentNode, around = said.parentElement;
+    if (around.closest("script, style, textarea, .q-icon") || !around.checkVisibility()) continue;
+    if (/\\b[a-z]+_\\w+\\b|\\b(None|True|False|nan|inf)\\b|\\w\\(\\w+=|\\['/.test(said.textContent))
+      found.push(said.textContent.trim().slice(0, 80));
+  }
+  return found;
+}"""
+
 
 def serious_findings(page: Any) -> list[str] | None:
-    """Serious findings of axe-core: the rule, how often, and the first place; None where it is not there."""
+    """Return serious findings of axe-core: rule, count, first place; None if it is not installed."""
     try:
         from axe_playwright_python.sync_playwright import Axe
     except ImportError:
@@ -70,7 +110,7 @@ def serious_findings(page: Any) -> list[str] | None:
 
 
 def not_by_keyboard(page: Any) -> list[str]:
-    """Names of controls that the Tab key does not come to, pressed until it has gone all around the page."""
+    """Return names of controls that the Tab key does not reach on its way around the page."""
     page.evaluate(_BEGIN)
     page.wait_for_timeout(_LEFT)
     for _ in range(_MOST):
@@ -84,18 +124,21 @@ def not_by_keyboard(page: Any) -> list[str]:
 
 
 def faults(page: Any, width: int) -> dict[str, list[str]]:
-    """What is wrong with the screen in front, by kind."""
+    """Return the faults of the screen in front, by kind."""
     wide = page.evaluate("document.documentElement.scrollWidth")
     return {
         "axe-core": serious_findings(page) or [],
         "scrolls to": [f"{wide} px"] if wide > width else [],
         "not by keyboard": not_by_keyboard(page),
         "not by touch": page.evaluate(_NOT_BY_TOUCH),
+        "cut": page.evaluate(_CUT),
+        "empty": page.evaluate(_EMPTY),
+        "code": page.evaluate(_CODE),
     }
 
 
 def pictures(program: Program, folder: Path, widths: Sequence[int] = WIDTHS) -> Iterator[Row]:
-    """Take the pictures of a program, and yield what is wrong at each width."""
+    """Take the pictures of a program, and yield the faults at each width."""
     folder.mkdir(parents=True, exist_ok=True)
     process = start(port := free_port(), program.name)
     try:
@@ -114,7 +157,7 @@ def _of_width(browser: Any, port: int, program: Program, width: int, folder: Pat
         go(page, screen.name)
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)
-            page.wait_for_timeout(300)  # colours change gradually
+            page.wait_for_timeout(300)  # waits, as colours change gradually
             name = f"{program.name}-{screen.name.lower().replace(' ', '-')}-{width}-{scheme}"
             page.evaluate(_TO_TOP)
             page.screenshot(path=folder / f"{name}.png")

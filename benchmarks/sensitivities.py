@@ -13,7 +13,6 @@ were differentiated.
 
 from __future__ import annotations
 
-import argparse
 import os
 import re
 from collections import Counter
@@ -21,7 +20,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from time import process_time
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -31,11 +31,11 @@ from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber
 from benchmarks.cases.random_inputs import random_inputs_scene
 from benchmarks.cases.random_scenes import random_scene
 from benchmarks.cases.reference.many_digits.differences import Number, frequency_derivatives
-from benchmarks.resumable import Cases, add_options
-from benchmarks.rows import Row, show
+from benchmarks.resumable import Cases, measure_random
+from benchmarks.rows import Row
 
 MODES = 3
-_SAME = 1e-6  # relative distance of two frequencies of the same mode
+_SAME = 1e-6  # largest relative distance of two frequencies of the same mode
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Case:
 
 
 def measure(seed: int) -> list[Case]:
-    """The derivatives of the scene of a seed, against the reference."""
+    """Compare the derivatives of the scene of a seed with the reference."""
     try:
         return [_measured(seed)]
     except (ValueError, ArithmeticError) as error:
@@ -83,7 +83,7 @@ def _measured(seed: int) -> Case:
     start = process_time()
     values, truths, doubts = frequency_derivatives(found.scene, speed, MODES, numbers)
     seconds = process_time() - start
-    # The reference has no modes that do not vibrate, such as turning about a hinge at the axis.
+    # The reference leaves out modes that do not vibrate, such as turning about a hinge at the axis.
     apart = np.abs(found.value[:, None] - values) / values
     partner, same = apart.argmin(axis=1), np.nanmin(apart, axis=1, initial=np.inf) < _SAME
     known, truths, doubts = known & same, np.array(truths)[:, partner], np.array(doubts)[:, partner]
@@ -99,12 +99,12 @@ def _measured(seed: int) -> Case:
 
 
 def at_its_size(given: SceneNumber) -> Number:
-    """The number for the reference, with the size of its kind where it is near 0."""
+    """Return the number for the reference, with the size of its kind where it is near 0."""
     return Number(given.name, given.value, max(abs(given.value), 100 * given.step))
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """The largest error, and how many the stated ones do not cover."""
+    """Yield the largest error, and how many errors the stated ones do not cover."""
     answered = [case for case in cases if not case.refusal]
     pairs = [
         (case, *each) for case in answered for each in zip(case.names, case.errors, case.stated, strict=True)
@@ -132,20 +132,12 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
 
 
 def measure_sample() -> Iterator[Row]:
-    """The first six scenes."""
+    """Measure the first six scenes."""
     yield from summarize(Cases(measure, Case).measure_all(range(6)))
 
 
 PARTS = (measure_sample,)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    add_options(parser, scenes=200, seed=0)
-    given = parser.parse_args()
-    cases = Cases(measure, Case).run(given)
-    show("Sensitivities", lambda: summarize(cases))
-
-
 if __name__ == "__main__":
-    main()
+    measure_random(__doc__, "Sensitivities", lambda _: Cases(measure, Case), summarize, 200, 0)

@@ -16,20 +16,20 @@ from typing import Any
 ROOT = Path(__file__).parents[1]
 CHROMIUM = shutil.which("chromium")
 NO_BROWSER = "a browser is driven by playwright and Debian's chromium: pip install 'beamdyn[browser]'"
-PATIENCE = 240  # with anything that a program does, on a machine that does much else [s]
+PATIENCE = 240  # time limit of anything that a program does, on a busy machine [s]
 
 
 def free_port() -> int:
-    """A port that nothing listens on."""
+    """Return a port that nothing listens on."""
     with socket.socket() as trial:
         trial.bind(("127.0.0.1", 0))
         return int(trial.getsockname()[1])
 
 
 def start(port: int, program: str = "brakes", *options: str, folder: Path = ROOT) -> subprocess.Popen[bytes]:
-    """The program as a process of its own, when it answers."""
+    """Start the program as a separate process, and wait until it answers."""
     command = [sys.executable, "-m", program, "app", "--no-browser", "--port", str(port), *options]
-    # With pytest's variables NiceGUI would think that it is tested from within.
+    # With pytest's variables set, NiceGUI would behave as in a test of itself.
     clean = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "NICEGUI"))}
     clean["PYTHONPATH"] = str(ROOT)
     process = subprocess.Popen(
@@ -46,7 +46,7 @@ def start(port: int, program: str = "brakes", *options: str, folder: Path = ROOT
 
 
 def stop(process: subprocess.Popen[bytes]) -> float:
-    """End a program as the system does (SIGTERM); how long that took [s]."""
+    """End a program as the system does (SIGTERM); return the time that it took [s]."""
     begin = time.perf_counter()
     process.terminate()
     process.wait(PATIENCE)
@@ -55,7 +55,7 @@ def stop(process: subprocess.Popen[bytes]) -> float:
 
 @contextmanager
 def browser() -> Iterator[Any]:
-    """A browser without a window.
+    """Yield a browser without a window.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def browser() -> Iterator[Any]:
 
 
 def open_page(context: Any, port: int) -> Any:
-    """A page of the program on a port, when it shows its first drawing."""
+    """Open a page of the program on a port, and wait for its first drawing."""
     page = context.new_page()
     page.set_default_timeout(1e3 * PATIENCE)
     page.set_default_navigation_timeout(1e3 * PATIENCE)

@@ -18,7 +18,8 @@ from functools import partial
 from pathlib import Path
 from time import perf_counter
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -39,10 +40,10 @@ from benchmarks.rows import Row, show, time_text
 
 SEED = 31
 FILE = Path(__file__).parent / "cases" / "data" / "solids.jsonl"
-LISTED = 3  # modes of bending that a beam lists, to the last of which the solid's modes are kept
-_LEAST = 4  # modes kept, at least
+LISTED = 3  # number of bending modes that a beam lists; the solid's modes are kept up to the last of them
+_LEAST = 4  # least number of modes kept
 RICHEST = bd.Physics(planes=2, shear=True, rotary_inertia=True, camber=True, torsion=True)
-_MORE = 2  # modes of the model, among which one that the solid has may be of another order
+_MORE = 2  # further modes of the model, as those of the solid may have another order
 
 
 # References ---------------------------------------------------------------------------------------
@@ -83,12 +84,12 @@ class Reference:
 
     @property
     def complete(self) -> bool:
-        """Whether the modes reach the last of bending that a beam lists."""
+        """Whether the modes reach the last bending mode that a beam lists."""
         return self.kind.count(BENDING) >= LISTED
 
 
 def measure(number: int, seed: int) -> list[Reference]:
-    """The reference of the case with this number."""
+    """Compute the reference of the case with a number."""
     strip, start = random_strip(np.random.default_rng([seed, number])), perf_counter()
     try:
         modes = reference(strip)
@@ -112,22 +113,22 @@ def measure(number: int, seed: int) -> list[Reference]:
 
 
 def _digits(value: float, digits: int) -> float:
-    """Rounded to so many digits."""
+    """Round to a number of digits."""
     return float(f"{value:.{digits}g}")
 
 
 def cases(seed: int = SEED) -> Cases[Reference]:
-    """The random strips of a seed."""
+    """Return the random strips of a seed."""
     return Cases(partial(measure, seed=seed), Reference)
 
 
 def known(path: Path = FILE) -> list[Reference]:
-    """References in the file, by number."""
+    """Load the references in the file, by number."""
     return sorted(cases().load(path), key=lambda each: each.number)
 
 
 def summarize_references(references: Sequence[Reference]) -> Iterator[Row]:
-    """How many there are, and how well they are known."""
+    """Yield the number of references, and how accurate they are."""
     solved = [each for each in references if not each.refusal]
     yield "references", f"{len(solved)}", "200"
     for each in references:
@@ -148,17 +149,16 @@ def summarize_references(references: Sequence[Reference]) -> Iterator[Row]:
 # Strips as plates beside them ---------------------------------------------------------------------
 
 
-_NARROW = 5.0  # thicknesses: narrower sections are no plates
+_NARROW = 5.0  # width over thickness; narrower sections are no plates
 
 
 def compare_plate(reference: Reference) -> Iterator[tuple[str, float]]:
-    """Kind of each mode, and the relative difference of the richest model of the strip from the solid.
+    """Yield the kind of each mode, and the relative difference of the strip as a plate from the solid.
 
     The modes are paired by their kind and their number within it.
     """
     strip, modes = reference.body(), reference.modes()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of speeds at which a strip bends far
+    with warnings.catch_warnings(action="ignore"):  # warnings of speeds at which a strip bends far
         found = bd.natural_modes(strip.scene(RICHEST), strip.speed, len(modes) + _MORE, tolerance=1e-3)
     own = kinds_of(found)
     for mode in modes:
@@ -168,13 +168,13 @@ def compare_plate(reference: Reference) -> Iterator[tuple[str, float]]:
 
 
 def kinds_of(modes: bd.Modes) -> np.ndarray:
-    """Kind of each mode, as solids have it."""
+    """Return the kind of each mode, as solids have it."""
     across = (modes.kind == BENDING) & (modes.plane_share[:, 1] > 0.5)
     return np.where(across, OTHER, modes.kind)
 
 
 def summarize_plates(references: Sequence[Reference]) -> Iterator[Row]:
-    """How far the strips as plates are from the solids, by kind of mode."""
+    """Yield the differences of strips as plates from the solids, by kind of mode."""
     solved = [each for each in references if not each.refusal]
     found = [(_is_narrow(each.body()), *pair) for each in solved for pair in compare_plate(each)]
     pairs = [(kind, difference) for _, kind, difference in found]
@@ -193,11 +193,11 @@ def _is_narrow(strip: Strip) -> bool:
     return strip.width < _NARROW * strip.thickness
 
 
-_FITTED = 63  # cases before are those to which warping was fitted
+_FITTED = 63  # number of the first case to which warping was not fitted
 
 
 def summarize_torsion(references: Sequence[Reference]) -> Iterator[Row]:
-    """How far first torsional modes are from those of solids to which nothing was fitted."""
+    """Yield the differences of first torsional modes from solids to which nothing was fitted."""
     found = []
     for solid in references:
         strip = solid.body()
@@ -211,14 +211,15 @@ def summarize_torsion(references: Sequence[Reference]) -> Iterator[Row]:
 
 # Model errors of the plain beam -------------------------------------------------------------------
 
-_FACTOR, _FEWEST = 2.0, 0.2  # of the true difference: where the stated one is to lie, and never below
-_TRUE = 1e-3  # smallest difference that counts; it also exceeds twice the reference's own error
-_PAIRED = 0.1  # frequencies of a mode that is named, relative to the solid's
+# Factor within which the stated difference is to lie, and least ratio to the true one.
+_FACTOR, _FEWEST = 2.0, 0.2
+_TRUE = 1e-3  # smallest difference that counts, which also exceeds twice the reference's error
+_PAIRED = 0.1  # relative distance of the frequency of a named mode from the solid's
 
 
 @dataclass(frozen=True)
 class StatedError:
-    """A model error of one mode of a beam, and the true difference from the solid, relative to its mode.
+    """A model error of one mode of a beam, and the true difference from the solid, both relative.
 
     `counts` says whether the difference is large enough to be known.
     """
@@ -231,7 +232,7 @@ class StatedError:
 
 
 def stated_errors(reference: Reference) -> list[StatedError]:
-    """Model errors of the modes of a strip as a plain beam."""
+    """Return model errors of the modes of a strip as a plain beam."""
     strip, found = reference.body(), _plain_modes(reference)
     bending = [mode for mode in reference.modes() if mode.kind == BENDING]
     made = []
@@ -245,13 +246,12 @@ def stated_errors(reference: Reference) -> list[StatedError]:
 
 def _plain_modes(reference: Reference) -> bd.Modes:
     strip = reference.body()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of model errors, which are what is measured
+    with warnings.catch_warnings(action="ignore"):  # warnings of model errors, which are measured here
         return bd.natural_modes(strip.scene(bd.Physics()), strip.speed, LISTED)
 
 
 def unnamed(reference: Reference) -> list[str]:
-    """Modes of a solid below the third of bending that its plain beam neither lists nor names."""
+    """Return modes of a solid below the third of bending that the plain beam neither lists nor names."""
     named = _plain_modes(reference).left_out_effects.unlisted
     modes, missing = reference.modes(), []
     last = next(m.frequency for m in modes if (m.kind, m.number) == (BENDING, LISTED))
@@ -265,12 +265,12 @@ def unnamed(reference: Reference) -> list[str]:
 
 
 def _kind_of(mode: UnlistedMode) -> str:
-    """Kind of a mode that is named, as solids have it."""
+    """Return the kind of a named mode, as solids have it."""
     return mode.kind if mode.kind in (TORSION, STRETCH) else OTHER
 
 
 def summarize_stated(references: Sequence[Reference]) -> Iterator[Row]:
-    """How model errors of plain beams lie beside the true ones, and which modes are not named."""
+    """Yield how model errors of plain beams compare with the true ones, and which modes are not named."""
     each = [stated for reference in references for stated in stated_errors(reference)]
     counted = [stated for stated in each if stated.counts]
     ratio = np.array([stated.stated / stated.true for stated in counted])
@@ -291,13 +291,12 @@ _TOLERANCES = 1e-2, 3e-3
 
 
 def chosen_errors(reference: Reference, tolerance: float) -> tuple[float, bool]:
-    """Largest difference of bending from the solid with chosen physics, and whether that is said.
+    """Return the largest difference of bending with chosen physics, and whether a warning says it.
 
     Differences below the reference's own error are none.
     """
     strip = reference.body()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with warnings.catch_warnings(action="ignore"):
         scene = replace(strip.scene(), physics="auto")
         found = bd.natural_modes(scene, strip.speed, LISTED, tolerance=tolerance)
     own = kinds_of(found)
@@ -312,7 +311,7 @@ def chosen_errors(reference: Reference, tolerance: float) -> tuple[float, bool]:
 
 
 def summarize_chosen(references: Sequence[Reference]) -> Iterator[Row]:
-    """How often chosen physics is within its tolerance of the solids, or says that it is not."""
+    """Yield how often chosen physics is within its tolerance of the solids, or warns that it is not."""
     for tolerance in _TOLERANCES:
         each = [(reference, *chosen_errors(reference, tolerance)) for reference in references]
         met = np.array([error <= tolerance for _, error, _ in each])

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from benchmarks.solids import Reference, StatedError, chosen_errors, known, stated_errors
 
 _TOLERANCE = 1e-2
-_FLOOR = 1e-5  # differences below are drawn there
+_FLOOR = 1e-5  # least difference drawn; smaller ones are drawn there
 
 
 def main() -> None:
@@ -28,7 +28,7 @@ def main() -> None:
 
 
 def drawn(references: Sequence[Reference]) -> Figure:
-    """The three panels."""
+    """Draw the three panels."""
     strips = [reference.body() for reference in references]
     slender = np.array([strip.length / strip.width for strip in strips])
     flat = np.array([strip.width / strip.thickness for strip in strips])
@@ -63,7 +63,7 @@ def drawn(references: Sequence[Reference]) -> Figure:
 
 
 def _worst(each: Sequence[StatedError]) -> StatedError:
-    """The mode of the largest true difference."""
+    """Return the mode of the largest true difference."""
     return max(each, key=lambda stated: stated.true)
 
 

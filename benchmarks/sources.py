@@ -9,7 +9,7 @@ from beamdyn import published
 from benchmarks.rows import markdown_table
 from brakes import published as published_brakes
 
-_CITED = (  # in the data by a short name only
+_CITED = (  # sources that the data name in short
     (
         "Hodges and Rutkowski (1981)",
         "Free-vibration analysis of rotating beams by a variable-order finite-element method. "
@@ -55,7 +55,7 @@ Numbers that are "computed" are in no print: the file says by which methods, of 
 
 
 def page_of_sources() -> str:
-    """The page, in Markdown."""
+    """Write the page, in Markdown."""
     return _HEAD + markdown_table(("who", "what", "file"), sorted(_rows()))
 
 
@@ -70,7 +70,7 @@ def _rows() -> Iterator[tuple[str, str, str]]:
 
 
 def _who(data: dict[str, Any]) -> str:
-    """Authors and year; of a set of data, that it has none."""
+    """Return authors and year, or that a set of data has no author."""
     authors = data.get("authors", [])
     *others, last = authors or ["without an author"]
     names = f"{', '.join(others)} and {last}" if others else last
@@ -78,7 +78,7 @@ def _who(data: dict[str, Any]) -> str:
 
 
 def _what(data: dict[str, Any]) -> str:
-    """Title, and where it stands."""
+    """Return the title, and the place of publication."""
     places = [str(data[key]) for key in ("journal", "source", "url") if key in data]
     places += [f"doi:{data['doi']}"] if "doi" in data else []
     return "; ".join([data["title"], *places])

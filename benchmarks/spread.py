@@ -30,7 +30,7 @@ SAMPLES = 1024
 
 
 def evaluate(columns: dict[str, np.ndarray]) -> SpreadAnswers:
-    """Ishigami's function of three inputs."""
+    """Evaluate Ishigami's function of three inputs."""
     x, y, z = columns.values()
     value = (np.sin(x) + 7 * np.sin(y) ** 2 + 0.1 * z**4 * np.sin(x))[:, None]
     states = np.full(value.shape, "done")
@@ -38,7 +38,7 @@ def evaluate(columns: dict[str, np.ndarray]) -> SpreadAnswers:
 
 
 def ishigami(seed: int) -> np.ndarray:
-    """Deviations over their standard errors: mean, standard deviation, indices."""
+    """Compute deviations over their standard errors: mean, standard deviation, indices."""
     inputs = [SpreadInput(name, "", 0.0, Uniform(-np.pi, np.pi)) for name in "xyz"]
     found = solve_spread("y", inputs, SAMPLES, seed, evaluate)
     of_x = (1 + 0.1 * np.pi**4 / 5) ** 2 / 2
@@ -50,7 +50,7 @@ def ishigami(seed: int) -> np.ndarray:
 
 
 def product_of_powers(seed: int) -> np.ndarray:
-    """The same of the first frequency of a uniform beam at rest, proportional to h / (L^2 rho^(1/2))."""
+    """Compute deviations for the first frequency of a uniform beam, as h / (L^2 rho^(1/2))."""
     found = bd.spread(PLAIN, TOLERANCES, modes=1, samples=SAMPLES, seed=seed)
     means, squares = np.array(
         [_moments(*each.distribution.ends, p) for each, p in zip(found.inputs, POWERS, strict=True)]
@@ -62,7 +62,7 @@ def product_of_powers(seed: int) -> np.ndarray:
 
 
 def _moments(low: float, high: float, power: float) -> list[float]:
-    """Means of x^power and of its square, of x between two ends."""
+    """Compute means of x^power and of its square, for x between two ends."""
     ends = (
         (high ** (p + 1) - low ** (p + 1)) / ((p + 1) * (high - low)) for p in (power, 2 * power) if p != -1
     )
@@ -73,7 +73,7 @@ def _moments(low: float, high: float, power: float) -> list[float]:
 def scores(
     found: bd.Spread, mean: float, deviation: float, first: np.ndarray, total: np.ndarray
 ) -> np.ndarray:
-    """Deviations over their standard errors."""
+    """Compute deviations over their standard errors."""
     scatter, indices = found.scatter, found.indices
     return np.concatenate(
         [
@@ -86,7 +86,7 @@ def scores(
 
 
 def statistics(seeds: int) -> Iterator[Row]:
-    """How far statistics are from closed forms."""
+    """Yield how far statistics are from closed forms."""
     for name, case in (("Ishigami's function", ishigami), ("a product of powers", product_of_powers)):
         found = np.array([case(seed) for seed in range(seeds)])
         each, size = np.sqrt((found**2).mean(axis=0)), np.sqrt((found**2).mean())
@@ -97,7 +97,7 @@ def statistics(seeds: int) -> Iterator[Row]:
 
 
 def times() -> Iterator[Row]:
-    """Time of a spread of three inputs, 5120 random designs."""
+    """Yield the time of a spread of three inputs with 5120 random designs."""
     run = partial(bd.spread, PLAIN, TOLERANCES, speed=50.0)
     yield "5120 designs of three inputs, three modes", time_text(best_time(run, 3, process_time)), ""
 

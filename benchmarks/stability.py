@@ -20,7 +20,7 @@ from benchmarks.rows import Row, show
 from benchmarks.transient import STOCK, solve_stock
 
 POINTS, MODES, CHECKED = 200, 3, 20
-MOTION = bd.PulsatingRotation(50.0, 0.1, 124.0)  # at about twice the first frequency
+MOTION = bd.PulsatingRotation(50.0, 0.1, 124.0)  # pulsates at about twice the first frequency
 VARY = {
     "frequency and amplitude": {"motion.frequency": (60.0, 260.0), "motion.fluctuation": (0.0, 0.5)},
     "speed and amplitude": {"speed": (5.0, 150.0), "motion.fluctuation": (0.0, 0.5)},
@@ -29,7 +29,7 @@ VARY = {
 
 
 def race_a_stock_integrator() -> Iterator[Row]:
-    """Times of charts of 200 x 200 points with three modes, over one run of Radau."""
+    """Yield times of charts of 200 x 200 points with three modes, over one run of Radau."""
     method, rtol, atol = STOCK[0]
     _, stock = solve_stock(method, rtol, atol)
     yield f"one run of {method}, rtol {rtol:g}: time [s]", f"{stock:.1f}", ""
@@ -58,7 +58,7 @@ def _rows(name: str, ranges: dict[str, tuple[float, float]], ratio: float, stock
 
 
 def _compare(scene: bd.Scene, vary: dict[str, np.ndarray], chart: bd.StabilityChart) -> tuple[int, int]:
-    """Numbers of points with another verdict, and with another growth rate, by a stock integrator."""
+    """Count points with another verdict, and with another growth rate, by a stock integrator."""
     generator, wrong, missed = np.random.default_rng(0), 0, 0
     edges = np.argwhere(np.diff((chart.status == "unstable").astype(int), axis=0))
     places = [*generator.permutation(edges)[: CHECKED // 2].tolist()]
@@ -66,7 +66,8 @@ def _compare(scene: bd.Scene, vary: dict[str, np.ndarray], chart: bd.StabilityCh
     for i, j in places:
         numbers = {path: float(values[k]) for (path, values), k in zip(vary.items(), (i, j), strict=True)}
         radius, period = spectral_radius(scene, numbers)
-        rate, uncertain = np.log(radius) / period, 1e-5 / period  # square root of the tolerance, at limits
+        # Square root of the tolerance, for points at limits.
+        rate, uncertain = np.log(radius) / period, 1e-5 / period
         unstable = chart.status[i, j] == "unstable"
         wrong += bool(abs(rate) > uncertain and unstable != (rate > 0) and chart.status[i, j] != "undecided")
         missed += bool(abs(rate - chart.growth_rate[i, j]) > chart.growth_rate_error[i, j] + uncertain)
@@ -74,7 +75,7 @@ def _compare(scene: bd.Scene, vary: dict[str, np.ndarray], chart: bd.StabilityCh
 
 
 def spectral_radius(scene: bd.Scene, numbers: dict[str, float]) -> tuple[float, float]:
-    """Size of the largest multiplier by DOP853 at 1e-12, and the period [s]."""
+    """Compute the size of the largest multiplier by DOP853 at 1e-12, and the period [s]."""
     scenes = PeriodicScenes(scene, MODES, "ritz")
     scene = scenes.at(numbers)
     _, equations = scenes.modal(scene)

@@ -9,25 +9,25 @@ against the same without one.
 
 from __future__ import annotations
 
-import argparse
 import os
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
 import beamdyn as bd
 from benchmarks.cases.random_physics import random_physics_scene
 from benchmarks.cases.random_scenes import random_scene
-from benchmarks.resumable import Cases, add_options
-from benchmarks.rows import Row, show
+from benchmarks.resumable import Cases, measure_random
+from benchmarks.rows import Row
 
 SEED = 7
-_NEGLIGIBLE = 1e-10  # of the largest value: what is smaller is not told from the error of the reference
+_NEGLIGIBLE = 1e-10  # share of the largest value; smaller values are within the error of the reference
 Found = tuple[np.ndarray, np.ndarray]  # values and stated errors
 Answer = Callable[[bd.Scene, float, "float | None"], Found]
 
@@ -127,7 +127,7 @@ IN_A_PLANE: dict[str, Answer] = {
 
 
 def measure(number: int, seed: int) -> list[Case]:
-    """Stated and true errors of all answers of the scenes with this number."""
+    """Compute stated and true errors of all answers of the scenes with a number."""
     rng = np.random.default_rng([seed, number])
     tolerance = 10 ** rng.uniform(-8, -1)
     plain, speed = random_scene(rng)
@@ -142,8 +142,7 @@ def measure(number: int, seed: int) -> list[Case]:
 
 
 def _measure(number: int, name: str, answer: Answer, scene: bd.Scene, speed: float, tolerance: float) -> Case:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    with warnings.catch_warnings(action="ignore"):
         try:
             (value, stated), (true, _) = (answer(scene, speed, each) for each in (tolerance, None))
         except (ValueError, ArithmeticError) as error:
@@ -157,7 +156,7 @@ def _measure(number: int, name: str, answer: Answer, scene: bd.Scene, speed: flo
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """How many of the true errors the stated ones cover, and by how much they exceed them."""
+    """Yield how many of the true errors the stated ones cover, and by how much they exceed them."""
     for name in (*IN_SPACE, *IN_A_PLANE):
         own = [case for case in cases if case.answer == name]
         answered = [case for case in own if not case.refusal and case.stated]
@@ -182,21 +181,18 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
         yield f"refused: {why[0]}", why[1], ""
 
 
+def cases(seed: int = SEED) -> Cases[Case]:
+    """Return the random scenes of a seed."""
+    return Cases(partial(measure, seed=seed), Case)
+
+
 def measure_sample() -> Iterator[Row]:
-    """The first 40 scenes."""
-    yield from summarize(Cases(partial(measure, seed=SEED), Case).measure_all(range(40)))
+    """Measure the first 40 scenes."""
+    yield from summarize(cases().measure_all(range(40)))
 
 
 PARTS = (measure_sample,)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    add_options(parser, scenes=300, seed=SEED)
-    given = parser.parse_args()
-    found = Cases(partial(measure, seed=given.seed), Case).run(given)
-    show("stated errors of answers at any tolerance", lambda: summarize(found))
-
-
 if __name__ == "__main__":
-    main()
+    measure_random(__doc__, "stated errors of answers at any tolerance", cases, summarize, 300, SEED)

@@ -21,7 +21,7 @@ from brakes import drum, forklift
 SEED = 12
 LEAST_MARGIN = 1.001e-12
 LEAST_MARGIN_OF_STOPS = 1.1e-9
-_LEAST = 1e-17  # true error below which it counts as this much: a double holds no less
+_LEAST = 1e-17  # least true error that counts, as a double is no more exact
 
 
 class Errors(NamedTuple):
@@ -36,7 +36,7 @@ def _margin(rng: np.random.Generator, least: float = LEAST_MARGIN) -> float:
 
 
 def _compared(found: object, exact: Mapping[str, Any], scale: mpf | None = None) -> Errors:
-    """The largest relative error of numbers; of vectors over a scale, or if there is none their size."""
+    """Compare numbers; return the largest relative error; of vectors over a scale, or else their size."""
     true = max(_relative(getattr(found, name), value, scale) for name, value in exact.items())
     return Errors(float(getattr(found, "error")), max(float(true), _LEAST))  # noqa: B009
 
@@ -48,7 +48,7 @@ def _relative(found: Any, exact: Any, scale: mpf | None) -> mpf:
 
 
 def draw_shoe(rng: np.random.Generator) -> drum.Shoe:
-    """A shoe of any size, its lining of any length."""
+    """Draw a shoe of any size, with a lining of any length."""
     while True:
         r = 10 ** rng.uniform(-3, 1)
         start, end = np.sort(rng.uniform(-0.2, 3.2, 2))
@@ -58,12 +58,12 @@ def draw_shoe(rng: np.random.Generator) -> drum.Shoe:
         zero = "axis" if rng.random() < 0.3 else "pivot"
         try:
             return drum.Shoe(r, r * rng.uniform(0.1, 1), (start, end), pivot, r * rng.uniform(-0.04, 1), zero)
-        except ValueError:  # a lining over the pin
+        except ValueError:  # a lining that covers the pin is refused
             continue
 
 
 def errors_of_shoe(rng: np.random.Generator) -> Errors:
-    """Errors of a leading or trailing shoe, near self-locking if it can lock."""
+    """Compute errors of a leading or trailing shoe, near self-locking if it can lock."""
     shoe, leading, force = draw_shoe(rng), bool(rng.random() < 0.8), 10 ** rng.uniform(-3, 6)
     limit = digits.locking_friction_of_shoe(shoe, leading)
     mu = float(limit * (1 - mpf(_margin(rng)))) if limit else rng.uniform(0.05, 1)
@@ -74,7 +74,7 @@ def errors_of_shoe(rng: np.random.Generator) -> Errors:
 
 
 def draw_duo_servo(rng: np.random.Generator) -> tuple[forklift.DuoServo, float]:
-    """A duo-servo brake, and a clearance that it allows."""
+    """Draw a duo-servo brake, and a clearance that it allows."""
     while True:
         r = 10 ** rng.uniform(-3, 1)
         brake = forklift.DuoServo(
@@ -94,14 +94,14 @@ def draw_duo_servo(rng: np.random.Generator) -> tuple[forklift.DuoServo, float]:
 
 
 def draw_levers(rng: np.random.Generator) -> forklift.Levers:
-    """Lever arms of any size."""
+    """Draw lever arms of any size."""
     r = 10 ** rng.uniform(-3, 1)
     a1, a2, b = r * rng.uniform(0.1, 1.2, 3)
     return forklift.Levers(r, a1, a2, b, b, *rng.uniform(-0.6, 0.6, 3))
 
 
 def errors_of_duo_servo(rng: np.random.Generator) -> Errors:
-    """Errors of a duo-servo brake, from its levers or its shape, from the friction or the torque."""
+    """Compute errors of a duo-servo brake, from levers or shape, and from friction or torque."""
     if rng.random() < 0.5:
         geometry, clearance = draw_duo_servo(rng)
         exact = digits.exact_levers(geometry, clearance)
@@ -121,7 +121,7 @@ def errors_of_duo_servo(rng: np.random.Generator) -> Errors:
 
 
 def errors_of_stop(rng: np.random.Generator) -> Errors:
-    """Errors of the stop of a truck, backwards or forwards, on a slope nearly too steep for its brakes."""
+    """Compute errors of a truck's stop, in either direction, on a slope nearly too steep."""
     size = 10 ** rng.uniform(-2, 2)
     truck = forklift.Truck(
         5950,
@@ -151,14 +151,14 @@ KINDS: dict[str, Callable[[np.random.Generator], Errors]] = {
 
 
 def measure(kind: str, number: int, seed: int = SEED) -> list[Errors]:
-    """Errors of so many random answers of a kind."""
+    """Compute errors of a number of random answers of a kind."""
     rng = np.random.default_rng(seed)
     with mpmath.workdps(digits.DIGITS):
         return [KINDS[kind](rng) for _ in range(number)]
 
 
 def rows(number: int) -> Iterator[Row]:
-    """How many stated errors cover the true ones, and by how much they are too large."""
+    """Yield how many stated errors cover the true ones, and by how much they are too large."""
     for kind in KINDS:
         stated, true = np.array([each for each in measure(kind, number) if not np.isnan(each.stated)]).T
         over = stated / true

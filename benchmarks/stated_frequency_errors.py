@@ -6,25 +6,25 @@ which every scene has an answer, against the power series in mpmath.
 
 from __future__ import annotations
 
-import argparse
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
 import beamdyn as bd
 from benchmarks.cases.random_scenes import random_scene
 from benchmarks.cases.reference.of_scene import exact, relative_errors
-from benchmarks.resumable import Cases, add_options
-from benchmarks.rows import Row, show
+from benchmarks.resumable import Cases, measure_random
+from benchmarks.rows import Row
 
-_COVERED, _OVER_ESTIMATE = 0.999, 30.0  # share covered and median over-estimate that are aimed at
-SEED = 5  # 4 was used to fit the estimate of rounding
-_DIGITS = 22  # of the reference: errors down to the last bit of a double are resolved
+_COVERED, _OVER_ESTIMATE = 0.999, 30.0  # share covered and median over-estimate that are the goals
+SEED = 5  # another seed than 4, which was used to fit the estimate of rounding
+_DIGITS = 22  # digits of the reference, which resolve errors down to the last bit of a double
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Case:
 
 
 def measure(number: int, seed: int) -> list[Case]:
-    """Stated and true errors of the scene with this number."""
+    """Compute stated and true errors of the scene with a number."""
     scene, speed = random_scene(np.random.default_rng([seed, number]))
     try:
         modes = bd.natural_modes(scene, speed)
@@ -49,7 +49,7 @@ def measure(number: int, seed: int) -> list[Case]:
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Share of the true errors that the stated ones cover, and the over-estimate."""
+    """Yield the share of the true errors that the stated ones cover, and the over-estimate."""
     answered = [case for case in cases if not case.refusal]
     stated, true = (np.array([getattr(case, name) for case in answered]) for name in ("stated", "true"))
     covered = stated >= true
@@ -65,21 +65,18 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
         yield f"not covered: scene {case.number}", f"{max(case.true):.1e} > {max(case.stated):.1e}", ""
 
 
+def cases(seed: int = SEED) -> Cases[Case]:
+    """Return the random scenes of a seed."""
+    return Cases(partial(measure, seed=seed), Case)
+
+
 def measure_sample() -> Iterator[Row]:
-    """The first 200 scenes."""
-    yield from summarize(Cases(partial(measure, seed=SEED), Case).measure_all(range(200)))
+    """Measure the first 200 scenes."""
+    yield from summarize(cases().measure_all(range(200)))
 
 
 PARTS = (measure_sample,)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    add_options(parser, scenes=10_000, seed=SEED)
-    given = parser.parse_args()
-    found = Cases(partial(measure, seed=given.seed), Case).run(given)
-    show("stated errors of frequencies", lambda: summarize(found))
-
-
 if __name__ == "__main__":
-    main()
+    measure_random(__doc__, "stated errors of frequencies", cases, summarize, 10_000, SEED)

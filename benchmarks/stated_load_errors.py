@@ -17,7 +17,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -31,15 +32,16 @@ from benchmarks.rows import Row, show
 from benchmarks.stated_transient_errors import random_physics_run, random_run
 
 _BOUND, _MOST_OVER = 0.99, 10.0
-_FUNCTIONS = 120  # of the reference
-_TIMES = 1000  # at which loads are compared
+_FUNCTIONS = 120  # number of functions of the reference
+_TIMES = 1000  # number of times at which loads are compared
 _MORE, _MANY = 2, 8  # modes of the reference over those of the run at each of its speeds, and at least
-_ROUNDING = 1e-8  # of the reference, over the largest along the span
-_FINER, _FINEST = 1e-2, 1e-9  # tolerance of its steps over that of the run, and at least
-_SAMPLES, _PARTS = 200_001, 400  # of the run from which cycles are counted, so many parts at once
+_ROUNDING = 1e-8  # rounding error of the reference, over the largest along the span
+_FINER, _FINEST = 1e-2, 1e-9  # tolerance of the reference over that of the run, and its least value
+# Number of samples of the run from which cycles are counted, and of parts at once.
+_SAMPLES, _PARTS = 200_001, 400
 _EXPONENTS = 3.0, 10.0
 _QUANTITIES = "force", "moment", "strain"
-_STATIONS = np.linspace(0, 0.9, 7)  # over the length; at the tip all loads but a body's vanish
+_STATIONS = np.linspace(0, 0.9, 7)  # positions over the length; at the tip all loads but a body's vanish
 SEED = 18
 
 
@@ -59,12 +61,12 @@ class Case:
 
 
 def of_few_modes(rng: np.random.Generator, draw: Callable[[np.random.Generator], dict]) -> dict:
-    """Arguments of `simulate` as drawn, with one to six modes: errors of "auto" are those of such a basis."""
+    """Draw arguments of `simulate`, with one to six modes."""
     return draw(rng) | {"modes": int(rng.integers(1, 7))}
 
 
 def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] = random_run) -> list[Case]:
-    """Stated and true errors of the run with this number."""
+    """Compute stated and true errors of the run with a number."""
     given = of_few_modes(np.random.default_rng([seed, number]), draw)
     try:
         run = bd.simulate(**given)
@@ -78,7 +80,7 @@ def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] 
 
 
 def measure_cycles(number: int, seed: int) -> list[Case]:
-    """Stated and true errors of equivalent ranges of the root's moment in the run with this number."""
+    """Compute stated and true errors of equivalent ranges of the root's moment in the run with a number."""
     from rainflow import extract_cycles
 
     given = of_few_modes(np.random.default_rng([seed, number]), random_run)
@@ -107,7 +109,7 @@ def _times(run: Transient) -> np.ndarray:
 
 
 def _reference(run: Transient) -> Transient:
-    """The same run with many more modes, integrated nearly without error."""
+    """Run the same with many more modes, integrated nearly without error."""
     ends = find_speed_range(run.request.motion, run.path.end)
     speeds = tuple(np.unique([*ends, np.mean(ends)]).tolist())
     modes = max(_MANY, _MORE * (run.request.basis.modes or 0))
@@ -117,7 +119,7 @@ def _reference(run: Transient) -> Transient:
 
 
 def _values(reference: Transient, like: bd.TransientLoads) -> dict[str, np.ndarray]:
-    """Loads of the reference at the same stations and times, without its errors, which take a run more."""
+    """Return loads of the reference at the same stations and times, without its errors."""
     outputs = like.path.outputs
     return outputs.split(LoadPath(reference, like.path.stations, outputs).at(like.t))
 
@@ -125,7 +127,7 @@ def _values(reference: Transient, like: bd.TransientLoads) -> dict[str, np.ndarr
 def _errors(
     loads: bd.TransientLoads, exact: dict[str, np.ndarray]
 ) -> Iterator[tuple[str, tuple[float, ...]]]:
-    """Stated and true error, and the over-estimate, of each component that is not zero."""
+    """Yield stated and true error, and the over-estimate, of each component that is not zero."""
     for quantity in _QUANTITIES:
         difference = np.abs(loads.values(quantity) - exact[quantity]).max(axis=0)
         stated, largest = loads.error_of(quantity), np.abs(exact[quantity]).max(axis=(0, 1))
@@ -137,7 +139,7 @@ def _errors(
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Share of the true errors that the stated ones cover, and the over-estimate; what was refused."""
+    """Yield the share of true errors that stated ones cover, the over-estimate, and what was refused."""
     answered = [case for case in cases if not case.refusal]
     yield "random transients", str(len(cases)), "500"
     yield "refused", str(len(cases) - len(answered)), ""
@@ -165,7 +167,7 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
 
 
 def measure_sample() -> Iterator[Row]:
-    """The first 12 runs."""
+    """Measure the first 12 runs."""
     yield from summarize(Cases(partial(measure, seed=SEED), Case).measure_all(range(12)))
 
 

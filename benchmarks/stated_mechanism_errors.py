@@ -23,7 +23,7 @@ from benchmarks.rows import Row, show
 from brakes import planar
 
 SEED = 4
-_LEAST = 1e-17  # true error below which it counts as this much: a double holds no less
+_LEAST = 1e-17  # least true error that counts, as a double is no more exact
 _FAR = 1e4  # largest shift of a mechanism [m]
 
 
@@ -43,7 +43,7 @@ class Errors(NamedTuple):
 
 
 def draw(rng: np.random.Generator) -> Case:
-    """A random mechanism; one in three is drawn far away."""
+    """Draw a random mechanism; one in three is drawn far away."""
     mechanism, driver = (
         draw_mechanism(rng) if rng.random() < 0.5 else (mechanisms.random_mechanism(rng), None)
     )
@@ -53,7 +53,7 @@ def draw(rng: np.random.Generator) -> Case:
 
 
 def draw_on_round_face(rng: np.random.Generator) -> Case:
-    """One or two levers that press blocks on a drum, which has turned: nothing else moves by that."""
+    """Draw one or two levers that press blocks on a drum, which has turned."""
     axle, radius = mechanisms.random_point(rng), rng.uniform(0.1, 0.5)
     joints: list[planar.Joint] = [
         planar.Pin("axle", "drum", "ground", axle, radius=0.1 * radius, friction=rng.choice([0.0, 0.2]))
@@ -79,7 +79,7 @@ def draw_on_round_face(rng: np.random.Generator) -> Case:
 
 
 def _maybe_far(rng: np.random.Generator, mechanism: planar.Mechanism) -> planar.Mechanism:
-    """The mechanism, one in three turned and shifted by up to 10 km."""
+    """Return the mechanism; one in three turned and shifted by up to 10 km."""
     if rng.random() >= 0.3:
         return mechanism
     away = 10 ** rng.uniform(0, np.log10(_FAR)) * np.exp(2j * np.pi * rng.random())
@@ -87,7 +87,7 @@ def _maybe_far(rng: np.random.Generator, mechanism: planar.Mechanism) -> planar.
 
 
 def _near_jamming(mechanism: planar.Mechanism, driver: str, part: float) -> planar.Mechanism:
-    """The mechanism with a part of the friction that jams it when squeezed, if 20 times its own does."""
+    """Return the mechanism with a share of the friction that jams it, if 20 times its own does."""
     low, high = 1.0, 20.0
     if _jams(mechanism, driver) or not _jams(_with_friction(mechanism, high), driver):
         return mechanism
@@ -102,7 +102,7 @@ def _jams(mechanism: planar.Mechanism, driver: str) -> bool:
 
 
 def _with_friction(mechanism: planar.Mechanism, factor: float) -> planar.Mechanism:
-    """The mechanism with all coefficients of friction multiplied."""
+    """Return the mechanism with all coefficients of friction multiplied."""
     joints = [
         replace(joint, friction=factor * joint.friction) if getattr(joint, "friction", 0.0) else joint
         for joint in mechanism.joints
@@ -111,7 +111,7 @@ def _with_friction(mechanism: planar.Mechanism, factor: float) -> planar.Mechani
 
 
 def errors_of(mechanism: planar.Mechanism, driver: str | None, moved: float = 0.0) -> Iterator[Errors]:
-    """Errors of the equilibria of a mechanism that have an answer, as the drawing's where it has moved."""
+    """Yield errors of the equilibria of a mechanism that have an answer."""
     if driver is None:
         yield from _compared(planar.solve(mechanism))
         return
@@ -149,13 +149,13 @@ KINDS = {"mechanisms": draw, "blocks on drums that have turned": draw_on_round_f
 
 
 def measure(number: int, kind: str = "mechanisms", seed: int = SEED) -> list[Errors]:
-    """Errors of so many random mechanisms of a kind."""
+    """Compute errors of a number of random mechanisms of a kind."""
     rng = np.random.default_rng(seed)
     return [errors for _ in range(number) for errors in errors_of(*KINDS[kind](rng))]
 
 
 def rows(number: int) -> Iterator[Row]:
-    """How many stated errors cover the true ones, and by how much they are too large."""
+    """Yield how many stated errors cover the true ones, and by how much they are too large."""
     for kind in KINDS:
         stated, true = np.array(measure(number, kind)).T
         over = stated / np.maximum(true, _LEAST)

@@ -9,7 +9,6 @@ that rotation bends, solved with large deflection by collocation, which shares n
 
 from __future__ import annotations
 
-import argparse
 import os
 import warnings
 from collections.abc import Iterator, Sequence
@@ -18,7 +17,8 @@ from functools import partial
 from time import perf_counter
 from typing import Any
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -34,24 +34,24 @@ from benchmarks.cases.random_physics import (
 )
 from benchmarks.cases.reference.elastica import converged, from_rest
 from benchmarks.cases.reference.of_elastica import elastica_of_scene
-from benchmarks.resumable import Cases, add_options
-from benchmarks.rows import Row, show, time_text
+from benchmarks.resumable import Cases, measure_random
+from benchmarks.rows import Row, time_text
 
 SEED = 15
 _MODES = 3
-_FUNCTIONS = 18  # for the reference, over all segments
+_FUNCTIONS = 18  # number of functions of the reference, over all segments
 _KNOWN = 1e-9  # relative error of the reference for large deflection
-_MORE_MODES = 12  # solved with the effect, among which a mode may be
-_LEAST, _MOST = 1e-3, 0.1  # sizes of changes that are judged
-_FACTOR, _SHARE = 2.0, 0.95  # of the truth, within which this share is aimed at
+_MORE_MODES = 12  # further modes solved with the effect, among which a mode may be
+_LEAST, _MOST = 1e-3, 0.1  # least and largest changes that are judged
+_FACTOR, _SHARE = 2.0, 0.95  # factor of the truth within which this share is to lie
 _FIFTH = 0.2
 _STEEL = 200e9, 7850.0  # Young's modulus [Pa] and density [kg/m3]
-_BENT = 4  # of so many scenes, one is for large deflection
+_BENT = 4  # number of scenes of which one is for large deflection
 _DEFLECTION = 0.02, 0.4  # least and most of the linear static deflection of those over the length
 _SLENDEREST = 40.0  # length over thickness of the stockier plane
 _STRAIGHT = 0.85  # share of scenes without twist that bend obliquely, but for those of large deflection
 _KEPT = 0.1  # share of scenes that model an effect already
-_OVERLAP = 0.5  # of the squared mass product, above which a mode is the same
+_OVERLAP = 0.5  # squared mass product above which a mode is the same
 
 
 @dataclass(frozen=True)
@@ -70,9 +70,8 @@ class Answer:
 
 
 def measure(number: int, seed: int) -> list[Answer]:
-    """Answers for the scene with this number."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of beams that no material has
+    """Compute the answers for the scene with a number."""
+    with warnings.catch_warnings(action="ignore"):  # warnings of beams that no material has
         draw = random_left_out_scene if number % _BENT else random_bent_scene
         scene, speed = draw(np.random.default_rng([seed, number]))
         start = perf_counter()
@@ -88,7 +87,7 @@ def measure(number: int, seed: int) -> list[Answer]:
 
 
 def _bent_answer(number: int, modes: bd.Modes, time: float) -> Answer:
-    """The change by large deflection, of the equilibrium that is continued from rest."""
+    """Compute the change by large deflection, for the equilibrium that is continued from rest."""
     beam, unit = elastica_of_scene(modes.scene)
     estimated = tuple(modes.left_out[LARGE_DEFLECTION.name].tolist())
     try:
@@ -103,7 +102,7 @@ def _bent_answer(number: int, modes: bd.Modes, time: float) -> Answer:
 
 
 def random_left_out_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """A scene and a speed, as of `random_physics_scene`, with all properties and much physics left out.
+    """Draw a scene and a speed with all properties, and with much physics left out.
 
     Three beams of twenty may be twisted, the others bend obliquely: else a second plane would change nothing.
     """
@@ -119,7 +118,7 @@ def random_left_out_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def random_bent_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """A beam that rotation bends in its plane, by a few percent of the length or more, and its speed."""
+    """Draw a beam that rotation bends in its plane, by a few percent of the length or more, and its speed."""
     beam = _random_beam(rng)
     mount = replace(
         random_mount(rng, beam),
@@ -134,8 +133,7 @@ def random_bent_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def _random_beam(rng: np.random.Generator) -> bd.Beam:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of beams that no material has
+    with warnings.catch_warnings(action="ignore"):  # warnings of beams that no material has
         beam = random_physics_beam(rng, stocky=True, slenderest=_SLENDEREST)
     return replace(beam, axial_stiffness=beam.mass_per_length.scaled(_STEEL[0] / _STEEL[1]))
 
@@ -152,7 +150,7 @@ def _answer(number: int, modes: bd.Modes, added: Addition, estimated: np.ndarray
 
 
 def solved_change(modes: bd.Modes, scene: bd.Scene) -> np.ndarray:
-    """Relative change of each frequency by solving the scene with an effect; nan where the mode is lost."""
+    """Compute the relative change of each frequency by an effect; nan where the mode is lost."""
     simple, full = _reference(modes.scene, scene.beam), _reference(scene, scene.beam)
     speeds, m = np.array([modes.speed]), len(modes.frequency)
     before, after = simple.solver.solve(speeds, m), full.solver.solve(speeds, _MORE_MODES)
@@ -169,7 +167,7 @@ def solved_change(modes: bd.Modes, scene: bd.Scene) -> np.ndarray:
 
 
 def _reference(scene: bd.Scene, beam: bd.Beam) -> Model:
-    """A model of given size on segments that suit both scenes."""
+    """Return a model of given size on segments that suit both scenes."""
     functions = max(8, _FUNCTIONS // (len(beam.breakpoints) - 1))
     return _OverBeam(scene, bd.Ritz(functions), beam)
 
@@ -189,7 +187,7 @@ class _OverBeam(Model):
 
 
 def cases(seed: int = SEED) -> Cases[Answer]:
-    """The random scenes of a seed."""
+    """Return the random scenes of a seed."""
     return Cases(partial(measure, seed=seed), Answer)
 
 
@@ -197,7 +195,7 @@ def cases(seed: int = SEED) -> Cases[Answer]:
 
 
 def summarize(answers: Sequence[Answer]) -> Iterator[Row]:
-    """For each effect the share of estimates within a factor of two, and the worst."""
+    """Yield for each effect the share of estimates within a factor of two, and the worst."""
     yield "random scenes", str(len({a.number for a in answers})), "1000"
     for effect in sorted({a.effect for a in answers}):
         yield from _summarize_effect(effect, [a for a in answers if a.effect == effect])
@@ -236,20 +234,12 @@ def _summarize_effect(effect: str, answers: Sequence[Answer]) -> Iterator[Row]:
 
 
 def measure_sample() -> Iterator[Row]:
-    """The first 60 scenes."""
+    """Measure the first 60 scenes."""
     yield from summarize(cases().measure_all(range(60)))
 
 
 PARTS = (measure_sample,)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    add_options(parser, scenes=1500, seed=SEED)
-    given = parser.parse_args()
-    answers = cases(given.seed).run(given)
-    show("stated model errors", lambda: summarize(answers))
-
-
 if __name__ == "__main__":
-    main()
+    measure_random(__doc__, "stated model errors", cases, summarize, 1500, SEED)

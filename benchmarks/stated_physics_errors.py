@@ -17,7 +17,8 @@ from functools import partial
 from time import process_time
 from typing import TypeAlias
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -28,13 +29,13 @@ from benchmarks.cases.reference.resolved import Known, known_frequencies
 from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show, time_text
 
-_OVER_ESTIMATE = 30.0  # median over-estimate that is aimed at
-_LONGEST = 10.0  # time over the median of all, at most
+_OVER_ESTIMATE = 30.0  # median over-estimate that is the goal
+_LONGEST = 10.0  # largest time, over the median of all
 SEED = 6
-Draw: TypeAlias = "Callable[[np.random.Generator], tuple[bd.Scene, float]]"  # of a scene and a speed
+Draw: TypeAlias = "Callable[[np.random.Generator], tuple[bd.Scene, float]]"  # draws a scene and a speed
 TOLERANCES = (None, 1e-3, 1e-6)
-_MODES = {1: 3, 2: 5}  # by the number of planes
-_KNOWN = 1e-9  # uncertainty above which a reference says nothing
+_MODES = {1: 3, 2: 5}  # numbers of modes by the number of planes
+_KNOWN = 1e-9  # uncertainty above which a reference is not used
 
 
 @dataclass(frozen=True)
@@ -72,9 +73,8 @@ def measure(
     tolerances: Sequence[float | None],
     draw: Draw = random_physics_scene,
 ) -> list[Answer]:
-    """Answers for the scene with this number."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of beams that no material has
+    """Compute the answers for the scene with a number."""
+    with warnings.catch_warnings(action="ignore"):  # warnings of beams that no material has
         scene, speed = draw(np.random.default_rng([seed, number]))
         count = _MODES[scene.physics.planes]
         try:
@@ -108,7 +108,7 @@ def cases(
     tolerances: Sequence[float | None] = TOLERANCES,
     draw: Draw = random_physics_scene,
 ) -> Cases[Answer]:
-    """The random scenes of a seed, solved by a discretization to some tolerances."""
+    """Return the random scenes of a seed, solved by a discretization to some tolerances."""
     each = partial(measure, seed=seed, discretization=discretization, tolerances=tolerances, draw=draw)
     return Cases(each, Answer)
 
@@ -117,7 +117,7 @@ def cases(
 
 
 def summarize(answers: Sequence[Answer], scenes: int = 3000, covered: float = 0.999) -> Iterator[Row]:
-    """Share of the true errors that the stated ones cover, and the over-estimate, at each tolerance.
+    """Yield the share of true errors that stated ones cover, and the over-estimate, at each tolerance.
 
     The number of scenes and the share covered are those that are aimed at.
     """
@@ -163,7 +163,7 @@ def _summarize_tolerance(answers: Sequence[Answer], aim: str) -> Iterator[Row]:
 
 
 def measure_sample() -> Iterator[Row]:
-    """The first 100 scenes."""
+    """Measure the first 100 scenes."""
     yield from summarize(cases().measure_all(range(100)))
 
 

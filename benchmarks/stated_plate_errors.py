@@ -6,21 +6,21 @@ are computed of, as plates at tolerances from 0.1 to 1e-3, against 14 functions 
 
 from __future__ import annotations
 
-import argparse
 import os
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
 import beamdyn as bd
 from benchmarks.peers.solids import random_strip
-from benchmarks.resumable import Cases, add_options
-from benchmarks.rows import Row, show
+from benchmarks.resumable import Cases, measure_random
+from benchmarks.rows import Row
 
 SEED, _MODES = 31, 3
 _REFERENCE = bd.Ritz(14)
@@ -37,13 +37,12 @@ class Case:
 
 
 def measure(number: int, seed: int) -> list[Case]:
-    """Stated and true errors of the strip with this number."""
+    """Compute stated and true errors of the strip with a number."""
     rng = np.random.default_rng([seed, number])
     strip = random_strip(rng)
     scene = replace(strip.scene(), physics=bd.Physics(camber=True, torsion=True))
     tolerance = 10 ** rng.uniform(-3, -1)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of speeds at which a strip bends far
+    with warnings.catch_warnings(action="ignore"):  # warnings of speeds at which a strip bends far
         modes = bd.natural_modes(scene, strip.speed, _MODES, tolerance=tolerance)
         true = bd.natural_modes(scene, strip.speed, _MODES, discretization=_REFERENCE).frequency
     errors = np.abs(modes.frequency / true - 1)
@@ -51,7 +50,7 @@ def measure(number: int, seed: int) -> list[Case]:
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """How many of the true errors the stated ones cover, and how large they are beside these."""
+    """Yield how many of the true errors the stated ones cover, and how large they are beside these."""
     stated, true = (np.concatenate([getattr(case, name) for case in cases]) for name in ("stated", "true"))
     tolerance = np.repeat([case.tolerance for case in cases], _MODES)
     yield "random strips; modes", f"{len(cases)}; {len(stated)}", "300"
@@ -64,15 +63,10 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
     yield "tolerance met", f"{np.mean(stated <= tolerance):.1%}", ""
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    add_options(parser, scenes=300, seed=SEED)
-    given = parser.parse_args()
-    cases = Cases(partial(measure, seed=given.seed), Case).run(given)
-    show("stated errors of plates", lambda: summarize(cases))
+def cases(seed: int = SEED) -> Cases[Case]:
+    """Return the random scenes of a seed."""
+    return Cases(partial(measure, seed=seed), Case)
 
 
 if __name__ == "__main__":
-    main()
+    measure_random(__doc__, "stated errors of plates", cases, summarize, 300, SEED)

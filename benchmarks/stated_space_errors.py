@@ -8,31 +8,30 @@ one of fewer: what is tested is the stated error of the discretization, not the 
 
 from __future__ import annotations
 
-import argparse
 import os
 import warnings
 from collections.abc import Iterator
 from functools import partial
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
 import beamdyn as bd
 from benchmarks.cases.random_space import random_space_scene
 from benchmarks.cases.reference.resolved import Known
-from benchmarks.resumable import Cases, add_options
-from benchmarks.rows import Row, show
+from benchmarks.resumable import Cases, measure_random
+from benchmarks.rows import Row
 from benchmarks.stated_physics_errors import TOLERANCES, Answer, answer, summarize
 
 SEED, _MODES, _SCENES, _COVERED = 33, 4, 300, 0.995
-_REFERENCE = 24, 20  # functions
+_REFERENCE = 24, 20  # numbers of functions of the reference and of a coarser one
 
 
 def measure(number: int, seed: int) -> list[Answer]:
-    """Answers for the scene with this number."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
+    """Compute the answers for the scene with a number."""
+    with warnings.catch_warnings(action="ignore"):
         scene, speed = random_space_scene(np.random.default_rng([seed, number]))
         try:
             known = _known(scene, speed)
@@ -42,32 +41,31 @@ def measure(number: int, seed: int) -> list[Answer]:
 
 
 def _known(scene: bd.Scene, speed: float) -> Known:
-    """Eigenvalues over many functions, with their distance from those over fewer, and rounding."""
+    """Compute eigenvalues over many functions, with their distance from those over fewer, and rounding."""
     fine, coarse = (bd.natural_modes(scene, speed, _MODES, bd.Ritz(n)).eigenvalue for n in _REFERENCE)
     uncertainty = np.abs(fine / coarse - 1) + 1e-13
     return Known(fine, uncertainty, 0.0)
 
 
 def cases(seed: int = SEED) -> Cases[Answer]:
-    """The random scenes of a seed."""
+    """Return the random scenes of a seed."""
     return Cases(partial(measure, seed=seed), Answer)
 
 
 def measure_sample() -> Iterator[Row]:
-    """The first 12 scenes."""
+    """Measure the first 12 scenes."""
     yield from summarize(cases().measure_all(range(12)), _SCENES, _COVERED)
 
 
 PARTS = (measure_sample,)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    add_options(parser, scenes=_SCENES, seed=SEED)
-    given = parser.parse_args()
-    answers = cases(given.seed).run(given)
-    show("stated errors of frequencies of beams in space", lambda: summarize(answers, _SCENES, _COVERED))
-
-
 if __name__ == "__main__":
-    main()
+    measure_random(
+        __doc__,
+        "stated errors of frequencies of beams in space",
+        cases,
+        lambda found: summarize(found, _SCENES, _COVERED),
+        _SCENES,
+        SEED,
+    )

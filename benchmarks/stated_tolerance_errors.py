@@ -15,7 +15,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -46,12 +47,11 @@ class Case:
 
 
 def measure(number: int, seed: int, critical: bool) -> list[Case]:
-    """Stated and true errors of the scene with this number."""
+    """Compute stated and true errors of the scene with a number."""
     rng = np.random.default_rng([seed, number])
     discretization = "fem" if number % 2 else "ritz"
     tolerance = 10 ** rng.uniform(-8, -1)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of tolerances that elements miss
+    with warnings.catch_warnings(action="ignore"):  # warnings of tolerances that elements miss
         scene, speed = random_tip_scene(rng)
         try:
             if critical:
@@ -83,7 +83,7 @@ def _of_critical_speed(scene: bd.Scene, discretization: str, tolerance: float) -
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """How many of the true errors the stated ones cover, and by how much they are too small or too large."""
+    """Yield how many of the true errors the stated ones cover, and by how much they are off."""
     refused = [case for case in cases if case.refusal]
     yield "random scenes; refused", f"{len(cases)}; {len(refused)}", ""
     for name in ("ritz", "fem"):
@@ -115,7 +115,7 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
 
 
 def measure_sample() -> Iterator[Row]:
-    """The first 400 scenes."""
+    """Measure the first 400 scenes."""
     yield from summarize(Cases(partial(measure, seed=SEED, critical=False), Case).measure_all(range(400)))
 
 

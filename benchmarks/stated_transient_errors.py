@@ -17,7 +17,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -32,12 +33,12 @@ from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show
 
 _BOUND = 0.99
-_FUNCTIONS = 120  # of the reference
-_MANY = 8  # modes of the reference, at least, and three at two more speeds
+_FUNCTIONS = 120  # number of functions of the reference
+_MANY = 8  # least number of modes of the reference at rest; it has three at two more speeds
 _DOP853 = 5e3  # largest phase angle of the fastest mode up to which DOP853 is the reference [rad]
 SEED = 7
-_ROUNDING = 1e-8  # of the references, over the largest deflection
-_TIMES = 2000  # at which tips are compared
+_ROUNDING = 1e-8  # rounding error of the references, over the largest deflection
+_TIMES = 2000  # number of times at which tips are compared
 _SOFTEST = 0.1  # spring at the root, over EI/L: with a softer one the first period has very many of others
 
 
@@ -46,14 +47,14 @@ class Case:
     """One random run: its stated and true errors over the largest deflection, or why it was refused."""
 
     number: int
-    stated: tuple[float, float] = (0.0, 0.0)  # time integration, modal truncation
+    stated: tuple[float, float] = (0.0, 0.0)  # errors of time integration and modal truncation
     true: tuple[float, float] = (0.0, 0.0)
     refusal: str = ""
     missed_in_silence: int = 0  # 1 if the true truncation error exceeds the tolerance and no warning says so
 
 
 def random_run(rng: np.random.Generator) -> dict:
-    """Arguments of `simulate`: any motion to 0.9 of the critical speed, 3 to 20 periods."""
+    """Draw arguments of `simulate`: any motion to 0.9 of the critical speed, 3 to 20 periods."""
     beam = random_beam(rng)
     mount = bd.Mount(
         radius=beam.length * rng.choice([0.0, 10 ** rng.uniform(-2, 1)]),
@@ -64,7 +65,7 @@ def random_run(rng: np.random.Generator) -> dict:
 
 
 def random_physics_run(rng: np.random.Generator) -> dict:
-    """The same with all physics; clamped or on springs from a tenth of EI/L; 2 to 6 periods."""
+    """Draw such arguments with all physics; clamped or on springs from a tenth of EI/L."""
     scene = random_still_scene(rng)
     least = _SOFTEST * float(scene.beam.bending_stiffness(np.zeros(1))[0]) / scene.beam.length
     stiff = (k if k >= least else np.inf for k in scene.mount.root_stiffnesses)
@@ -73,7 +74,7 @@ def random_physics_run(rng: np.random.Generator) -> dict:
 
 
 def random_bent_run(rng: np.random.Generator) -> dict:
-    """The same with large deflection, in the plane of rotation or out of it, to 1e-3, 1e-6 or 1e-9."""
+    """Draw such arguments with large deflection, at tolerances of 1e-3, 1e-6 or 1e-9."""
     beam = random_beam(rng)
     mount = bd.Mount(
         radius=beam.length * rng.choice([0.0, 10 ** rng.uniform(-1, 0.7)]),
@@ -85,7 +86,7 @@ def random_bent_run(rng: np.random.Generator) -> dict:
 
 
 def random_wave_run(rng: np.random.Generator) -> dict:
-    """A tip body on a wheel that spins up until the road's wave is near a mode; 3 to 10 periods."""
+    """Draw a tip body on a wheel that spins up until the road's wave is near a mode."""
     beam = random_beam(rng)
     own = beam.length * float(beam.mass_per_length(np.linspace(0, 1, 101)).mean())
     mass = own * 10 ** rng.uniform(-1, 1)
@@ -114,7 +115,7 @@ def random_wave_run(rng: np.random.Generator) -> dict:
 
 
 def _set_in_motion(rng: np.random.Generator, scene: bd.Scene, periods: tuple[float, float]) -> dict:
-    """Arguments of `simulate` for a scene that is given damping, gravity and motion over 10^periods."""
+    """Return arguments of `simulate` for a scene with damping, gravity and motion over 10^periods."""
     beam = scene.beam
     still = replace(
         scene,
@@ -133,7 +134,7 @@ def _set_in_motion(rng: np.random.Generator, scene: bd.Scene, periods: tuple[flo
 
 
 def random_motion(rng: np.random.Generator, speed: float, t_end: float, length: float) -> bd.Motion:
-    """Steady, spun up, or from a table of speeds; half of them on a wheel, most of these on a wavy road."""
+    """Draw a motion: steady, spun up, or by a table of speeds; half of them on a wheel."""
     times = np.linspace(0, t_end, rng.integers(4, 9))
     rotation = [
         bd.SteadyRotation(speed),
@@ -149,7 +150,7 @@ def random_motion(rng: np.random.Generator, speed: float, t_end: float, length: 
 
 
 def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] = random_run) -> list[Case]:
-    """Stated and true errors of the run with this number."""
+    """Compute stated and true errors of the run with a number."""
     given = draw(np.random.default_rng([seed, number]))
     t = np.linspace(0, given["t_end"], _TIMES)
     try:
@@ -168,7 +169,7 @@ def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] 
 
 
 def find_time_error(run: Transient, t: np.ndarray) -> float:
-    """Largest deviation from the same modes integrated nearly without error [m]."""
+    """Find the largest deviation from the same modes integrated nearly without error [m]."""
     straight = run.system.straight if isinstance(run.system, ElasticaSystem) else run.system
     _, K, _ = straight.coefficients(np.zeros(1))
     phase = run.path.end * float(np.sqrt(np.abs(np.linalg.eigvals(K)).max()))
@@ -181,7 +182,7 @@ def find_time_error(run: Transient, t: np.ndarray) -> float:
 
 
 def find_mode_error(run: Transient, t: np.ndarray) -> float:
-    """Largest deviation from a run with many more modes, both integrated nearly without error [m]."""
+    """Find the largest deviation from a run with many more modes, both nearly without time error [m]."""
     ends = find_speed_range(run.request.motion, run.path.end)
     speeds = tuple(np.unique([*ends, np.mean(ends)]).tolist())
     basis = ModalBasis(max(_MANY, 2 * (run.request.basis.modes or 0)), speeds)
@@ -189,30 +190,30 @@ def find_mode_error(run: Transient, t: np.ndarray) -> float:
 
 
 def find_error_by_twice_the_modes(run: Transient, t: np.ndarray) -> float:
-    """The same by a run with twice the modes, at least four, at the slowest and the fastest speed [m]."""
+    """Find the largest deviation from a run with twice the modes, at least four [m]."""
     ends = find_speed_range(run.request.motion, run.path.end)
     modes = max(_MANY // 2, 2 * (run.request.basis.modes or 0))
     return _distance_with(run, ModalBasis(modes, ends), bd.Ritz(max(_FUNCTIONS // 2, 2 * modes)), t)
 
 
 def _distance_with(run: Transient, basis: ModalBasis, discretization: bd.Ritz, t: np.ndarray) -> float:
-    """Largest distance from a run in another basis [m], both integrated nearly without error."""
+    """Find the largest distance from a run in another basis [m], both nearly without time error."""
     few = replace(run.request, tolerance=1e-8, t_eval=None)
     many = replace(few, discretization=discretization, basis=basis)
     try:
         return _largest_distance(few.run(), many.run(), t)
-    except ArithmeticError:  # with more modes it grows without bound
+    except ArithmeticError:  # with more modes the motion grows without bound
         return np.inf
 
 
 def _largest_distance(run: Transient, other: Transient, t: np.ndarray) -> float:
-    """Largest distance of the tips of two runs [m], both directions of bending together."""
+    """Find the largest distance of the tips of two runs [m], both directions of bending together."""
     each = (run.deflection(t, i) - other.deflection(t, i) for i in range(run.system.equations.planes))
     return float(np.hypot.reduce([np.abs(difference) for difference in each]).max())
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Share of the true errors that the stated ones cover, and the over-estimate; what was refused."""
+    """Yield the share of true errors that stated ones cover, the over-estimate, and what was refused."""
     answered = [case for case in cases if not case.refusal]
     yield "random runs", str(len(cases)), "200"
     yield "refused", str(len(cases) - len(answered)), ""
@@ -235,7 +236,7 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
 
 
 def measure_sample() -> Iterator[Row]:
-    """The first 20 runs."""
+    """Measure the first 20 runs."""
     yield from summarize(Cases(partial(measure, seed=SEED), Case).measure_all(range(20)))
 
 

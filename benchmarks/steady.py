@@ -16,7 +16,7 @@ from benchmarks.rows import Row, best_time, show
 
 
 def compare_crossings() -> Iterator[Row]:
-    """Speeds at which excitation frequencies meet the first natural frequency."""
+    """Yield speeds at which excitation frequencies meet the first natural frequency."""
     expected = {
         ("road +", "forced"): "53.08584183",
         ("road -", "forced"): "69.80240337",
@@ -32,7 +32,7 @@ def compare_crossings() -> Iterator[Row]:
 
 
 def compare_amplitudes() -> Iterator[Row]:
-    """Amplitudes of the steady response at 55 rad/s."""
+    """Yield amplitudes of the steady response at 55 rad/s."""
     for name, scene, modes, amplitude, bound in (
         ("undamped, 5 modes", STEADY_ROLLING, 5, "0.261876", "0.261951"),
         ("with gravity, 3 modes", STEADY_ROLLING_IN_GRAVITY, 3, "0.29895", "0.36868"),
@@ -44,14 +44,14 @@ def compare_amplitudes() -> Iterator[Row]:
 
 
 def check_instability() -> Iterator[Row]:
-    """Growth rates at two speeds of parametric instability."""
+    """Yield growth rates at two speeds of parametric instability."""
     for speed in (92.0443, 111.3564):
         response = bd.steady_response(STEADY_ROLLING, [speed])
         yield f"at {speed} rad/s", f"{response.status[0]}, {response.growth_rate[0]:.4f} 1/s", "unstable"
 
 
 def time_responses() -> Iterator[Row]:
-    """Times of the steady response at 1000 speeds."""
+    """Yield times of the steady response at 1000 speeds."""
     speeds = np.linspace(1, 150, 1000)
     for name, scene, bound in (
         ("undamped", STEADY_ROLLING, "0.5"),
@@ -65,9 +65,5 @@ def time_responses() -> Iterator[Row]:
 PARTS = compare_crossings, compare_amplitudes, check_instability, time_responses
 
 
-def main() -> None:
-    show("resonance and steady response", *PARTS)
-
-
 if __name__ == "__main__":
-    main()
+    show("resonance and steady response", *PARTS)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from time import perf_counter
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # set before numpy is imported
 
 import beamdyn as bd
 from benchmarks.peers.solids import Strip, reference, solid_modes
@@ -21,11 +21,12 @@ PUBLISHED = Strip(0.05, 0.01, 0.0002, 200e9, 7850.0, 0.3, 0.215, speed=100.0)
 PLATE = bd.Physics(camber=True, torsion=True)
 _MODES, _TOLERANCE, _REPEATS = 3, 1e-3, 60
 _FINE, _LIMIT = 1e-4, bd.Ritz(18)
-_MESHES = ((16, 1, 4), (24, 1, 6), (32, 1, 8), (48, 1, 12), (64, 1, 16), (96, 1, 24))  # finer and finer
+# Meshes, finer and finer.
+_MESHES = ((16, 1, 4), (24, 1, 6), (32, 1, 8), (48, 1, 12), (64, 1, 16), (96, 1, 24))
 
 
 def summarize() -> Iterator[Row]:
-    """The two ratios."""
+    """Yield the two ratios."""
     count = itertools.count(1)
 
     def solve(physics: bd.Physics, tolerance: float | None = None) -> Callable[[], bd.Modes]:
@@ -67,7 +68,7 @@ def summarize() -> Iterator[Row]:
 
 
 def shortest(run: Callable[[], object]) -> float:
-    """Shortest time of a call [s]."""
+    """Measure the shortest time of a call [s]."""
     times = []
     for _ in range(_REPEATS):
         start = perf_counter()

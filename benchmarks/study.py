@@ -28,20 +28,21 @@ VARY = {
     "mount.radius": np.linspace(0.0, 0.3, 10),
     "speed": np.linspace(0.0, 80.0, 10),
 }
-SAMPLE = 300  # designs of the loop of single calls
-SIDE = 200  # values of each input of a map
-OTHERS, SAMPLE_OF_OTHERS, TOP_SPEED = 2000, 20, 150.0  # of other questions
+SAMPLE = 300  # number of designs in the loop of single calls
+SIDE = 200  # number of values of each input of a map
+# Numbers of designs of other questions, and the top speed [rad/s].
+OTHERS, SAMPLE_OF_OTHERS, TOP_SPEED = 2000, 20, 150.0
 
 
 def single(design: dict[str, float]) -> bd.Modes:
-    """What a user would write for one design."""
+    """Solve one design as a user would."""
     tip = bd.TipMass(design["beam.tip.mass"])
     beam = bd.Beam.rectangular(LENGTH, WIDTH, design["beam.thickness"], MODULUS, DENSITY, tip)
     return bd.natural_modes(bd.Scene(beam, bd.Mount(design["mount.radius"])), design["speed"], 3)
 
 
 def compare() -> Iterator[Row]:
-    """Time of a design by a study and by single calls, and how far they differ."""
+    """Yield the time of a design by a study and by single calls, and how far they differ."""
     beam = bd.Beam.rectangular(LENGTH, WIDTH, 2e-4, MODULUS, DENSITY, bd.TipMass(0.0))
     scene, random = bd.Scene(beam, bd.Mount()), np.random.default_rng(17)
     study = bd.study(scene, VARY)
@@ -73,7 +74,7 @@ def _deviation(modes: bd.Modes, frequency: np.ndarray, error: np.ndarray) -> flo
 
 @dataclass(frozen=True)
 class Case:
-    """A question of random designs, and the same of one."""
+    """A question of random designs, and the same question of one design."""
 
     name: str
     scene: bd.Scene
@@ -83,7 +84,7 @@ class Case:
 
 
 def list_cases() -> Iterator[Case]:
-    """What else is answered in batches."""
+    """Yield the other questions that are answered in batches."""
     beam, wheel = bd.Beam.rectangular(LENGTH, WIDTH, 2e-4, MODULUS, DENSITY), bd.Mount(0.1)
     road = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
     rolling = bd.RollingWheel(0.3, bd.SteadyRotation(50.0), road)
@@ -101,7 +102,7 @@ def list_cases() -> Iterator[Case]:
 
 
 def compare_others() -> Iterator[Row]:
-    """Time of a design by studies of other kinds, over single calls."""
+    """Yield the time of a design by studies of other kinds, over single calls."""
     for case in list_cases():
         random = np.random.default_rng(17)
         ranges = {"beam.thickness": (1e-4, 4e-4), "mount.radius": (0.01, 0.3)} | case.more
@@ -122,7 +123,7 @@ def compare_others() -> Iterator[Row]:
 
 
 def draw_maps() -> Iterator[Row]:
-    """Time of the picture of a study over two inputs, once there is the answer."""
+    """Yield the time of the picture of a study over two inputs, once the answer is there."""
     beam = bd.Beam.rectangular(LENGTH, WIDTH, 2e-4, MODULUS, DENSITY)
     rolling = bd.RollingWheel(0.3, bd.SteadyRotation(50.0), bd.RoadWave(0.3, velocity_amplitude=0.01))
     sides = {"beam.thickness": np.linspace(1e-4, 4e-4, SIDE), "speed": np.linspace(0.0, TOP_SPEED, SIDE)}
@@ -139,9 +140,5 @@ def draw_maps() -> Iterator[Row]:
 PARTS = compare, compare_others, draw_maps
 
 
-def main() -> None:
-    show("many designs", *PARTS)
-
-
 if __name__ == "__main__":
-    main()
+    show("many designs", *PARTS)

@@ -26,7 +26,7 @@ MODES, WORKERS = 5, 2
 
 
 def run_sweep(modes: int | str) -> tuple[bd.Sweep, float]:
-    """The sweep, with its progress shown, and its wall time [s]."""
+    """Run the sweep, with its progress shown; return it and its wall time [s]."""
     columns = TextColumn("speeds"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
     with Progress(*columns, console=Console(stderr=True)) as bar:
         task = bar.add_task("speeds")
@@ -42,13 +42,13 @@ def run_sweep(modes: int | str) -> tuple[bd.Sweep, float]:
 
 
 def measure_peak_memory() -> float:
-    """Upper bound of the memory that a new process and its workers held at a time for the sweep [GB]."""
+    """Measure an upper bound of the memory that a process and its workers held for the sweep [GB]."""
     with ProcessPoolExecutor(1, get_context("spawn")) as alone:
         return alone.submit(_memory_of_sweep).result()
 
 
 def _memory_of_sweep() -> float:
-    """The same for the processes of this one, which is the first of the workers [GB]."""
+    """Measure the same for the processes of this one, which is the first of the workers [GB]."""
     run_sweep(MODES)
     unit = 1 if sys.platform == "darwin" else 1024
     own, largest = (
@@ -58,7 +58,7 @@ def _memory_of_sweep() -> float:
 
 
 def find_two_largest(sweep: bd.Sweep) -> list[tuple[float, float]]:
-    """The two largest peaks [m] that exceed their neighbours, with their speeds [rad/s]."""
+    """Find the two largest peaks [m] that exceed their neighbours, with their speeds [rad/s]."""
     p = np.pad(sweep.peaks, 1, constant_values=-np.inf)
     tops = np.flatnonzero((p[1:-1] > p[:-2]) & (p[1:-1] >= p[2:]))
     best = sorted(tops, key=lambda k: -sweep.peaks[k])[:2]
@@ -66,7 +66,7 @@ def find_two_largest(sweep: bd.Sweep) -> list[tuple[float, float]]:
 
 
 def time_chunk() -> float:
-    """Time of the last chunk, the slowest, in this process [s]."""
+    """Measure the time of the last chunk, the slowest, in this process [s]."""
     request = SweepRequest(ROLLING, (20.0, 30.0), 30.0, 1e-5, "ritz", ModalBasis(MODES))
     start = perf_counter()
     solve_chunk(request, tuple(np.arange(111.0, 151.0)))
@@ -74,7 +74,7 @@ def time_chunk() -> float:
 
 
 def measure_fig_6() -> Iterator[Row]:
-    """The sweep of Fig. 6, with the paper's five modes and with those chosen by the tolerance."""
+    """Yield the sweep of Fig. 6, with the paper's five modes and with those chosen by the tolerance."""
     for modes, bound in ((MODES, "8"), ("auto", "")):
         sweep, time = run_sweep(modes)
         name = f"151 transients of 30 s (Fig. 6), {modes if modes == 'auto' else f'{modes} rest'} modes"
@@ -95,9 +95,5 @@ def measure_fig_6() -> Iterator[Row]:
 PARTS = (measure_fig_6,)
 
 
-def main() -> None:
-    show("sweep", *PARTS)
-
-
 if __name__ == "__main__":
-    main()
+    show("sweep", *PARTS)

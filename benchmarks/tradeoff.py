@@ -14,7 +14,6 @@ from datetime import date
 from functools import partial
 from pathlib import Path
 from time import perf_counter, process_time
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
@@ -22,6 +21,7 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.common.results.pictures import Axes
 from beamdyn.modes.modal.error_estimate import solve_with_error
 from beamdyn.modes.modal.model import Model
 from beamdyn.studies.tradeoffs.frequencies import frequency_diagram
@@ -38,13 +38,10 @@ from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, ROLLING, rolling_h
 from benchmarks.cases.table_3 import handwritten, modal_system
 from benchmarks.rows import markdown_table, time_text
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 DOCS = Path(__file__).parents[1] / "docs"
 MODES, LOCUS = 3, 101
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
-LEGENDRE, SIZES = "Ritz, legendre", range(4, 15)  # functions whose times are compared
+LEGENDRE, SIZES = "Ritz, legendre", range(4, 15)  # numbers of functions whose times are compared
 FAMILIES = {
     LEGENDRE: "Legendre functions",
     "Ritz, eigenfunctions": "eigenfunctions",
@@ -60,7 +57,7 @@ FAMILIES = {
 
 
 def make_scenes() -> dict[str, tuple[bd.Scene, float]]:
-    """Five scenes of different character, and a speed [rad/s] for each."""
+    """Make five scenes of different character, with a speed [rad/s] for each."""
     beam_mass = 7850 * 0.05 * 0.01 * 0.0002
     body = bd.TipMass(20 * beam_mass, offset=0.003, inertia=2e-8)
     heavy = replace(HARVESTER, beam=replace(HARVESTER.beam, tip=body))
@@ -88,7 +85,8 @@ DESCRIBED = """- published: the rolling harvester of Lee and Yoo, inward, at 55 
   root's, at a nondimensional speed of 10."""
 
 
-best_time = partial(rows.best_time, clock=process_time)  # one thread: other programs do not count
+# Processor time of one thread, so that other programs do not count.
+best_time = partial(rows.best_time, clock=process_time)
 
 
 # What tolerance= chooses --------------------------------------------------------------------------
@@ -105,7 +103,7 @@ class Choice:
     chosen: int
     error: float
     estimate: float
-    floor: float  # error of the reference: smaller ones cannot be told
+    floor: float  # error of the reference; smaller ones cannot be told
     cheapest: float  # time of the model with the functions needed [s]
     own: float  # time of the model that was chosen
     call: float  # time of the whole call
@@ -140,7 +138,7 @@ CHOICE_HEAD = (
 
 
 def measure_choices(name: str, scene: bd.Scene, speed: float, count: int) -> Iterator[Choice]:
-    """What is chosen at each tolerance for one scene, at one speed or over a locus."""
+    """Yield what is chosen at each tolerance for one scene, at one speed or over a locus."""
     speeds = np.linspace(0, speed, count) if count > 1 else np.array([speed])
 
     def solve(functions: int) -> np.ndarray:
@@ -156,7 +154,7 @@ def measure_choices(name: str, scene: bd.Scene, speed: float, count: int) -> Ite
     for tolerance in TOLERANCES:
         needed = 1 + max((n for n, e in errors.items() if e > max(tolerance, floor)), default=MODES - 1)
         result = call_beamdyn(scene, speeds, tolerance)
-        # the size of a locus' basis stands only in the sentence about its method
+        # The size of a locus' basis stands only in the sentence about its method.
         chosen = int(result.provenance.method.split("functions=")[1].split(",")[0])
         yield Choice(
             scene=name,
@@ -174,7 +172,7 @@ def measure_choices(name: str, scene: bd.Scene, speed: float, count: int) -> Ite
 
 
 def call_beamdyn(scene: bd.Scene, speeds: np.ndarray, tolerance: float | None) -> bd.Modes | bd.Locus:
-    """Frequencies as a user asks for them: of one speed or of a locus."""
+    """Compute frequencies as a user asks for them, at one speed or over a locus."""
     if len(speeds) == 1:
         return bd.natural_modes(scene, speeds[0], MODES, tolerance=tolerance)
     return bd.frequency_locus(scene, speeds, MODES, tolerance=tolerance)
@@ -184,7 +182,7 @@ def call_beamdyn(scene: bd.Scene, speeds: np.ndarray, tolerance: float | None) -
 
 
 def measure_locus() -> Iterator[tuple[str, ...]]:
-    """The published locus of 1000 speeds: tolerance, time, over the tightest."""
+    """Yield for the published locus of 1000 speeds: tolerance, time, and ratio to the tightest."""
     speeds = np.linspace(0, 150, 1000)
     tolerances: tuple[float | None, ...] = (1e-3, 1e-5, 1e-7, 1e-10, None)
     times = {t: best_time(partial(call_beamdyn, ROLLING, speeds, t), 5) for t in tolerances}
@@ -195,7 +193,7 @@ def measure_locus() -> Iterator[tuple[str, ...]]:
 
 
 def measure_transient() -> Iterator[tuple[str, ...]]:
-    """Table 3's transient: tolerance, time, over the tightest, error, estimate."""
+    """Yield for Table 3's transient: tolerance, time, ratio to the tightest, error, estimate."""
     t = np.linspace(0, 30, 30_001)
     exact = bd.simulate(ROLLING, 30.0, 5, tolerance=1e-11, discretization=bd.Ritz(20))
     true, rows = exact.deflection(t), []
@@ -311,7 +309,7 @@ def write_page(
     chosen: Sequence[Choice],
     start: float,
 ) -> str:
-    """The page of the documentation."""
+    """Write the page of the documentation."""
     return PAGE.format(
         day=date.today(),
         python=platform.python_version(),
@@ -342,7 +340,7 @@ def write_page(
 
 
 def compare_handwritten() -> float:
-    """Time of the general right-hand side over that of the one written by hand for the published scene."""
+    """Measure the general right-hand side over the one written by hand for the published scene."""
     equations, y = modal_system(5), np.linspace(1e-6, 2e-6, 10)
     general, own = (
         best_time(lambda f=f: [f(12.3, y) for _ in range(200)])
@@ -356,7 +354,7 @@ def list_fronts(diagrams: dict[str, Diagram], where: str) -> list[str]:
 
 
 def tabulate_digits(diagrams: dict[str, Diagram]) -> str:
-    """The cost of each digit, a column for each scene."""
+    """Make the table of the cost of each digit, with a column for each scene."""
     most = max(len(d.per_digit) for d in diagrams.values())
     rows = ((f"1e-{k + 1:02d}", *(write_cell(d, k) for d in diagrams.values())) for k in range(most))
     return markdown_table(("error", *diagrams), rows)
@@ -372,7 +370,7 @@ def write_cell(diagram: Diagram, k: int) -> str:
 
 
 def write_section(diagram: Diagram) -> str:
-    """A diagram's measurements, its front marked, and its costs."""
+    """Write a diagram's measurements, with its front marked, and its costs."""
     rows = (
         (m.family, m.setting, time_text(m.time), f"{m.error:.0e}", "yes" if m in diagram.front else "")
         for m in diagram.measurements
@@ -394,7 +392,7 @@ def write_section(diagram: Diagram) -> str:
 def write_rules(
     diagrams: Sequence[Diagram], published: Diagram, motion: Sequence[Diagram], chosen: Sequence[Choice]
 ) -> str:
-    """What the measurements say of the choice."""
+    """Write what the measurements say of the choice."""
     points = [m for d in diagrams for m in d.front]
     share = {
         kind: sum(m.family.startswith(kind) for m in points) / len(points) for kind in (LEGENDRE, "elements")
@@ -418,7 +416,7 @@ def write_rules(
 
 
 def compare_sizes(diagram: Diagram) -> str:
-    """What more Legendre functions cost at one speed, as far as they were measured within the budget."""
+    """Word the cost of more Legendre functions at one speed, as far as it was measured."""
     times = {m.size: m.time for m in diagram.measurements if m.family == LEGENDRE and m.size in SIZES}
     if len(times) < 2:
         return "How little was not measured this time: the budget was used up before."
@@ -433,7 +431,7 @@ def compare_sizes(diagram: Diagram) -> str:
 
 
 def draw_picture(many: dict[str, Diagram], transient: Diagram, path: Path) -> None:
-    """Frequencies of all scenes, with one legend, and the published transient."""
+    """Draw frequencies of all scenes, with one legend, and the published transient."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(13.0, 8.6), layout="constrained")

@@ -20,11 +20,11 @@ from benchmarks.cases.scenes import HARVESTER
 from benchmarks.rows import markdown_table, time_text
 
 DOCS = Path(__file__).parents[1] / "docs"
-MODES, BUDGET = 3, 15.0  # of each scene [s]
+MODES, BUDGET = 3, 15.0  # number of modes, and time for each scene [s]
 
 
 def make_scenes() -> dict[str, tuple[bd.Scene, float]]:
-    """Three scenes in each of which another effect leads, and a speed [rad/s] for each."""
+    """Make three scenes in each of which another effect leads, with a speed [rad/s] for each."""
     oblique = replace(HARVESTER, mount=replace(HARVESTER.mount, setting_angle=math.radians(45)))
     stocky = steel_bar(0.6, 0.06, 0.06)
     twisted = steel_bar(0.1524, 0.0254, 0.0017272, twist=math.radians(45))
@@ -37,7 +37,7 @@ def make_scenes() -> dict[str, tuple[bd.Scene, float]]:
 
 
 def steel_bar(length: float, width: float, thickness: float, twist: float = 0.0) -> bd.Beam:
-    """A rectangular bar, twisted linearly to an angle at its tip."""
+    """Make a rectangular bar, twisted linearly to an angle at its tip."""
     return bd.Beam.rectangular(
         length,
         width,
@@ -76,7 +76,7 @@ HEAD = ("scene", "physics", "least error", "reached with", "time", "over that as
 
 
 def list_rows(diagrams: dict[str, Diagram]) -> list[tuple[str, ...]]:
-    """For each scene and choice of physics: least error, what reaches it, its time and what that adds."""
+    """List for each scene and choice of physics the least error, what reaches it, and its time."""
     rows = []
     for name, diagram in diagrams.items():
         reached = {}
@@ -91,7 +91,7 @@ def list_rows(diagrams: dict[str, Diagram]) -> list[tuple[str, ...]]:
 
 
 def write_page(diagrams: dict[str, Diagram], start: float) -> str:
-    """The page of the documentation."""
+    """Write the page of the documentation."""
     skipped = "".join(f"- {name}: {s}\n" for name, d in diagrams.items() for s in d.skipped)
     return PAGE.format(
         day=date.today(),
@@ -105,7 +105,7 @@ def write_page(diagrams: dict[str, Diagram], start: float) -> str:
 
 
 def draw_picture(diagrams: dict[str, Diagram], path: Path) -> None:
-    """One panel a scene."""
+    """Draw one panel for each scene."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(15.0, 4.8), layout="constrained")

@@ -20,7 +20,7 @@ from benchmarks.cases.table_3 import handwritten, modal_system
 from benchmarks.rows import Row, best_time, show
 
 T_END, MODES = 30.0, 5
-STOCK = [  # rtol, and atol in the modal coordinates, which are some 1e-5 kg^1/2 m
+STOCK = [  # method, rtol, and atol in modal coordinates, which are about 1e-5 kg^1/2 m
     ("Radau", 1e-6, 1.5e-12),
     ("LSODA", 5e-7, 5e-13),
     ("DOP853", 1e-4, 1.5e-10),
@@ -28,7 +28,7 @@ STOCK = [  # rtol, and atol in the modal coordinates, which are some 1e-5 kg^1/2
 
 
 def race_stock_integrators() -> Iterator[Row]:
-    """Times and errors in one run; errors against a far finer run of ours, over the peak.
+    """Yield times and errors in one run; errors against a far finer run, over the peak.
 
     Ours is measured everywhere, between steps too; the stock methods only at their own steps.
     """
@@ -52,7 +52,7 @@ def race_stock_integrators() -> Iterator[Row]:
 
 
 def run_stock(method: str, rtol: float, atol: float, exact: bd.Transient) -> tuple[float, float, float]:
-    """Time of a stock method, its largest error [m] and its peak [m]; between steps where they are long."""
+    """Return the time of a stock method, its largest error [m] and its peak [m]."""
     solution, time = solve_stock(method, rtol, atol)
     thin = slice(None, None, max(1, len(solution.t) // 300_000))
     t = np.linspace(0, T_END, 300_001) if solution.sol else solution.t[thin]
@@ -62,7 +62,7 @@ def run_stock(method: str, rtol: float, atol: float, exact: bd.Transient) -> tup
 
 
 def solve_stock(method: str, rtol: float, atol: float) -> tuple[Any, float]:
-    """Solution of Table 3's transient by a stock method, and its time [s]."""
+    """Return the solution of Table 3's transient by a stock method, and its time [s]."""
     rhs, jacobian = handwritten(modal_system(MODES))
     extra = {"dense_output": False} if method == "DOP853" else {"jac": jacobian, "dense_output": True}
     start = perf_counter()
@@ -71,7 +71,7 @@ def solve_stock(method: str, rtol: float, atol: float) -> tuple[Any, float]:
 
 
 def find_summit(size: np.ndarray) -> float:
-    """Largest of equally spaced samples, by the parabolas through each maximum and its neighbours."""
+    """Find the largest of equally spaced samples, by parabolas through each maximum."""
     left, middle, right = size[:-2], size[1:-1], size[2:]
     top = (middle >= left) & (middle > right)
     bend = 2 * middle[top] - left[top] - right[top]
@@ -79,7 +79,7 @@ def find_summit(size: np.ndarray) -> float:
 
 
 def time_handwritten() -> Iterator[Row]:
-    """A call of the hand-written right-hand side, and that it is the equations."""
+    """Yield the time of a call of the hand-written right-hand side, and that its result is right."""
     equations = modal_system(MODES)
     rhs, _ = handwritten(equations)
     y = np.linspace(1e-6, 2e-6, 2 * MODES)
@@ -90,7 +90,7 @@ def time_handwritten() -> Iterator[Row]:
 
 
 def compare_table_3() -> Iterator[Row]:
-    """The peak of Table 3, by the number of modes and by finite elements."""
+    """Yield the peak of Table 3, by the number of modes and by finite elements."""
     for modes in (1, 2, 3, 4, 5, 6):
         run = bd.simulate(ROLLING, T_END, modes, tolerance=1e-6)
         yield f"largest deflection in 20...30 s, {modes} modes [mm]", f"{1e3 * run.peak(20, 30):.6f}", ""
@@ -101,7 +101,7 @@ def compare_table_3() -> Iterator[Row]:
 
 
 def measure_chosen_modes() -> Iterator[Row]:
-    """Time and error with five modes at rest, and with the modal basis that `tolerance=` chooses."""
+    """Yield time and error with five modes at rest, and with the basis that `tolerance=` chooses."""
     exact = bd.simulate(ROLLING, T_END, tolerance=1e-8)
     t = np.linspace(0, T_END, 30001)
     tip = exact.deflection(t)
@@ -120,7 +120,7 @@ def measure_chosen_modes() -> Iterator[Row]:
 
 
 def measure_energy_drift() -> Iterator[Row]:
-    """An oscillator over a million periods in ten steps each."""
+    """Yield the energy drift of an oscillator over a million periods in ten steps each."""
     periods = 1_000_000
     segment = propagate(Oscillator(), 0, 2 * np.pi * periods, 10 * periods, np.ones(1), np.zeros(1), 8)
     drift = np.abs((segment.state[:, 1:] ** 2).sum(axis=1) - 1).max()
@@ -130,9 +130,5 @@ def measure_energy_drift() -> Iterator[Row]:
 PARTS = time_handwritten, compare_table_3, measure_chosen_modes, measure_energy_drift, race_stock_integrators
 
 
-def main() -> None:
-    show("transients", *PARTS)
-
-
 if __name__ == "__main__":
-    main()
+    show("transients", *PARTS)

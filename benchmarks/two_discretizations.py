@@ -6,21 +6,21 @@ tables with kinks and jumps, with springs at the root and along the beam, point 
 
 from __future__ import annotations
 
-import argparse
 import os
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the workers share the processors
+# Set before numpy is imported: workers share the processors.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
 import beamdyn as bd
 from beamdyn.modes.modal.model import Model
-from benchmarks.resumable import Cases, add_options
-from benchmarks.rows import Row, show
+from benchmarks.resumable import Cases, measure_random
+from benchmarks.rows import Row
 
 SEED = 8
 _MODES = 3
@@ -38,7 +38,7 @@ class Case:
 
 
 def random_table_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """A beam of two to eight stations, whose stiffness varies a hundredfold, and a speed."""
+    """Draw a beam of two to eight stations, whose stiffness varies a hundredfold, and a speed."""
     places = np.unique(np.concatenate([[0.0, 1.0], rng.uniform(0.01, 0.99, int(rng.integers(0, 7)))]))
     jumps = places[1:-1][rng.random(len(places) - 2) < 0.3]
     stations = np.sort(np.concatenate([places, jumps])).tolist()
@@ -67,9 +67,8 @@ def random_table_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def measure(number: int, seed: int) -> list[Case]:
-    """Both answers for the scene with this number."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of beams that no material has
+    """Compute both answers for the scene with a number."""
+    with warnings.catch_warnings(action="ignore"):  # warnings of beams that no material has
         scene, speed = random_table_scene(np.random.default_rng([seed, number]))
         try:
             ritz, fem = (bd.natural_modes(scene, speed, _MODES, name) for name in ("ritz", "fem"))
@@ -80,7 +79,7 @@ def measure(number: int, seed: int) -> list[Case]:
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """How many scenes agree, and by how much the others do not."""
+    """Yield how many scenes agree, and by how much the others do not."""
     found = [case for case in cases if not case.refusal]
     ratio = np.array([np.max(np.array(case.distance) / np.array(case.stated)) for case in found])
     yield "random scenes; refused", f"{len(cases)}; {len(cases) - len(found)}", "2000"
@@ -94,21 +93,18 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
     yield from ((f"refused: scene {case.number}", case.refusal, "") for case in cases if case.refusal)
 
 
+def cases(seed: int = SEED) -> Cases[Case]:
+    """Return the random scenes of a seed."""
+    return Cases(partial(measure, seed=seed), Case)
+
+
 def measure_sample() -> Iterator[Row]:
-    """The first 100 scenes."""
-    yield from summarize(Cases(partial(measure, seed=SEED), Case).measure_all(range(100)))
+    """Measure the first 100 scenes."""
+    yield from summarize(cases().measure_all(range(100)))
 
 
 PARTS = (measure_sample,)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    add_options(parser, scenes=2000, seed=SEED)
-    given = parser.parse_args()
-    found = Cases(partial(measure, seed=given.seed), Case).run(given)
-    show("assumed modes beside finite elements", lambda: summarize(found))
-
-
 if __name__ == "__main__":
-    main()
+    measure_random(__doc__, "assumed modes beside finite elements", cases, summarize, 2000, SEED)

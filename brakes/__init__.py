@@ -18,7 +18,7 @@ _MODULES = {each: "solutions" if each.endswith("Solutions") else "finding" for e
 
 
 def __getattr__(name: str) -> Any:
-    """Load a public name when it is used: what commands do not need stays unloaded."""
+    """Import a public name only when it is first used, so that commands start fast."""
     if name not in _MODULES:
         raise AttributeError(f"module 'brakes' has no attribute {name!r}")
     return getattr(import_module(f"brakes.common.{_MODULES[name]}"), name)

@@ -1,4 +1,4 @@
-"""``python -m brakes``."""
+"""Run the command line of brakes as ``python -m brakes``."""
 
 import sys
 

@@ -1,6 +1,6 @@
-"""How the results of this package are shown: tables, columns and pictures by the name of their class.
+"""Tables, columns and pictures of the results of this package, looked up by the name of the result's class.
 
-Those of the mechanics are shown by their fields.
+Results of the mechanics that are not listed here are shown by their fields.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def _answer_tables(answer: Answer) -> Group:
 
 
 def _solution_tables(found: Solutions) -> Group:
-    """The answer in a sentence, if there is one, and the pieces that show that there is no other."""
+    """Tabulate the solutions of a question backwards, with the ranges that show that there are no others."""
     heads = [f"{name} [{unit}]" if unit else name for name, unit in found.named]
     columns = (f"{found.input} from", "to", found.output, "from", "to")
     ends = ([f"{each:.6g}" for each in (p.start, p.end, p.first, p.last)] for p in found.pieces)
@@ -37,7 +37,7 @@ def _solution_tables(found: Solutions) -> Group:
 
 
 def _solution_columns(found: Solutions) -> Columns:
-    """The solutions, from and to, and what is left at each of the difference to the wanted value."""
+    """Make the columns of the solutions: range of inputs, and residual from the wanted value, of each."""
     name = found.input.replace(".", "_")
     ends = np.concatenate([np.stack([found.values] * 2, axis=-1), found.ranges])
     residuals = np.append(found.residuals, np.zeros(len(found.ranges)))

@@ -1,1 +1,1 @@
-"""How accurate an answer is, and how it is refined until it is accurate enough."""
+"""Accuracy of answers: refinement to a tolerance, and margins of stated errors."""

@@ -1,7 +1,7 @@
-"""The one loop by which every size is chosen, and the one table of margins by which errors are stated.
+"""The loop that refines an answer to its tolerance, and the table of margins by which errors are stated.
 
-Two answers of different sizes, such as by a basis and a smaller one, differ by about the error of the worse.
-A stated error is a margin times such a distance.  Each margin stands here, with the reason for its size and
+Two answers of different sizes, such as by a basis and a smaller one, differ by about the larger error.
+A stated error is a margin times such a distance.  Each margin is given here, with the reason for its size and
 the benchmark that measures whether the errors that are stated with it cover the true ones.
 """
 
@@ -10,20 +10,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
 
+import numpy as np
+
 
 class ErrorMargin(NamedTuple):
-    """A factor between a distance, or a tolerance, and the error that is stated or aimed at.
+    """A factor between a distance of two answers, or a tolerance, and the error that is stated.
 
     Parameters
     ----------
     factor : float
-        Error over distance.
+        Ratio of the error to the distance.
     distance : str
-        Names of what is compared.
+        Names of the answers that are compared.
     reason : str
         Why the factor is as large as it is.
     evidence : str
-        Name of the benchmark that measures it.
+        Name of the benchmark that measures whether the factor suffices.
     """
 
     factor: float
@@ -99,6 +101,56 @@ EFFECTS = ErrorMargin(
     "automatic_physics",
 )
 
+THREE_DISCRETIZATIONS = ErrorMargin(
+    4.0,
+    "poles, limits of the setting angle and coefficients of amplitude, as far as they still change",
+    "the rate of convergence, by which they do, varies from one discretization to the next",
+    "stated_answer_errors",
+)
+# Least share of the distance before that counts: the distance may be small by chance.
+_LEAST_SHARE = 0.0015
+
+
+def error_of_finest(
+    margin: ErrorMargin,
+    distance: np.ndarray | float,
+    before: np.ndarray | float,
+    rounding: np.ndarray | float = 0.0,
+) -> np.ndarray:
+    """Estimate the error of the finest of three answers from the distances between them.
+
+    Where every distance is the one before times a ratio r < 1, all those that remain add up to r / (1 - r) of
+    the last.
+
+    Parameters
+    ----------
+    margin : ErrorMargin
+        The margin of the error.
+    distance : ndarray or float
+        Distance of the finest answer from the second.
+    before : ndarray or float
+        Distance of the second from the coarsest; not finite if it is not known.
+    rounding : ndarray or float
+        Distance up to which two answers may differ by rounding, to which no ratio applies.
+
+    Returns
+    -------
+    ndarray
+        Estimated error: the margin times the distances that remain, of which at most one counts; at least
+        the margin times 0.0015 of the distance before.
+
+    Examples
+    --------
+    >>> error_of_finest(THREE_DISCRETIZATIONS, np.array([1e-4, 1e-4]), np.array([1.1e-3, 1e-5])).round(7)
+    array([4.e-05, 4.e-04])
+    """
+    size, larger = np.abs(distance), np.where(np.isfinite(before), np.abs(before), 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        remains = np.where(2 * size < larger, size / (larger - size), 1.0)
+    return margin.factor * np.maximum(
+        np.maximum(remains * size, _LEAST_SHARE * larger), np.minimum(size, rounding)
+    )
+
 
 Answer = TypeVar("Answer")
 
@@ -106,16 +158,16 @@ Answer = TypeVar("Answer")
 def refine(
     first: Answer, finer: Callable[[Answer], Answer | None], meets: Callable[[Answer], bool]
 ) -> Answer:
-    """Refine an answer until it meets its tolerance, or until nothing finer can be had or is worth its time.
+    """Refine an answer until it meets its tolerance, or until nothing finer is available or worth its time.
 
     Parameters
     ----------
     first : Answer
         The answer of the smallest size.
     finer : callable
-        The answer of the next larger size, by the one before; None to keep that one.
+        Function from an answer to the one of the next larger size; None to keep the given one.
     meets : callable
-        Whether an answer is accurate enough.
+        Function that tells whether an answer is accurate enough.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The analyses of a scene, each described once: its command, help and report follow, and its screen."""
+"""Descriptions of the analyses of a scene, from which commands, their help, reports and screens are made."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from beamdyn.analyses.analysis import Analysis
 
-# Modules with the commands that they describe, in the order of the manual: a command imports its own alone.
+# Modules of the commands, in the order of the manual: a command imports only the module that describes it.
 _COMMANDS = (
     ("about_modes", "equilibrium branches modes locus critical limits"),
     ("about_linear_models", "matrices response random"),
@@ -17,8 +17,7 @@ _COMMANDS = (
     ("about_designs", "sensitivities"),
     ("about_motion", "resonances steady"),
     ("about_designs", "study"),
-    ("about_motion", "simulate sweep"),
-    ("about_harvest", "harvest best-resistance"),
+    ("about_motion", "simulate sweep harvest best-resistance"),
     ("about_stability", "floquet stability-chart stability-limits"),
     ("about_data", "compare identify"),
     ("about_wanted_answers", "design"),
@@ -27,6 +26,6 @@ COMMANDS = {name: module for module, names in _COMMANDS for name in names.split(
 
 
 def analyses(names: tuple[str, ...] = tuple(COMMANDS)) -> dict[str, Analysis]:
-    """Analyses by the names of their commands; all of them if no names are given."""
+    """Import analyses by the names of their commands; all of them if no names are given."""
     each = {name: import_module(f"beamdyn.analyses.{COMMANDS[name]}") for name in names}
     return {name: vars(module)[name.replace("-", "_")] for name, module in each.items()}

@@ -1,10 +1,10 @@
-"""The Campbell diagram of one scene, and how the options of all Campbell diagrams are read."""
+"""The Campbell diagram of one scene, and the reading of options of all Campbell diagrams."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,15 +15,13 @@ from beamdyn.analyses.values import in_unit_of, parse_positive, parse_speed
 from beamdyn.common.edge.units import unit_as_written
 from beamdyn.studies.campbell.diagram import Campbell
 
-if TYPE_CHECKING:
-    from beamdyn.scene.scene import Scene
-
 _SPEEDS = 301
+_SPEEDS_OF_BENT = 61  # number of speeds of a beam that bends far, each of which takes an equilibrium
 
 
 @analysis('beamdyn campbell examples/rolling_harvester.toml --top-speed "150 rad/s"', screen="Campbell")
 def campbell(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     top_speed: Text,
     rated: Text | None = None,
@@ -47,7 +45,7 @@ def campbell(
     per_rev
         Per-rev lines: "6" for 1P to 6P, one order, e.g. "2P", or a list, e.g. "3, 6, 9".
     """
-    speeds, unit = parse_top(top_speed, scene)
+    speeds, unit = parse_top(top_speed, scene, scene.physics.large_deflection)
     at, between = parse_operation(rated, operating, top_speed, speeds[-1], scene)
     return bd.campbell(
         in_unit_of(scene, top_speed), speeds, per_rev=parse_orders(per_rev), rated=at, operating=between,
@@ -58,17 +56,18 @@ def campbell(
 # Values of options -----------------------------------------------------------------------------------
 
 
-def parse_top(text: str, scene: Scene | None) -> tuple[Any, str]:
-    """Speeds [rad/s] up to the top one, and the unit of speeds in the answer."""
+def parse_top(text: str, scene: bd.Scene | None, bent: bool) -> tuple[Any, str]:
+    """Speeds [rad/s] up to the top one, fewer for beams that rotation bends far, and their unit."""
     top = parse_positive("--top-speed", text, "rad/s", scene)
     unit, _ = unit_as_written(text, "rad/s")
-    return np.linspace(0.0, top, _SPEEDS), "rpm" if unit == "rpm" else "rad/s"
+    count = _SPEEDS_OF_BENT if bent else _SPEEDS
+    return np.linspace(0.0, top, count), "rpm" if unit == "rpm" else "rad/s"
 
 
 def parse_operation(
-    rated: str | None, operating: str | None, top_text: str, top: float, scene: Scene | None
+    rated: str | None, operating: str | None, top_text: str, top: float, scene: bd.Scene | None
 ) -> tuple[float | None, tuple[float, float] | None]:
-    """The rated speed, and the lowest and highest operating speed [rad/s]."""
+    """Read the rated speed, and the lowest and highest operating speed [rad/s], within the top speed."""
 
     def up_to_top(speed: float, words: str) -> float:
         if speed > top * (1 + 1e-12):
@@ -93,7 +92,7 @@ def parse_operation(
 
 
 def parse_orders(text: str) -> Sequence[int]:
-    """Orders of the per-rev lines: 1 to a number, that of "2P", or those of a list."""
+    """Read the orders of the per-rev lines: 1 to n for a number n, n alone for "nP", or those of a list."""
     if alone := re.fullmatch(r"\s*([1-9]\d*)\s*P\s*", text, re.IGNORECASE):
         return [int(alone[1])]
     parts = [part.strip() for part in text.split(",")]

@@ -1,11 +1,11 @@
-"""Own data beside a scene: comparison, and numbers of the scene found from data."""
+"""Analyses of measured data: comparison with a scene, and numbers of the scene identified from them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 from cyclopts import Parameter
@@ -19,17 +19,12 @@ from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.varied_inputs import find_input, numbers
 from beamdyn.common.edge.wording import of_file
 from beamdyn.common.results.files import write_text
+from beamdyn.files.measured_curve_files import Frequency
 from beamdyn.files.measured_data import half_unit, measurements_of
 from beamdyn.files.scene_inputs import SceneInput
 from beamdyn.files.scenes import with_numbers_in_text
 from beamdyn.scene.measured_curves import MeasuredCurves
 from beamdyn.scene.numbers import is_speed
-
-if TYPE_CHECKING:
-    from beamdyn.scene.scene import Scene
-    from beamdyn.studies.beside_data.curve_comparison import CurveComparison
-    from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
-    from beamdyn.studies.beside_data.identification import Identification
 
 Data = Annotated[
     Path | None,
@@ -45,7 +40,8 @@ Data = Annotated[
 Measured = Annotated[
     str | None,
     Parameter(
-        help='Measured frequencies at one speed in place of a file, e.g. "62.1, 389, 1090 Hz".',
+        help="Measured frequencies at one speed in place of a file, in Hz or rad/s, "
+        'e.g. "62.1, 389, 1090 Hz".',
         allow_leading_hyphen=True,
     ),
 ]
@@ -76,22 +72,42 @@ Uncertainty = Annotated[
 ]
 
 
+def _beside(
+    scene: bd.Scene,
+    *,
+    data: Path | DataText | None,
+    measured: str | None,
+    speeds: np.ndarray | None,
+    uncertainty: str | None,
+    columns: Sequence[str] = (),
+    **_: Any,
+) -> bd.FrequencyComparison | bd.CurveComparison:
+    """Measured values beside those of the scene, as they are: nothing is fitted to them."""
+    from beamdyn.studies.beside_data.compare import beside  # its solvers take a second, and help needs none
+
+    given = _data(data, measured, speeds, uncertainty, columns)
+    if isinstance(given, MeasuredCurves):
+        return bd.compare(scene, given)
+    return beside(in_unit_of(scene, f"0 {given.speed_unit}"), given)
+
+
 @analysis(
     'beamdyn compare examples/tyre_harvester.toml --measured "62.1, 389, 1090 Hz"',
     "beamdyn compare examples/epps.toml examples/epps.csv",
     "beamdyn compare examples/rolling_harvester.toml examples/resonance_radau.csv",
     about_scene="The scene; a history takes its motion.",
     screen="Compare",
+    sooner=_beside,
 )
 def compare(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     data: Data = None,
     measured: Measured = None,
     speeds: AtSpeeds,
     uncertainty: Uncertainty = None,
     columns: ColumnsOfFile = (),
-) -> FrequencyComparison | CurveComparison:
+) -> bd.FrequencyComparison | bd.CurveComparison:
     """Measured values beside those of the scene: what agrees, and what explains the rest."""
     given = _data(data, measured, speeds, uncertainty, columns)
     unit = "" if isinstance(given, MeasuredCurves) else given.speed_unit
@@ -104,9 +120,10 @@ def compare(
     'beamdyn identify examples/tyre_harvester.toml --free length --measured "62 Hz"',
     "beamdyn identify examples/epps.toml examples/epps.csv --free length",
     screen="Identify",
+    sooner=_beside,
 )
 def identify(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     data: Data = None,
     free: Text,
@@ -142,13 +159,13 @@ def identify(
     return Answer(found, _untold(found))
 
 
-def _untold(found: Identification) -> str:
-    """Why the data do not tell numbers; empty if they tell all."""
+def _untold(found: bd.Identification) -> str:
+    """Word which numbers the data do not determine; empty if they determine all."""
     lost = [name for name, value in zip(found.names, found.value, strict=True) if np.isnan(value)]
     return f"the data do not tell {' and '.join(lost)}: see what would help" if lost else ""
 
 
-def _write(found: Identification, scene: Path, to: Path, source: str) -> None:
+def _write(found: bd.Identification, scene: Path, to: Path, source: str) -> None:
     values = dict(zip(found.names, found.value.tolist(), strict=True))
     ranges = ", ".join(found.says(k) for k in range(len(values)))
     head = [
@@ -156,7 +173,8 @@ def _write(found: Identification, scene: Path, to: Path, source: str) -> None:
         f"beginning with {scene.name}.",
         f"95 % intervals: {ranges}; remaining deviation {100 * found.scatter:.2g} %.",
     ]
-    assert found.scene_found is not None  # refused where a number is not told
+    # A scene with a number that the data do not determine has been refused above.
+    assert found.scene_found is not None
     write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))
 
 
@@ -170,11 +188,13 @@ def _data(
     uncertainty: str | None,
     columns: Sequence[str] = (),
 ) -> bd.MeasuredFrequencies | MeasuredCurves:
-    """The data of a file, or of the option."""
+    """Read measured data from a file, or from the text of ``--measured``."""
     if (file is None) == (measured is None):
         raise ValueError('give either a file, such as measured.csv, or --measured "62.1, 389, 1090 Hz"')
     if file is None and columns:
-        raise ValueError(f'--columns = "{"; ".join(columns)}": it is of a file; leave it out')
+        raise ValueError(
+            f'--columns = "{"; ".join(columns)}": it names columns of a file, and none is given; leave it out'
+        )
     named = _columns("; ".join(columns)) if columns else None
     if isinstance(file, DataText):
         data = measurements_of(file, speeds, named)
@@ -186,7 +206,7 @@ def _data(
 
 
 def _columns(text: str) -> dict[str, str]:
-    """Our heads with those of the file, of ``--columns``."""
+    """Read ``--columns``: names that the program knows, with the heads of the file that mean them."""
     parts = [part.partition("=") for part in text.split(";") if part.strip()]
     if not parts or not all(head.strip() and source.strip() for head, _, source in parts):
         raise ValueError(f'--columns = "{text}": give e.g. "tip = TipDxb1; root moment = RootMyb1"')
@@ -195,7 +215,7 @@ def _columns(text: str) -> dict[str, str]:
 
 def _in_words(text: str, speeds: np.ndarray | None) -> bd.MeasuredFrequencies:
     """Frequencies of ``--measured`` at one speed."""
-    values, written = parse_amounts("--measured", text, "Hz", "62.1, 389, 1090 Hz")
+    values, written = parse_amounts("--measured", text, Frequency("Hz"), "62.1, 389, 1090 Hz")
     if speeds is not None and len(speeds) != 1:
         raise ValueError(f"--speeds: give one speed with --measured, or a file; there are {len(speeds)}")
     halves = [half_unit(cell) * value / float(cell) for cell, value in zip(written, values, strict=True)]
@@ -206,7 +226,7 @@ def _in_words(text: str, speeds: np.ndarray | None) -> bd.MeasuredFrequencies:
 def _with_uncertainty(
     data: bd.MeasuredFrequencies | MeasuredCurves, text: str
 ) -> bd.MeasuredFrequencies | MeasuredCurves:
-    """The data with an uncertainty of ``--uncertainty`` where they have none.
+    """Add the uncertainty of ``--uncertainty`` to data that have none.
 
     A share is that of each frequency, and of the largest value of each other column.
     """
@@ -226,12 +246,12 @@ def _with_uncertainty(
         except ValueError:
             raise ValueError(f'--uncertainty = "{text}": give e.g. "0.5 Hz" or "1 %"') from None
     else:
-        spread = np.full(known.shape, parse_quantity("--uncertainty", text, "Hz"))
+        spread = np.full(known.shape, parse_quantity("--uncertainty", text, Frequency("Hz")))
     return replace(data, uncertainty=np.where(np.isfinite(known), known, spread))
 
 
 def parse_free(text: str) -> dict[str, tuple[float, float] | None]:
-    """Unknown numbers of ``--free``, each with its bounds [SI] or None.
+    """Read the unknown numbers of ``--free``, each with its bounds [SI] or None.
 
     Raises
     ------
@@ -243,10 +263,10 @@ def parse_free(text: str) -> dict[str, tuple[float, float] | None]:
     for part in filter(None, (each.strip() for each in text.split(","))):
         words = f'--free = "{part}"'
         key, _, bounds = (each.strip() for each in part.partition("="))
-        if is_speed(key):  # which each analysis refuses in its own words
+        if is_speed(key):  # the speed, which each analysis refuses in its own words
             found[key] = None
             continue
-        of_beam = f"beam.{key}"  # of names without a table, that of the beam before those of its layers
+        of_beam = f"beam.{key}"  # a name without a table means the beam before its layers
         entry = known[of_beam] if of_beam in known else find_input([*known.values()], key, words)
         found[entry.path] = _bounds(bounds, entry.quantity.unit, words) if bounds else None
     if not found:

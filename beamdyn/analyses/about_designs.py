@@ -1,4 +1,4 @@
-"""Sensitivities, and studies: an answer over all combinations of inputs, or its ranges over tolerances."""
+"""Sensitivities, and studies: answers over combinations of inputs, or their ranges over tolerances."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from cyclopts import Parameter
 import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, analysis
 from beamdyn.analyses.options import Count, Discretization, FrequencyTolerance, Order, Text
-from beamdyn.analyses.results.cautions import warnings_of
 from beamdyn.analyses.values import in_unit_of, parse_positive, parse_speed, parse_window
 from beamdyn.common.edge.inputs import Input, Quantity, describe
 from beamdyn.common.edge.progress import at_work
@@ -29,14 +28,13 @@ from beamdyn.studies.spread import nominal_value
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.varied_inputs import Axis
-    from beamdyn.scene.scene import Scene
 
 
 # Sensitivities ---------------------------------------------------------------------------------------
 
 
 Derived = Literal["frequencies", "critical_speed", "crossings"]
-_OPTIONS = {  # options on which each answer depends
+_OPTIONS = {  # options that each kind of answer depends on
     "frequencies": ("speed", "modes", "tolerance"),
     "critical_speed": ("tolerance",),
     "crossings": ("speed", "modes", "order"),
@@ -49,7 +47,7 @@ _OPTIONS = {  # options on which each answer depends
     moving=lambda options: options["what"] == "crossings",
 )
 def sensitivities(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     what: Derived = "frequencies",
     speed: Text | None = None,
@@ -111,7 +109,7 @@ Kind = Literal["frequencies", "critical_speed", "crossings", "amplitude", "peak"
     opens_with=("--vary", "thickness=0.1:0.4:9 mm", "--vary", "speed=0:99:9 rad/s"),
 )
 def study(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     varying: VaryOptions = NOTHING_VARIED,
     spreading: SpreadOptions = NO_SPREAD,
@@ -163,23 +161,22 @@ def study(
     return _spread(scene, known, spreading, how) if spreading.spread else _study(scene, axes, varying, how)
 
 
-def _study(scene: Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[str, Any]) -> Answer:
-    """Answer all designs."""
+def _study(scene: bd.Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[str, Any]) -> Answer:
+    """Answer all designs of the axes, with a progress bar."""
     inputs = {axis.input.path: axis.values for axis in axes}
     with at_work("designs") as progress:
         result = bd.study(scene, inputs, combine=varying.combine, progress=progress, **how)
     units = {axis.input.path: ShownUnit(axis.unit, 1 / unit_given(axis)[1]) for axis in axes if axis.unit}
     result = replace(result, typed_units=units)
-    warnings = warnings_of(result, how["tolerance"])
     none = ""
     if not result.answered.any():
         states = ", ".join(np.unique(result.status[np.isin(result.status, NO_ANSWERS)]).tolist())
         none = f"at none of {result.designs.count} designs is there an answer: {states}"
-    return Answer(result, none, warnings)
+    return Answer(result, none, tolerance=how["tolerance"])
 
 
-def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: dict[str, Any]) -> Answer:
-    """Ranges of the answer over tolerances."""
+def _spread(scene: bd.Scene, inputs: list[Input], spreading: SpreadOptions, how: dict[str, Any]) -> Answer:
+    """Compute the ranges of the answer over tolerances, with a progress bar."""
 
     def nominal(entry: Input) -> tuple[float, str]:
         return nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path) or ""
@@ -195,8 +192,8 @@ def _spread(scene: Scene, inputs: list[Input], spreading: SpreadOptions, how: di
 # Values as they were given ------------------------------------------------------------------------
 
 
-def _speed_of(scene: Scene, what: str, speed: str | None, axes: Sequence[Axis]) -> float | None:
-    """The speed of the option [rad/s], or that of the scene where one is needed; else None."""
+def _speed_of(scene: bd.Scene, what: str, speed: str | None, axes: Sequence[Axis]) -> float | None:
+    """Return the speed of the option [rad/s], or the scene's where the answer needs one; else None."""
     varied = any(axis.input.path == SPEED for axis in axes)
     needed = "speed" in KINDS[what].options and not varied
     if speed is not None:
@@ -204,11 +201,11 @@ def _speed_of(scene: Scene, what: str, speed: str | None, axes: Sequence[Axis]) 
     return scene.final_speed if needed else None
 
 
-def inputs_of(scene: Scene) -> list[Input]:
-    """The numbers of a scene that a study varies, as files describe them, and the speed."""
+def inputs_of(scene: bd.Scene) -> list[Input]:
+    """Describe, as inputs of a file, the numbers of a scene that a study may vary, and the speed."""
 
     class ByWholeName(Input):
-        """An input that the last part of its name alone does not mean: a factor, or one in a list."""
+        """An input that needs its whole path as a name: a factor, or an entry of a list."""
 
         @property
         def name(self) -> str:
@@ -223,6 +220,6 @@ def inputs_of(scene: Scene) -> list[Input]:
 
 
 def unit_given(axis: Axis) -> tuple[str, float]:
-    """The unit in which the values of an input were given, and that unit in SI."""
+    """Return the unit in which the values of an input were given, and its size in SI."""
     place = abs(axis.given).argmax()
     return axis.unit, float(axis.values[place] / axis.given[place])

@@ -1,18 +1,18 @@
-"""Linear models at one speed: matrices, response over frequency, random response, and what excites them."""
+"""Linear models at one speed: matrices, response over frequency, random response, and their excitations."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from cyclopts import Parameter
 
 import beamdyn as bd
 from beamdyn.analyses.analysis import AsText, analysis
-from beamdyn.analyses.options import AtFinalSpeed, Count, CountOrAuto, Discretization, Named, Text
+from beamdyn.analyses.options import AtFinalSpeed, Count, CountOrAuto, Discretization, Named, RoadClass, Text
 from beamdyn.analyses.values import in_unit_of, parse_positive, parse_quantity, parse_speed
 from beamdyn.common.edge.csv_columns import read_csv
 from beamdyn.common.edge.data_text import read_data
@@ -22,19 +22,10 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.linear import inputs_outputs
 from beamdyn.scene.motion import RollingWheel
 
-if TYPE_CHECKING:
-    from beamdyn.linear import inputs_outputs
-    from beamdyn.linear.frequency_response import FrequencyResponse
-    from beamdyn.linear.matrices import Matrices
-    from beamdyn.linear.random_response import RandomResponse
-    from beamdyn.scene.scene import Scene
-
-
 # Excitations -----------------------------------------------------------------------------------------
 
 
 Axes = Literal["log", "linear"]
-RoadClass = Literal["A", "B", "C", "D", "E", "F", "G", "H"]
 _AT = re.compile(r"(force|deflection|acceleration)@(.+?)( across)?")
 _SQUARED = re.compile(r"\(([^()]*)\)\s*(?:\^|\*\*)?2")
 _POWER = re.compile(r"([A-Za-z]+)(?:\^|\*\*)?(\d?)")
@@ -80,12 +71,12 @@ class RandomInput:
 
     @property
     def drive(self) -> inputs_outputs.Excitation | None:
-        """Where the input acts; None for what its density suggests."""
+        """Return where the input acts; None where the kind of density decides."""
         return None if self.input is None else parse_input(self.input)
 
     @property
     def density(self) -> bd.PowerSpectrum | bd.RoadRoughness:
-        """The density, from a file or as a road.
+        """Read the density of the input, from a file or as that of a road.
 
         Raises
         ------
@@ -97,7 +88,7 @@ class RandomInput:
         if self.psd is not None:
             if self.highest is not None:
                 raise ValueError(
-                    f'--highest = "{self.highest}": it is that of a road; leave it out with --psd'
+                    f'--highest = "{self.highest}": it ends a road, but --psd has its own range; leave it out'
                 )
             drive = self.drive
             unit = "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz"
@@ -109,12 +100,12 @@ class RandomInput:
             self.road or parse_positive("--roughness", self.roughness or "", "m3"), **limit
         )
 
-    def shown(self, scene: Scene) -> Scene:
-        """The scene, with results in the unit of the speed."""
+    def shown(self, scene: bd.Scene) -> bd.Scene:
+        """Return the scene, with results shown in the unit of the given speed."""
         return in_unit_of(scene, self.speed)
 
-    def speed_of(self, scene: Scene) -> float:
-        """The speed that is given [rad/s], that of a wheel which rolls at the velocity, or the scene's."""
+    def speed_of(self, scene: bd.Scene) -> float:
+        """Return the speed [rad/s]: as given, of a wheel rolling at the given velocity, or the scene's."""
         if self.velocity is None:
             return scene.final_speed if self.speed is None else parse_speed("--speed", self.speed, scene)
         if self.speed is not None:
@@ -130,7 +121,7 @@ NO_RANDOM_INPUT = RandomInput()
 
 
 def parse_input(text: str) -> inputs_outputs.Excitation:
-    """The excitation of ``--input``: a word, or a force at a position with its unit."""
+    """Read the excitation of ``--input``: a word, or a force at a position with its unit."""
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] != "force":
         return inputs_outputs.as_excitation("--input", text.strip())
@@ -138,7 +129,7 @@ def parse_input(text: str) -> inputs_outputs.Excitation:
 
 
 def parse_output(text: str) -> inputs_outputs.Observation:
-    """The observation of ``--output``: a word, or a deflection or an acceleration at a position."""
+    """Read the observation of ``--output``: a word, or a deflection or acceleration at a position."""
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] == "force":
         return inputs_outputs.as_observation("--output", text.strip())
@@ -147,7 +138,7 @@ def parse_output(text: str) -> inputs_outputs.Observation:
 
 
 def _position(option: str, text: str) -> float | None:
-    """A position on the beam [m]; None for the word "tip"."""
+    """Read a position on the beam [m]; None stands for the word "tip"."""
     return None if text.strip() == "tip" else parse_positive(option, text.strip(), "m")
 
 
@@ -166,7 +157,7 @@ def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> bd.PowerSpectrum
     text = read_data(path)
 
     class Density(Quantity):
-        """A density, also per square of an acceleration in brackets or in standard gravities."""
+        """The quantity of a spectral density, whose unit may also be (m/s2)2/Hz or g2/Hz."""
 
         def convert(self, given: object) -> float:
             return super().convert(spell_density(given) if isinstance(given, str) else given)
@@ -186,7 +177,7 @@ def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> bd.PowerSpectrum
 
 
 def spell_density(text: str) -> str:
-    """A density with its unit in the words of `quantity`: m2/s4/Hz for (m/s2)2/Hz, gravity2/Hz for g2/Hz."""
+    """Rewrite a density's unit in the words of `quantity`: m2/s4/Hz for (m/s2)2/Hz, gravity2/Hz for g2/Hz."""
 
     def squared(unit: re.Match[str]) -> str:
         return _POWER.sub(lambda factor: f"{factor[1]}{2 * int(factor[2] or 1)}", unit[1])
@@ -213,13 +204,13 @@ Output = Annotated[
 
 @analysis("beamdyn matrices examples/rolling_harvester.toml --modes 2 --json m.json")
 def matrices(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     speed: AtFinalSpeed,
     modes: Count | None = None,
     discretization: Named = "ritz",
     outputs: Outputs = NO_FILES,
-) -> Matrices:
+) -> bd.Matrices:
     """Matrices of the equations of motion at a steady speed, with what each coordinate means.
 
     Parameters
@@ -238,7 +229,7 @@ def matrices(
     'beamdyn response examples/rough_road.toml --frequencies "1:999:400 Hz"', screen="Frequency response"
 )
 def response(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     frequencies: Frequencies,
     speed: AtFinalSpeed,
@@ -246,7 +237,7 @@ def response(
     output: Output,
     modes: CountOrAuto = "auto",
     discretization: Discretization = "ritz",
-) -> FrequencyResponse:
+) -> bd.FrequencyResponse:
     """Response over the frequency of an excitation, at a steady speed.
 
     Parameters
@@ -272,14 +263,14 @@ def response(
     about_scene="The scene, with a rolling wheel for a road.",
 )
 def random(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     random_input: RandomInput = NO_RANDOM_INPUT,
     output: Output,
     damping_ratio: float | None = None,
     modes: CountOrAuto = "auto",
     discretization: Discretization = "ritz",
-) -> RandomResponse:
+) -> bd.RandomResponse:
     """Response to a random input at a steady speed: density over frequency, root mean square.
 
     Parameters
@@ -302,7 +293,7 @@ def random(
 
 
 def parse_frequencies(text: str) -> np.ndarray:
-    """Frequencies [Hz] of ``--frequencies``, at equal ratios or a list.
+    """Read the frequencies [Hz] of ``--frequencies``: a range at equal ratios, or a list.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Loads along the span: in equilibrium, in a transient and its cycles, in steady response, by chance."""
+"""Loads along the span: in equilibrium, in transients with their cycles, in steady and random response."""
 
 from __future__ import annotations
 
@@ -36,10 +36,7 @@ from beamdyn.common.results.files import write_text
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from beamdyn.loads.cycles import LoadCycles
-    from beamdyn.loads.span_loads import SpanLoads
     from beamdyn.loads.transient_loads import EquivalentRange
-    from beamdyn.scene.scene import Scene
 
 
 # Cycles ----------------------------------------------------------------------------------------------
@@ -73,13 +70,13 @@ class CycleOptions:
     cycles_file: Annotated[Path | None, WRITTEN] = None
 
     def check(self, in_transient: bool) -> None:
-        """Refuse options that nothing would use."""
+        """Refuse options that would have no effect."""
         if self.cycles is not None and not in_transient:
             raise ValueError("--cycles belongs to a transient: give --t-end, too")
         text = "" if self.woehler is None else f'"{self.woehler}"'
         for name, value in (("woehler", text), ("cycles-file", self.cycles_file)):
             if value and self.cycles is None:
-                raise ValueError(f"--{name} = {value}: it is of counted cycles; give --cycles, too")
+                raise ValueError(f"--{name} = {value}: it needs counted cycles; give --cycles, too")
         if self.equivalent_cycles is not None and not text:
             number = f"{self.equivalent_cycles:g}"
             raise ValueError(f"--equivalent-cycles = {number}: give --woehler, too, or leave it out")
@@ -89,7 +86,7 @@ class CycleOptions:
 
     @property
     def exponents(self) -> list[float]:
-        """The exponents of the Woehler curve; none if they are not given."""
+        """Read the exponents of the Woehler curve; empty if they are not given."""
         if self.woehler is None:
             return []
         parts = [part.strip() for part in self.woehler.split(",")]
@@ -100,16 +97,16 @@ class CycleOptions:
 
     @property
     def number(self) -> float:
-        """Number of equal cycles that do the same damage."""
+        """Number of equal cycles that do the same damage as those counted."""
         return 1.0 if self.equivalent_cycles is None else self.equivalent_cycles
 
-    def tables(self, cycles: LoadCycles, equivalents: Sequence[EquivalentRange]) -> list[RenderableType]:
-        """Counted cycles, and the equal cycles that do the same damage."""
+    def tables(self, cycles: bd.LoadCycles, equivalents: Sequence[EquivalentRange]) -> list[RenderableType]:
+        """Make the tables of the counted cycles, and of the equal cycles that do the same damage."""
         made: list[RenderableType] = [of_loads.cycles_table(cycles)]
         return [*made, of_loads.equivalents_table(equivalents)] if equivalents else made
 
-    def write(self, cycles: LoadCycles) -> None:
-        """Write the file that was asked for, if any."""
+    def write(self, cycles: bd.LoadCycles) -> None:
+        """Write the counted cycles to the file that was asked for, if any."""
         if self.cycles_file is None:
             return
         if self.cycles_file.suffix.lower() == ".json":
@@ -141,7 +138,7 @@ Duration = Annotated[float, positive("s", default="1 h")]
     moving=lambda options: options["t_end"] is not None,
 )
 def loads(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     speed: Speed,
     t_end: End,
@@ -176,7 +173,8 @@ def loads(
     window
         In a transient: the largest loads within this time window: start:end, e.g. "20:30 s".
     quantity
-        What --plot and --report draw along the span; default: moment.
+        What --plot and --report draw along the span; default: moment, or strain where nothing bends
+        the beam.
     modes
         Of a transient and steady response, as for simulate and steady; default: auto.
     tolerance
@@ -201,7 +199,7 @@ def loads(
         at_speed = scene.final_speed if speed is None else speed
         result = bd.static_loads(scene, at_speed, angle=angle or 0.0, discretization=discretization, **where)
     ends = {} if span is None else dict(zip(("start", "end"), span, strict=True))
-    draw = partial(result.plot, quantity=quantity or "moment", **ends)
+    draw = partial(result.plot, quantity=quantity or result.drawn_quantity, **ends)
     known = np.isfinite(result.moment).any()
     none = "" if known else f"at none of {len(result.cases)} speeds is there a steady response"
     return Answer(result, none, None, tables, draw)
@@ -212,7 +210,7 @@ def loads(
     about_scene="The scene, damped; with a rolling wheel for a road.",
 )
 def random_loads(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     random_input: RandomInput = NO_RANDOM_INPUT,
     duration: Duration,
@@ -236,22 +234,13 @@ def random_loads(
     """
     asked = random_input
     shown, speed = asked.shown(scene), asked.speed_of(scene)
-    result = bd.random_loads(
-        shown,
-        speed,
-        asked.density,
-        asked.drive,
-        duration,
-        at,
-        points,
-        modes=modes,
-        discretization=discretization,
-    )
+    given, basis = (asked.density, asked.drive), {"modes": modes, "discretization": discretization}
+    result = bd.random_loads(shown, speed, *given, duration, at, points, **basis)
     return Answer(result, draw=partial(result.plot, quantity=quantity or "strain"))
 
 
 def _check_together(kinds: list[str], angle: float | None, window: str | None) -> None:
-    """Refuse options that belong to different analyses; `kinds` are those given that choose one."""
+    """Refuse options that belong to different analyses; `kinds` are the given options that choose one."""
     if len(kinds) > 1:
         raise ValueError(
             f"{' and '.join(kinds)}: give one of them: --speed for the equilibrium, --t-end for a transient, "
@@ -264,13 +253,13 @@ def _check_together(kinds: list[str], angle: float | None, window: str | None) -
 
 
 def _in_transient(
-    scene: Scene,
+    scene: bd.Scene,
     end: float,
     span: tuple[float, float] | None,
     counting: CycleOptions,
     where: dict[str, Any],
     basis: dict[str, Any],
-) -> tuple[SpanLoads, list[RenderableType]]:
+) -> tuple[bd.SpanLoads, list[RenderableType]]:
     if counting.cycles is not None and find_spec("rainflow") is None:
         raise ValueError("--cycles needs rainflow: pip install 'beamdyn[fatigue]'")
     result = bd.transient_loads(bd.simulate(scene, end, **basis), **where)

@@ -1,11 +1,11 @@
-"""Equilibria, natural frequencies at one speed and over speed, and where the beam buckles."""
+"""Equilibria, natural frequencies at one speed and over speed, and buckling."""
 
 from __future__ import annotations
 
 from functools import partial
 from math import isinf, isnan
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import numpy as np
 from cyclopts import Parameter
@@ -16,16 +16,8 @@ from beamdyn.analyses.analysis import WRITTEN, Answer, Physics, analysis
 from beamdyn.analyses.results.cautions import critical_label, labels_of, warnings_of
 from beamdyn.common.edge.outputs import NO_ANSWER_FILES, NO_FILES, AnswerFiles, Outputs
 from beamdyn.common.plots.plots import mark_critical
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.statements import GROWING, OUTSIDE, of_kind
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from beamdyn.modes.equilibria import Equilibrium, EquilibriumBranches
-    from beamdyn.modes.locus import Locus
-    from beamdyn.modes.modes import Modes
-    from beamdyn.scene.scene import Scene
-
 
 # Equilibria ------------------------------------------------------------------------------------------
 
@@ -37,12 +29,12 @@ _BENT = "The scene; large deflection is modelled in any case."
     'beamdyn equilibrium examples/rolling_harvester.toml --speed "50 rad/s"', about_scene=_BENT, physics=None
 )
 def equilibrium(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     speed: options.AtSpeed,
     branch: options.Text | None = None,
     discretization: options.Discretization = "ritz",
-) -> Equilibrium:
+) -> bd.Equilibrium:
     """Where the rotation bends the beam to, by any angle, and whether it stays there.
 
     Parameters
@@ -60,8 +52,8 @@ def equilibrium(
     physics=None,
 )
 def branches(
-    scene: Scene, *, top_speed: options.PositiveSpeed, discretization: options.Discretization = "ritz"
-) -> EquilibriumBranches:
+    scene: bd.Scene, *, top_speed: options.PositiveSpeed, discretization: options.Discretization = "ritz"
+) -> bd.EquilibriumBranches:
     """Branches of equilibria over speed: where the beam buckles, and where an equilibrium turns back.
 
     Parameters
@@ -75,14 +67,14 @@ def branches(
 # Frequencies -----------------------------------------------------------------------------------------
 
 
-_GROWING = "divergence", "flutter"  # states of modes
+_GROWING = "divergence", "flutter"  # statuses of unstable modes
 _PLAIN = "auto: the plain beam; the limits belong to linear theory, and nothing is added."
 PlainPhysics = Annotated[Physics, Parameter(help=_PLAIN)]
 
 
 @analysis('beamdyn modes examples/tyre_harvester.toml --speed "50 rad/s"')
 def modes(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     speed: options.AtSpeed,
     modes: options.ModeCount = 3,
@@ -106,7 +98,7 @@ def modes(
 
 @analysis('beamdyn locus examples/tyre_harvester.toml --speeds "0:150:31 rad/s"')
 def locus(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     speeds: options.Speeds,
     modes: options.ModeCount = 3,
@@ -129,11 +121,14 @@ def locus(
 
 @analysis("beamdyn critical examples/tyre_harvester.toml")
 def critical(
-    scene: Scene, *, discretization: options.Discretization = "ritz", outputs: AnswerFiles = NO_ANSWER_FILES
+    scene: bd.Scene,
+    *,
+    discretization: options.Discretization = "ritz",
+    outputs: AnswerFiles = NO_ANSWER_FILES,
 ) -> Answer:
     """Critical speed, at which the rotating beam buckles; or why there is none, or up to which speed."""
     result = bd.critical_point(scene, discretization)
-    # With an infinite error there is one, perhaps, but it was not found or not resolved.
+    # With an infinite error there may be a critical speed, but it was not found, or not resolved.
     refusal = "; ".join(result.warnings) if isinf(result.error) else ""
     return Answer(result, refusal, [] if refusal else None)
 
@@ -144,18 +139,18 @@ def critical(
     physics=PlainPhysics,
 )
 def limits(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     top_speed: options.PositiveSpeed,
     discretization: options.Discretization = "ritz",
     outputs: AnswerFiles = NO_ANSWER_FILES,
 ) -> Answer:
-    """Setting angles that separate a first frequency that falls with speed from one that rises.
+    """Setting angles past which the first frequency stops falling with speed, and past which it only rises.
 
     Parameters
     ----------
     top_speed
-        Speed up to which the frequency must rise for the second limit, with its unit, e.g. "400
+        Speed up to which the frequency must rise for the second of these angles, with its unit, e.g. "400
         rad/s".
     """
     result = bd.setting_angle_limits(scene, top_speed, discretization).in_units(speed=scene.units.speed)
@@ -164,17 +159,22 @@ def limits(
     return Answer(result)
 
 
-def _draw_locus(result: Locus, ax: Axes) -> None:
-    critical = bd.critical_point(result.scene)
-    mark_critical(result.plot(ax), critical.speed, critical_label(critical), result.display_units)
+def _draw_locus(result: bd.Locus, ax: Axes) -> None:
+    result.plot(ax)
+    if not result.scene.may_flutter_by_load:
+        critical = bd.critical_point(result.scene)
+        mark_critical(ax, critical.speed, critical_label(critical), result.display_units)
 
 
-def _unstable(result: Modes) -> str:
-    """The sentence that names the unstable modes and the critical speed; empty if all are stable."""
+def _unstable(result: bd.Modes) -> str:
+    """Word which modes are unstable, with the critical speed; empty if all are stable."""
     unstable = [i for i, status in enumerate(result.status) if status in _GROWING]
     if not unstable:
         return ""
     which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)
+    # A load that follows the beam may cause flutter, so that no critical speed is known.
+    if result.scene.may_flutter_by_load:
+        return f"unstable at {result.speed:g} rad/s: {which}"
     critical = bd.critical_point(result.scene)
     said = f"; the critical speed is {critical.speed:.6g} rad/s" if critical.speed <= result.speed else ""
     straight = ", were the beam straight" if of_kind(critical.warnings, OUTSIDE) else ""

@@ -1,4 +1,4 @@
-"""Steady state, and motion in time: one transient, and a sweep of them over speed."""
+"""Steady state, harvested energy, and motion in time: one transient, and a sweep of them over speed."""
 
 from __future__ import annotations
 
@@ -20,13 +20,11 @@ from beamdyn.common.edge.exit_codes import Interrupted
 from beamdyn.common.edge.outputs import NO_FILES, Outputs
 from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.varying import Folder
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.plots.export import animate
 
 if TYPE_CHECKING:
-    from beamdyn.scene.scene import Scene
-    from beamdyn.steady.crossings import Crossings
-    from beamdyn.transient.sweep import Sweep
-    from beamdyn.transient.transient import Transient
+    from beamdyn.common.results.result import Result
 
 
 # Steady state ----------------------------------------------------------------------------------------
@@ -42,13 +40,13 @@ TopOfSearch = Annotated[
     about_scene="The scene; its motion and gravity give the frequencies that are excited.",
 )
 def resonances(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     top_speed: TopOfSearch,
     modes: options.ModeCount = 3,
     order: options.Order = 1,
     discretization: options.Discretization = "ritz",
-) -> Crossings:
+) -> bd.Crossings:
     """Speeds of resonance, at which a frequency that the scene excites meets a natural frequency.
 
     Parameters
@@ -63,7 +61,7 @@ def resonances(
 
 @analysis('beamdyn steady examples/rolling_harvester.toml --speeds "1:150:30 rad/s"')
 def steady(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     speeds: options.Speeds,
     modes: options.SmallestBasis = "auto",
@@ -85,10 +83,100 @@ def steady(
     return Answer(result, "" if result.stable.any() else none)
 
 
+_HARVESTER = "The scene, with a table [harvester]; gravity and its motion excite the beam."
+
+
+_FEW_SPEEDS, _ROUGH = 11, 1e-2  # number of speeds, and tolerance, of a preliminary answer
+
+
+def _harvest_sooner(scene: bd.Scene, **options: Any) -> Result | Answer:
+    """Compute what is harvested at few of the speeds, as a preliminary answer."""
+    speeds = options["speeds"]
+    few = speeds[evenly_spread(len(speeds), _FEW_SPEEDS)]
+    return harvest.function(scene, **options | {"speeds": few, "tolerance": _ROUGH})
+
+
+@analysis(
+    'beamdyn harvest examples/bimorph.toml --speeds "10:130:61 rad/s"',
+    'beamdyn harvest examples/bimorph.toml --speeds "30:120:19 km/h" --road A',
+    screen="Harvest",
+    sooner=_harvest_sooner,
+    opens_with=("--speeds", "30:130:41 km/h", "--road", "A", "--highest", "10 1/m", "--modes", "3"),
+    about_scene=_HARVESTER,
+)
+def harvest(
+    scene: bd.Scene,
+    *,
+    speeds: options.Speeds,
+    road: options.RoadClass | None = None,
+    highest: options.Text | None = None,
+    modes: options.SmallestBasis = "auto",
+    tolerance: float = 1e-5,
+    discretization: options.Discretization = "ritz",
+) -> Answer:
+    """How much power piezoelectric layers harvest over speed, with which voltage, strain and efficiency.
+
+    Parameters
+    ----------
+    speeds
+        Speeds with their unit: start:stop:count, e.g. "10:130:61 rad/s", or a list, e.g. "50, 55 rad/s";
+        of a wheel that rolls also velocities, e.g. "30:120:46 km/h".
+    road
+        Class of a random road by ISO 8608 that the wheel follows besides, from A, very good, to H.
+    highest
+        Spatial frequency at which that road ends; default: 2.83 1/m, that of the standard.
+    tolerance
+        Largest error by the harmonics left out, relative to the sum of all lines.
+    """
+    result = bd.harvest(scene, speeds, modes, tolerance, discretization, _roughness(road, highest))
+    none = f"at none of {len(speeds)} speeds is there a steady response: {result.status[0]}"
+    return Answer(result, "" if (result.status == "stable").any() else none)
+
+
+def _roughness(road: str | None, highest: str | None) -> bd.RoadRoughness | None:
+    """Read the class of a random road, and the spatial frequency at which it ends; None without a road."""
+    if highest is not None and road is None:
+        raise ValueError(f'--highest = "{highest}": it ends a random road, and there is none; give --road')
+    limit = {} if highest is None else {"highest": parse_positive("--highest", highest, "1/m")}
+    return None if road is None else bd.RoadRoughness(road, **limit)
+
+
+@analysis(
+    'beamdyn best-resistance examples/bimorph.toml --speed "55 rad/s"',
+    'beamdyn best-resistance examples/bimorph.toml --speed "90 km/h" --road A',
+    screen="Best resistance",
+    about_scene=_HARVESTER,
+)
+def best_resistance(
+    scene: bd.Scene,
+    *,
+    speed: options.AtFinalSpeed,
+    road: options.RoadClass | None = None,
+    highest: options.Text | None = None,
+    modes: options.SmallestBasis = 3,
+    tolerance: float = 1e-5,
+    discretization: options.Discretization = "ritz",
+) -> bd.BestResistance:
+    """The load resistance with which piezoelectric layers harvest most at a speed, and what they harvest.
+
+    Parameters
+    ----------
+    road
+        Class of a random road by ISO 8608 that the wheel follows besides, from A, very good, to H.
+    highest
+        Spatial frequency at which that road ends; default: 2.83 1/m, that of the standard.
+    tolerance
+        Largest error by the harmonics left out, relative to the sum of all lines.
+    """
+    rough = _roughness(road, highest)
+    return bd.best_resistance(scene, speed, modes, tolerance, discretization, rough)
+
+
 # Motion in time --------------------------------------------------------------------------------------
 
 
-_PERIODS, _FRAMES = 3, 60  # periods and frames of a close-up
+# Number of periods of the first mode in a close-up, and number of frames of its animation.
+_PERIODS, _FRAMES = 3, 60
 Method = Literal["auto", "RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA"]
 Window = Annotated[tuple[float, float], AsText(lambda _, text, __: parse_window(text))]
 
@@ -99,7 +187,7 @@ Window = Annotated[tuple[float, float], AsText(lambda _, text, __: parse_window(
     moving=lambda _: True,
 )
 def simulate(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     t_end: options.EndOfRun,
     modes: options.SmallestBasis = "auto",
@@ -138,7 +226,7 @@ def simulate(
     moving=lambda _: True,
 )
 def sweep(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     speeds: options.Speeds,
     window: Window,
@@ -147,7 +235,7 @@ def sweep(
     workers: Annotated[int, at_most(128)] = 1,
     scheduler: str | None = None,
     store: Folder = None,
-) -> Sweep:
+) -> bd.Sweep:
     """Largest deflection within a time window over speed: one transient per speed.
 
     Parameters
@@ -174,7 +262,7 @@ def sweep(
 
 
 def _write_close_up(
-    run: Transient, window: tuple[float, float], series: Path | None, animation: Path | None, force: bool
+    run: bd.Transient, window: tuple[float, float], series: Path | None, animation: Path | None, force: bool
 ) -> None:
     """Write the motion over a few periods around the largest deflection in a window."""
     if series is None and animation is None:
@@ -195,7 +283,7 @@ def _write_close_up(
 
 @contextmanager
 def _executor(scheduler: str | None) -> Iterator[Executor | None]:
-    """The executor of a Dask cluster, if there is a scheduler."""
+    """Yield the executor of the Dask cluster of a scheduler, or None if no scheduler is given."""
     if scheduler is None:
         yield None
         return
@@ -213,7 +301,7 @@ def _executor(scheduler: str | None) -> Iterator[Executor | None]:
 
 @contextmanager
 def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
-    """A bar with the remaining time; where the sweep is interrupted, say what is done."""
+    """Yield a function that shows progress; if the sweep is interrupted, word how much is done."""
     finished = 0
 
     def progress(done: int, total: int) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import beamdyn as bd
 from beamdyn.analyses.analysis import analysis
@@ -11,24 +11,18 @@ from beamdyn.analyses.values import parse_speed
 from beamdyn.common.edge.outputs import NO_ANSWER_FILES, AnswerFiles
 from beamdyn.common.edge.progress import at_work
 
-if TYPE_CHECKING:
-    from beamdyn.equations.terms import Terms
-    from beamdyn.scene.rotor import RotorDrawing
-    from beamdyn.scene.scene import Scene
-    from beamdyn.studies.tradeoffs.tradeoff import Tradeoff
-
 MeasuredEnd = Annotated[float | None, positive("s", absent=none_given)]
 Budget = Annotated[float, positive("s", default="60 s")]
 
 
 @analysis("beamdyn draw examples/tyre_harvester.toml --plot rotor.svg", physics=None)
-def draw(scene: Scene) -> RotorDrawing:
+def draw(scene: bd.Scene) -> bd.RotorDrawing:
     """Draw the rotor: axis of rotation, radius, and the beam at its angles, undeformed."""
     return bd.draw(scene)
 
 
 @analysis("beamdyn terms examples/rolling_harvester.toml")
-def terms(scene: Scene, *, outputs: AnswerFiles = NO_ANSWER_FILES) -> Terms:
+def terms(scene: bd.Scene, *, outputs: AnswerFiles = NO_ANSWER_FILES) -> bd.Terms:
     """Terms of the equations of motion: which of them the scene has, and why."""
     return bd.terms(scene)
 
@@ -39,8 +33,8 @@ def terms(scene: Scene, *, outputs: AnswerFiles = NO_ANSWER_FILES) -> Terms:
     physics=None,
 )
 def tradeoff(
-    scene: Scene, *, speed: Text | None = None, modes: Count = 3, t_end: MeasuredEnd, budget: Budget
-) -> Tradeoff:
+    scene: bd.Scene, *, speed: Text | None = None, modes: Count = 3, t_end: MeasuredEnd, budget: Budget
+) -> bd.Tradeoff:
     """Error against computing time of bases, elements, physics, integrators, numbers of modes and harmonics.
 
     Parameters

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from cyclopts import Parameter
@@ -16,16 +16,15 @@ from beamdyn.analyses.values import in_unit_of
 from beamdyn.common.edge.varied_inputs import parse_axis
 from beamdyn.common.edge.varying import OPTION, Folder
 from beamdyn.common.edge.varying import Workers as _Workers
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.scene.numbers import SPEED, number_at
-
-if TYPE_CHECKING:
-    from beamdyn.scene.scene import Scene
-    from beamdyn.studies.floquet.point import FloquetMultipliers
-    from beamdyn.studies.floquet.stability_limits import StabilityLimits
 
 _FREQUENCY = "motion.frequency"
 _AMPLITUDES = "motion.fluctuation", "motion.along_n1", "motion.along_n2", "motion.along_n3"
-_VALUES = 41  # of an amplitude, where none are given
+# Options with which the screens open: frequencies and amplitudes about a tongue of instability.
+_TONGUE = "--vary", "motion.frequency=118:130:61 Hz", "--vary", "motion.fluctuation=0:0.2:41"
+_FEW = 9  # values of each number in a preliminary chart
+_VALUES = 41  # number of values of an amplitude, where none are given
 
 Varied = Annotated[
     tuple[str, ...],
@@ -49,18 +48,31 @@ Store = Annotated[
     about_scene="The scene, in a motion that repeats itself.",
 )
 def floquet(
-    scene: Scene, *, modes: ModeCount = 3, discretization: Discretization = "ritz"
-) -> FloquetMultipliers:
+    scene: bd.Scene, *, modes: ModeCount = 3, discretization: Discretization = "ritz"
+) -> bd.FloquetMultipliers:
     """Whether free motion grows about a motion that repeats itself: Floquet multipliers over its period."""
     return bd.floquet_multipliers(scene, modes, discretization)
 
 
+def _chart_sooner(
+    scene: bd.Scene, *, vary: tuple[str, ...], discretization: Discretization, **_: Any
+) -> Answer:
+    """Compute a chart of the first mode at few values, as a preliminary answer."""
+    scene, inputs, units = _varied(scene, vary)
+    few = {path: values[evenly_spread(len(values), _FEW)] for path, values in inputs.items()}
+    result = bd.stability_chart(scene, few, 1, discretization)
+    return Answer(result, tables=[chart_table(result, units)])
+
+
 @analysis(
     "beamdyn stability-chart examples/pulsating_wheel.toml",
+    screen="Stability chart",
+    sooner=_chart_sooner,
+    opens_with=_TONGUE,
     about_scene="The scene, in a motion that repeats itself.",
 )
 def stability_chart(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     vary: Varied = (),
     modes: ModeCount = 3,
@@ -76,26 +88,29 @@ def stability_chart(
 
 @analysis(
     "beamdyn stability-limits examples/pulsating_wheel.toml --modes 1",
+    screen="Stability limits",
+    sooner=_chart_sooner,
+    opens_with=(*_TONGUE, "--modes", "1"),
     about_scene="The scene, in a motion that repeats itself.",
 )
 def stability_limits(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     vary: Varied = (),
     modes: ModeCount = 3,
     discretization: Discretization = "ritz",
     workers: Workers = 1,
     store: Store = None,
-) -> StabilityLimits:
+) -> bd.StabilityLimits:
     """The limits between free motion that grows and that does not, over two numbers, followed as curves."""
     scene, inputs, _ = _varied(scene, vary)
     return bd.stability_limits(scene, inputs, modes, discretization, workers, store)
 
 
 def _varied(
-    scene: Scene, vary: tuple[str, ...]
-) -> tuple[Scene, dict[str, np.ndarray], dict[str, tuple[str, float]]]:
-    """The scene, shown in the unit of a speed that is given, two numbers with values, and their units."""
+    scene: bd.Scene, vary: tuple[str, ...]
+) -> tuple[bd.Scene, dict[str, np.ndarray], dict[str, tuple[str, float]]]:
+    """Return the scene in the unit of a given speed, the two varied numbers with values, and their units."""
     if not vary:
         return scene, _about(scene), {}
     if len(vary) != 2:
@@ -109,8 +124,8 @@ def _varied(
     return scene, inputs, {axis.input.path: unit_given(axis) for axis in axes if axis.unit}
 
 
-def _about(scene: Scene) -> dict[str, np.ndarray]:
-    """Values of the frequency and the amplitude of what pulsates in a scene, about its own."""
+def _about(scene: bd.Scene) -> dict[str, np.ndarray]:
+    """Choose values around a scene's own frequency and amplitude of pulsation."""
     numbers = {path: number_at(scene, path) for path in (_FREQUENCY, *_AMPLITUDES)}
     there = [path for path in _AMPLITUDES if numbers[path]]
     frequency = numbers[_FREQUENCY]

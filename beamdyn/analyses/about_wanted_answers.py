@@ -1,10 +1,10 @@
-"""Designs sought backwards: numbers of a scene for wanted answers."""
+"""Inverse design: numbers of a scene for wanted answers."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -13,13 +13,10 @@ from beamdyn.analyses.about_data import parse_free
 from beamdyn.analyses.analysis import WRITTEN, Answer, analysis
 from beamdyn.analyses.options import Discretization, FrequencyTolerance, Text
 from beamdyn.analyses.values import in_unit_of, parse_quantity, parse_speed
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.results.files import write_text
 from beamdyn.files.scenes import with_numbers_in_text
 from beamdyn.studies.questions import KINDS
-
-if TYPE_CHECKING:
-    from beamdyn.scene.scene import Scene
-    from beamdyn.studies.designing.found_design import FoundDesign
 
 _WORDS = {"frequency": "frequencies", "critical speed": "critical_speed", "resonance speed": "crossings"}
 _WORDS |= {name: name for name in ("amplitude", "peak", "strain", "power")}
@@ -38,7 +35,7 @@ _EXAMPLE = 'give e.g. "frequency 1 at 50 rad/s = 80 Hz", "critical speed >= 90 r
     opens_with=("--free", "length=30:60 mm", "--so-that", "frequency 1 = 80 Hz"),
 )
 def design(
-    scene: Scene,
+    scene: bd.Scene,
     *,
     free: Text,
     so_that: Annotated[
@@ -77,19 +74,19 @@ def design(
     found = bd.design(scene, parse_free(free), targets, seed=seed, **how)
     if write is not None and file is not None:
         _write(found, file, write)
-    return Answer(found, "" if found.found else str(found.sentences()[0]))
+    return Answer(found, "" if found.found else in_files(found.sentences()[0], found.display_units))
 
 
 def _match(text: str) -> re.Match[str]:
-    """The parts of ``--so-that``."""
+    """Split the text of ``--so-that`` into its parts; refuse a text that has another form."""
     found = _TARGET.fullmatch(text)
     if found is None:
         raise ValueError(f'--so-that = "{text}": {_EXAMPLE}')
     return found
 
 
-def _target(found: re.Match[str], scene: Scene) -> bd.Target:
-    """A target of ``--so-that``."""
+def _target(found: re.Match[str], scene: bd.Scene) -> bd.Target:
+    """Make the target that ``--so-that`` describes."""
     what, unit = _WORDS[found["what"]], KINDS[_WORDS[found["what"]]].unit
     wanted: dict[str, Any] = {"best": found["best"]}
     if found["sign"]:
@@ -98,14 +95,14 @@ def _target(found: re.Match[str], scene: Scene) -> bd.Target:
     return bd.Target(what, **wanted, speed=speed, mode=int(found["mode"] or 1), line=found["line"] or "")
 
 
-def _value(text: str, unit: str, scene: Scene) -> float:
-    """A wanted value, in SI."""
+def _value(text: str, unit: str, scene: bd.Scene) -> float:
+    """Read a wanted value, in SI."""
     if unit == "rad/s":
         return parse_speed("--so-that", text, scene)
     return parse_quantity("--so-that", text, unit) if unit else float(text)
 
 
-def _write(found: FoundDesign, scene: Path, to: Path) -> None:
+def _write(found: bd.FoundDesign, scene: Path, to: Path) -> None:
     wanted = ", ".join(each.says for each in found.targets)
     head = [
         f"Found by beamdyn {found.provenance.version} design, beginning with {scene.name}.",

@@ -19,10 +19,10 @@ from beamdyn.common.edge.html_report import Question, Report
 from beamdyn.common.edge.outputs import NO_FILES, Files, Outputs, on_axes, write
 from beamdyn.common.edge.tables import show
 from beamdyn.common.edge.views import picture_of, rows_of, tables_of
+from beamdyn.common.results.pictures import Axes
 from beamdyn.files.scenes import load_scene
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from rich.console import RenderableType
 
     from beamdyn.common.results.result import Result
@@ -37,7 +37,7 @@ Physics = Annotated[
 
 
 class Mark(Enum):
-    """What an option is for: it names a file to write, a second file to read, or what a picture shows."""
+    """The role of an option: a file to write, a second file to read, or a choice for a picture."""
 
     WRITTEN = auto()
     DRAWN = auto()
@@ -48,7 +48,7 @@ WRITTEN, DRAWN, READ_SECOND = Mark
 
 
 def _option(name: str) -> str:
-    """The name of an option on the command line."""
+    """Return the name of an option on the command line, such as "--top-speed"."""
     return f"--{name.replace('_', '-')}"
 
 
@@ -71,7 +71,7 @@ class AsText:
     absent: Callable[[Scene], Any] | None = None
 
     def shown(self, option: inspect.Parameter) -> inspect.Parameter:
-        """The option as the command line has it: a text."""
+        """Return the option as the command line has it: with its value as text."""
         notes = Parameter(allow_leading_hyphen=True), *_extras(option.annotation)
         if self.default is None and self.absent is not None:
             return option.replace(annotation=Annotated[str | None, *notes], default=None)
@@ -79,7 +79,7 @@ class AsText:
         return option.replace(annotation=Annotated[str, *notes], default=default)
 
     def value(self, option: str, text: str | None, scene: Scene) -> Any:
-        """The value of a text, or that of none."""
+        """Return the value that a text means, or that of an option left out."""
         if text is None:
             return None if self.absent is None else self.absent(scene)
         return self.read(option, text, scene)
@@ -101,6 +101,8 @@ class Answer:
         The result for people; by its view if not given.
     draw : callable, optional
         Draws it on axes; by its view if not given.
+    tolerance : float, optional
+        By which the warnings of the result judge its errors.
     """
 
     result: Result
@@ -108,6 +110,12 @@ class Answer:
     warnings: Sequence[str] | None = None
     tables: Sequence[RenderableType] | None = None
     draw: Callable[[Axes], object] | None = None
+    tolerance: float | None = None
+
+    @property
+    def cautions(self) -> Sequence[str]:
+        """Warnings beside the answer; those about the model error are computed here, which takes time."""
+        return warnings_of(self.result, self.tolerance) if self.warnings is None else self.warnings
 
 
 @dataclass(frozen=True)
@@ -132,6 +140,9 @@ class Analysis:
         Name of the screen that is made of it; empty if there is none.
     opens_with : tuple of str
         Options, as they are typed, with which the screen opens; empty for those of the first example.
+    sooner : callable, optional
+        ``sooner(scene, **options)``: a preliminary answer, whose picture the screen shows until that of
+        `function` is there; where there is none, that of few modes.
     """
 
     function: Callable[..., Result | Answer]
@@ -141,15 +152,16 @@ class Analysis:
     physics: Any = Physics
     screen: str = ""
     opens_with: tuple[str, ...] = ()
+    sooner: Callable[..., Result | Answer] | None = None
 
     @property
     def name(self) -> str:
-        """Name of the command."""
+        """Name of the command: that of the function, with hyphens."""
         return self.function.__name__.replace("_", "-")
 
     @cached_property
     def options(self) -> dict[str, inspect.Parameter]:
-        """The options with their annotations, those that all analyses have at the end."""
+        """Options by name, with their annotations: the function's own, then those common to all analyses."""
         own = [p for p in inspect.signature(self.function).parameters.values() if p.kind is p.KEYWORD_ONLY]
         names = vars(inspect.getmodule(self.function))
         found = {p.name: p.replace(annotation=eval(p.annotation, names)) for p in own}
@@ -161,7 +173,7 @@ class Analysis:
 
     @cached_property
     def texts(self) -> dict[str, AsText]:
-        """Descriptions of the options that are given as text."""
+        """Descriptions of the options that are given as text, by name."""
         return {
             name: note
             for name, each in self.options.items()
@@ -171,7 +183,7 @@ class Analysis:
 
     @cached_property
     def shown(self) -> dict[str, inspect.Parameter]:
-        """The options as the command line and a form have them."""
+        """Options as the command line and forms have them, by name."""
         texts = {name: text.shown(self.options[name]) for name, text in self.texts.items()}
         return self.options | texts
 
@@ -181,12 +193,12 @@ class Analysis:
         return (self.function.__doc__ or "").partition("\n")[0]
 
     def meaning(self, name: str) -> str:
-        """Explanation of an option: that of this analysis if it has one, else that of the option's type."""
+        """Return the explanation of an option: from the function's docstring, else from the option's type."""
         notes = [note.help for note in _extras(self.options[name].annotation) if isinstance(note, Parameter)]
         return next(filter(None, [meanings_in(self.function).get(name), *notes]), "")
 
     def command(self) -> Callable[..., None]:
-        """The function of the command, with the signature that makes its help."""
+        """Make the function of the command, with the signature that its help is made from."""
 
         def run(scene: Path, /, *second: Path | None, **options: Any) -> None:
             named = (name for name, each in self.options.items() if READ_SECOND in _extras(each.annotation))
@@ -201,7 +213,7 @@ class Analysis:
         return run
 
     def run(self, file: Path, options: Mapping[str, Any]) -> None:
-        """Answer a file, write the files that are asked for and print the answer."""
+        """Answer the scene of a file, write the files that are asked for, and print the answer."""
         given = {name: options.get(name, each.default) for name, each in self.shown.items()}
         outputs: Files = given.pop("outputs")
         written, read, asked = self._sort(given)
@@ -213,7 +225,8 @@ class Analysis:
         scene = load_scene(file)
         if self.moving(given):
             check_moves(scene, file)
-        scene = in_unit_of(scene, *(given[name] for name in self.texts))  # to be shown in that unit
+        # Results are shown in the unit of a given speed.
+        scene = in_unit_of(scene, *(given[name] for name in self.texts))
         if given.get("physics") is not None:
             scene = replace(scene, physics=given["physics"])
         question = Question.on_file(f"beamdyn {self.name}", file, **asked)
@@ -226,8 +239,9 @@ class Analysis:
         outputs: Files = NO_FILES,
         named: Callable[[str], str] = _option,
         file: Path | None = None,
+        by: Callable[..., Result | Answer] | None = None,
     ) -> Answer:
-        """The answer on a scene.
+        """Compute the answer on a scene.
 
         Parameters
         ----------
@@ -241,6 +255,8 @@ class Analysis:
             ``named(name)``: what the user calls an option.
         file : Path, optional
             The file of the scene, if it is in one.
+        by : callable, optional
+            What answers, given the options that `function` takes; that if not given.
         """
         values = {name: value for name, value in given.items() if name != "physics"}
         values |= {name: text.value(named(name), given[name], scene) for name, text in self.texts.items()}
@@ -248,12 +264,13 @@ class Analysis:
         values |= {
             name: own[name] for name in own.keys() & inspect.signature(self.function).parameters.keys()
         }
-        made = self.function(scene, **values)
+        made = (by or self.function)(scene, **values)
         return made if isinstance(made, Answer) else Answer(made)
 
     def _sort(self, given: Mapping[str, Any]) -> tuple[dict[str, Path], list[Path], dict[str, object]]:
-        """Files to write, files and folders to read, and options that the head of a report repeats."""
-        options: dict[str, tuple[Any, Any]] = {}  # values and annotations, those of a group one by one
+        """Sort options into files to write, files and folders to read, and options that a report repeats."""
+        # Values and annotations of options; those of a group count one by one.
+        options: dict[str, tuple[Any, Any]] = {}
         for name, value in given.items():
             if is_dataclass(value):
                 hints = get_type_hints(type(value), include_extras=True)
@@ -268,12 +285,12 @@ class Analysis:
 
 
 def analysis(*examples: str, **about: Any) -> Callable[[Callable[..., Any]], Analysis]:
-    """Make an `Analysis` of the function that follows, with these attributes."""
+    """Return a decorator that makes an `Analysis` of a function, with these attributes."""
     return lambda function: Analysis(function, examples, **about)
 
 
 def meanings_in(documented: object) -> dict[str, str]:
-    """Explanations of parameters, by their names, in a docstring."""
+    """Return the explanations of parameters in a docstring, by their names."""
     from docstring_parser import parse
 
     return {each.arg_name: each.description or "" for each in parse(documented.__doc__ or "").params}
@@ -303,9 +320,9 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
     draw = None if draw is None else noted(draw, result)
     tables = [*([tables_of(result)] if answer.tables is None else answer.tables), *describe_choice(result)]
     tables += describe_left_out(result)
-    warnings = warnings_of(result) if answer.warnings is None else answer.warnings
+    warnings = answer.cautions
     refusals = [refusal] if refusal else []
-    # The files of a long computation do not depend on who reads the tables.
+    # Files are written first: who stops reading the tables does not lose a long computation.
     write(result, outputs, rows_of(result), draw, Report(question, tables, [*warnings, *refusals]))
     show(tables)
     exit_codes.warn("beamdyn", warnings)
@@ -318,11 +335,11 @@ def _keyword(name: str, annotation: Any, default: Any = inspect.Parameter.empty)
 
 
 def _placed(option: inspect.Parameter) -> inspect.Parameter:
-    """The option as the command takes it: by its place if it is the second file."""
+    """Return the option as the command takes it: positional if it names the second file to read."""
     second = READ_SECOND in _extras(option.annotation)
     return option.replace(kind=inspect.Parameter.POSITIONAL_ONLY) if second else option
 
 
 def _extras(annotation: Any) -> tuple[Any, ...]:
-    """Return what an annotation carries beside its type."""
+    """Return the extra entries of an annotation: all that `Annotated` adds to the type."""
     return get_args(annotation)[1:] if get_origin(annotation) is Annotated else ()

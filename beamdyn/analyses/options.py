@@ -1,31 +1,29 @@
-"""Options that several analyses have: each with its meaning, its bounds and how its text is read."""
+"""Options that several analyses share: the meaning, the bounds and the reading of each."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 from cyclopts import Parameter
 
+import beamdyn as bd
 from beamdyn.analyses import values
 from beamdyn.analyses.analysis import AsText
-
-if TYPE_CHECKING:
-    from beamdyn.scene.scene import Scene
 
 Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 
 
-def none_given(_: Scene) -> None:
-    """The value of an option that is left out."""
+def none_given(_: bd.Scene) -> None:
+    """Return None, the value of an option that is left out and needs none."""
 
 
-def final_speed(scene: Scene) -> float:
-    """The value of a speed that is left out [rad/s]."""
+def final_speed(scene: bd.Scene) -> float:
+    """Return the scene's final speed [rad/s], the value of a speed that is left out."""
     return scene.final_speed
 
 
 def positive(unit: str, **more: Any) -> AsText:
-    """A number above zero with its unit."""
+    """Describe an option that is a positive number with its unit."""
     return AsText(lambda option, text, _: values.parse_positive(option, text, unit), **more)
 
 
@@ -78,7 +76,9 @@ TimeTolerance = Annotated[
     float, Parameter(help="Target for the time-integration error, relative to the largest deflection.")
 ]
 
-# Loads along the span -------------------------------------------------------------------------------
+# Roads, and loads along the span --------------------------------------------------------------------
+
+RoadClass = Literal["A", "B", "C", "D", "E", "F", "G", "H"]
 
 LoadQuantity = Literal["force", "moment", "curvature", "strain", "stress"]
 Stations = Annotated[

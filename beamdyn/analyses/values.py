@@ -1,4 +1,4 @@
-"""Values of options: numbers with units, ranges and lists of speeds."""
+"""Reading of values of options: numbers with units, ranges and lists of speeds."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from cyclopts import Parameter, Token
 
+import beamdyn as bd
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.results.display_units import known_unit
@@ -19,7 +20,7 @@ from beamdyn.files.scenes import as_velocity
 from beamdyn.scene.motion import RollingWheel
 
 if TYPE_CHECKING:
-    from beamdyn.scene.scene import Scene
+    from beamdyn.common.edge.inputs import Quantity
 
 
 _MOST_SPEEDS = 10_000
@@ -29,10 +30,10 @@ _NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
 
 
 def at_most(most: int) -> Parameter:
-    """An option that is a whole number up to a limit, beyond which a command takes hours or fills memory."""
+    """Describe an option that is a whole number up to a limit, above which a command takes hours."""
 
     def whole(kind: object, tokens: Sequence[Token]) -> int | str:
-        """A whole number, or "auto" where that is allowed; cyclopts alone would cut 2.5 down to 2."""
+        """Read a whole number, or "auto" where allowed; cyclopts alone would cut 2.5 down to 2."""
         text, auto = tokens[0].value.strip(), kind is not int
         if auto and text == "auto":
             return text
@@ -47,24 +48,24 @@ def at_most(most: int) -> Parameter:
     return Parameter(converter=whole, validator=check)
 
 
-def parse_quantity(option: str, text: str, unit: str) -> float:
+def parse_quantity(option: str, text: str, of: str | Quantity) -> float:
     """A number with its unit, in SI; an InvalidInput names the option."""
     try:
-        return quantity(text, unit)
+        return quantity(text, of) if isinstance(of, str) else of.convert(text)
     except InvalidInput as error:
         raise replace(error, field=option) from None
 
 
-def parse_positive(option: str, text: str, unit: str, scene: Scene | None = None) -> float:
-    """A number above zero with its unit, in SI; a speed of a scene as `parse_speed` takes it."""
+def parse_positive(option: str, text: str, unit: str, scene: bd.Scene | None = None) -> float:
+    """Read a positive number with its unit, in SI; for a scene, a speed as `parse_speed` reads it."""
     value = parse_quantity(option, text, unit) if scene is None else parse_speed(option, text, scene)
     if value <= 0:
         raise ValueError(f'{option} = "{text}": it must be greater than 0')
     return value
 
 
-def parse_speed(option: str, text: str, scene: Scene | None = None) -> float:
-    """A speed with its unit [rad/s], or a ValueError that names the option.
+def parse_speed(option: str, text: str, scene: bd.Scene | None = None) -> float:
+    """Read a speed with its unit [rad/s]; a ValueError names the option.
 
     If the scene has a wheel that rolls, it may be the velocity of the vehicle, such as "60 km/h".
     """
@@ -76,7 +77,7 @@ def parse_speed(option: str, text: str, scene: Scene | None = None) -> float:
 
 
 def parse_window(text: str, t_end: float | None = None) -> tuple[float, float]:
-    """Start and end [s] of ``--window``, such as "20:30 s", within a run that ends at `t_end`."""
+    """Read start and end [s] of ``--window``, such as "20:30 s", within a run that ends at `t_end`."""
     unit = _UNIT.search(text.strip())
     ends = text.strip()[: unit.start()].split(":") if unit else []
     if unit is None or len(ends) != 2:
@@ -89,8 +90,8 @@ def parse_window(text: str, t_end: float | None = None) -> tuple[float, float]:
     return start, end
 
 
-def parse_speeds(text: str, scene: Scene | None = None) -> np.ndarray:
-    """Speeds [rad/s] of ``--speeds``: start:stop:count or a list, with a unit at the end.
+def parse_speeds(text: str, scene: bd.Scene | None = None) -> np.ndarray:
+    """Read the speeds [rad/s] of ``--speeds``: start:stop:count or a list, with a unit at the end.
 
     Parameters
     ----------
@@ -143,25 +144,25 @@ def parse_speeds(text: str, scene: Scene | None = None) -> np.ndarray:
     return np.linspace(start, stop, int(parts[2]))
 
 
-def parse_amounts(option: str, text: str, unit: str, example: str) -> tuple[list[float], list[str]]:
+def parse_amounts(option: str, text: str, of: str | Quantity, example: str) -> tuple[list[float], list[str]]:
     """Numbers in a list with one unit at its end, such as "62.1, 389 Hz": their values, and as written."""
     found = _UNIT.search(text.strip())
-    values = [value for (value,) in _tuples(option, text, 1, example, unit)]
+    values = [value for (value,) in _tuples(option, text, 1, example, of)]
     return values, [part.strip() for part in text.strip()[: found.start() if found else None].split(",")]
 
 
 def parse_positions(option: str, text: str) -> list[float]:
-    """Positions along the beam [m]: a list with a unit at its end, such as "0, 10, 25 mm"."""
+    """Read positions along the beam [m]: a list with a unit at its end, such as "0, 10, 25 mm"."""
     return [x for (x,) in _tuples(option, text, 1, "0, 10, 25 mm")]
 
 
 def parse_points(option: str, text: str) -> list[list[float]]:
-    """Points of a section [m]: pairs with a unit at their end, such as "-0.1:0, 0.1:2 mm"."""
+    """Read points of a section [m]: pairs with a unit at their end, such as "-0.1:0, 0.1:2 mm"."""
     return _tuples(option, text, 2, "-0.1:0, 0.1:0 mm")
 
 
-def _tuples(option: str, text: str, size: int, example: str, of: str = "m") -> list[list[float]]:
-    """Amounts [of] in a list of members of so many numbers, with one unit for all at the end."""
+def _tuples(option: str, text: str, size: int, example: str, of: str | Quantity = "m") -> list[list[float]]:
+    """Amounts in a list of members of so many numbers, with one unit for all at the end."""
     unit = _UNIT.search(text.strip())
     members = text.strip()[: unit.start()].split(",") if unit else []
     parts = [[number.strip() for number in member.split(":")] for member in members]
@@ -171,17 +172,20 @@ def _tuples(option: str, text: str, size: int, example: str, of: str = "m") -> l
 
 
 def unit_of_speed(*texts: str | None) -> str:
-    """Unit of the first text with a speed that can be shown in its unit; empty if there is none."""
+    """Return the unit of the first text with a speed that can be shown in its unit.
+
+    Empty if there is none.
+    """
     found = (_UNIT.search(text.strip()) for text in texts if text is not None)
     return next(filter(None, (known_unit("speed", unit.group()) for unit in found if unit)), "")
 
 
-def in_unit_of(scene: Scene, *texts: str | None) -> Scene:
-    """A scene whose results are shown in the unit of the speeds in texts, if one is given."""
+def in_unit_of(scene: bd.Scene, *texts: str | None) -> bd.Scene:
+    """Return the scene, with results shown in the unit of the speeds in texts, if one is given."""
     return replace(scene, units=scene.units.with_others({"speed": unit_of_speed(*texts)}))
 
 
-def check_moves(scene: Scene, path: Path) -> None:
+def check_moves(scene: bd.Scene, path: Path) -> None:
     """Refuse a scene without a motion."""
     if scene.motion is None:
         example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'

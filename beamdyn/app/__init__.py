@@ -1,1 +1,1 @@
-"""The interactive program: natural frequencies and steady response of a rotating beam over speed."""
+"""The interactive program of beamdyn: screens on frequencies, responses and other analyses of a beam."""

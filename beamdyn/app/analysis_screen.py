@@ -1,4 +1,4 @@
-"""Screens that follow from the description of an analysis: a form of its options, and its result."""
+"""Screens made from the description of an analysis: a form of its options, and its result."""
 
 from __future__ import annotations
 
@@ -15,14 +15,16 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin,
 from pydantic import Field, create_model
 
 from beamdyn.analyses.analysis import READ_SECOND, Analysis, Answer, meanings_in
-from beamdyn.analyses.results.cautions import noted, warnings_of
-from beamdyn.app.scene_form import ASIDE, read_aside, read_scene
+from beamdyn.analyses.results.cautions import noted
+from beamdyn.app.scene_form import ASIDE, COARSE, read_aside, read_scene
 from beamdyn.app.scene_screen import scene_screen
 from beamdyn.common.edge.data_text import DataText
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.inputs import Lines, Section, parts_of
 from beamdyn.common.edge.outputs import Files
 from beamdyn.common.edge.views import picture_of
 from beamdyn.common.edge.wording import of_file
+from beamdyn.common.results.one_line import warned
 from beamdyn.common.results.pictures import figure_of
 from beamdyn.common.results.result import Result
 from beamdyn.common.screens.screen_parts import KeyResult
@@ -31,7 +33,8 @@ from beamdyn.common.screens.screens import Screen
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_HEADLINES = 3  # most parts of a result's one line that stand first
+_FEW_MODES = 6  # number of modes of a coarse solution, where the tolerance chooses the number otherwise
+_HEADLINES = 3  # number of parts of a result's one-line summary that a screen shows first, at most
 _NARROW = 4.4, 4.0  # size of a picture on a narrow page [inch]
 _OF_COMMANDS = (
     "physics",
@@ -39,8 +42,8 @@ _OF_COMMANDS = (
     "workers",
     "samples",
     "seed",
-)  # options that a form does without
-_BETWEEN = ";"  # texts of an option that may be given several times
+)  # options that a form leaves out
+_BETWEEN = ";"  # separator of the texts of an option that may be given several times
 
 
 def analysis_screen(analysis: Analysis) -> Screen:
@@ -51,41 +54,50 @@ def analysis_screen(analysis: Analysis) -> Screen:
     def solve(tables: Mapping[str, Any]) -> Answer:
         given = dict(read_aside(tables, name))
         paths = {option: f"{name}.{option}" for option in given}
+        options, by = _in_groups(analysis, given), analysis.sooner if COARSE in tables else None
         with of_file(paths):
-            return analysis.answer(read_scene(tables), _in_groups(analysis, given), named=paths.__getitem__)
+            return analysis.answer(read_scene(tables), options, named=paths.__getitem__, by=by)
+
+    def coarser(tables: Mapping[str, Any]) -> Mapping[str, Any]:
+        given, modes = tables.get(name, {}), analysis.options.get("modes")
+        chosen = modes is not None and given.get("modes", modes.default) == "auto"
+        if chosen:
+            tables = {**tables, name: {**given, "modes": _FEW_MODES}}
+        return tables if analysis.sooner is None else {**tables, COARSE: {}}
 
     def notes(answer: Answer) -> list[str]:
-        said = warnings_of(answer.result) if answer.warnings is None else answer.warnings
-        return [*([answer.refusal] if answer.refusal else []), *said]
+        return [*([answer.refusal] if answer.refusal else []), *answer.cautions]
 
     def result(answer: Answer) -> Result:
         return answer.result
 
     def headline(answer: Answer) -> Iterator[KeyResult]:
-        lines = filter(None, answer.result.headline())
-        return (KeyResult(analysis.screen, line) for line in islice(lines, _HEADLINES))
+        beside = "", warned(getattr(answer.result, "warnings", ()))  # these stand below, each
+        lines = (line for line in answer.result.headline() if line not in beside)
+        yield KeyResult("in short", "; ".join(map(in_files, islice(lines, _HEADLINES))))
 
     return scene_screen(
         analysis.screen, analysis.question, solve, (name,), result, notes=notes, headline=headline,
-        picture=_drawn_answer, draw=lambda answer, _=0.0: _drawn_answer(answer),
+        picture=_drawn_answer, coarser=coarser,
+        draw=lambda answer, _=0.0: noted(partial(_drawn_answer, answer), answer.result)(),
     )  # fmt: skip
 
 
 def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
-    """The picture of an answer, with its notes below."""
+    """Draw the picture of an answer; in files with notes below it, on the page without them."""
     result: Any = answer.result
     if narrow:
-        own = hasattr(result, "picture_size")  # of a picture with panels
+        own = hasattr(result, "picture_size")  # a picture of panels chooses its own size
         size, plot = (result.picture_size(_NARROW[0]), result.plot_panels) if own else (_NARROW, result.plot)
         draw = partial(figure_of, answer.draw or plot, size)
     else:
         draw = picture_of(result) if answer.draw is None else partial(figure_of, answer.draw)
     assert draw is not None
-    return noted(draw, result)()
+    return draw()
 
 
 def first_entries(analysis: Analysis) -> dict[str, str]:
-    """Entries of the form on opening: those stated, or the options of the example in the command's help."""
+    """Return the entries of the form on opening: as stated, or the options of the first example."""
     name, words = analysis.function.__name__, analysis.opens_with or shlex.split(analysis.examples[0])
     given: dict[str, str] = {}
     for word, text in pairwise(words):
@@ -96,7 +108,7 @@ def first_entries(analysis: Analysis) -> dict[str, str]:
 
 
 def _section(analysis: Analysis) -> type[Section]:
-    """The table of an analysis' options, with those in groups: numbers, texts and choices, but no files."""
+    """Make the table of an analysis' options, grouped ones included: numbers, texts and choices, no files."""
     fields: dict[str, Any] = {}
     for name, option in analysis.shown.items():
         if group := _group_of(option.annotation):
@@ -116,7 +128,7 @@ def _section(analysis: Analysis) -> type[Section]:
 
 
 def _group_of(annotation: Any) -> type | None:
-    """The class of an option that is a group of options."""
+    """Return the class of an option that is a group of options; None for others."""
     kind = _bare(annotation)
     return kind if isinstance(kind, type) and is_dataclass(kind) and not issubclass(kind, Files) else None
 
@@ -126,7 +138,7 @@ def _bare(annotation: Any) -> Any:
 
 
 def _in_a_form(annotation: Any) -> Any:
-    """The kind of field that an option has in a form; None if it has none."""
+    """Return the kind of field that an option has in a form; None if it has none."""
     kind = _bare(annotation)
     if get_origin(kind) is tuple:
         return str if str in get_args(kind) else None
@@ -135,7 +147,7 @@ def _in_a_form(annotation: Any) -> Any:
 
 
 def _in_groups(analysis: Analysis, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Values of options as the function takes them: groups made of theirs, lists of their texts."""
+    """Return the values of options as the function takes them, with groups as objects."""
     values: dict[str, Any] = {}
     for name, option in analysis.options.items():
         if group := _group_of(option.annotation):
@@ -151,7 +163,7 @@ def _in_groups(analysis: Analysis, given: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _listed(annotation: Any, value: Any) -> Any:
-    """The texts of an option that may be given several times; else the value."""
+    """Split the text of an option that may be given several times; return any other value unchanged."""
     if get_origin(_bare(annotation)) is not tuple:
         return value
     return tuple(part.strip() for part in (value or "").split(_BETWEEN) if part.strip())

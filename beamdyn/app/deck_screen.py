@@ -1,4 +1,4 @@
-"""The screen of blades of other programs: a file of one, what is in it, and the scene that it makes."""
+"""The screen of other programs' blades: a blade's file, its content, and the scene made from it."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
+from beamdyn.app.scene_form import first_frequency
 from beamdyn.common.edge.config import ConfigError, parse, validated
 from beamdyn.common.edge.data_text import DataText
 from beamdyn.common.edge.inputs import Lines, Quantity, Section, describe
@@ -18,7 +19,7 @@ from beamdyn.common.plots.axes_and_lines import panels, set_up_axes
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import COLOURS, figure_of
 from beamdyn.common.screens.screen_parts import KeyResult
-from beamdyn.common.screens.screens import Document, FoldedPart, Screen
+from beamdyn.common.screens.screens import Document, FoldedPart, FollowingFile, Screen
 from beamdyn.files.decks.deck import Deck, is_deck, read_deck_text
 from beamdyn.files.decks.deck_tables import audit_rows, deck_tables
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SOURCE = Path("file")  # what messages call the text
+_SOURCE = Path("file")  # name of the text in messages
 _DRAWN = {
     "mass_per_length": "mass [kg/m]",
     "bending_stiffness": "EI flap [N m2]",
@@ -58,7 +59,7 @@ class _DeckFile(Section):
 
 
 def solve(tables: Mapping[str, Any]) -> Deck:
-    """The deck of a text."""
+    """Read the deck from the text of its file."""
     given = validated(_DeckFile, {"deck": tables.get("deck", {})}, "deck").deck
     with of_file({name: f"deck.{name}" for name in ("length", "hub_radius")}):
         return read_deck_text(_lines(given.text), given.length, given.hub_radius)
@@ -69,7 +70,7 @@ def _lines(text: str) -> DataText:
 
 
 def _tables_of_file(text: str, source: str) -> dict[str, Any]:
-    """The tables of the form for a file: a deck, or what this screen has saved."""
+    """Return the tables of the form for a file: a deck, or a file that this screen has saved."""
     if is_deck(_lines(text)):
         return {"deck": {"text": text}}
     return parse(text, source)
@@ -81,7 +82,7 @@ def _check(text: str, source: str) -> None:
 
 
 def draw(deck: Deck, _: float = 0.0) -> Figure:
-    """Mass and stiffness along the blade."""
+    """Draw mass and stiffness along the blade."""
     x, drawn = _along(deck)
 
     def plot(ax: Axes | None = None) -> Axes:
@@ -97,7 +98,7 @@ def draw(deck: Deck, _: float = 0.0) -> Figure:
 
 
 def _along(deck: Deck) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Stations [m] of a blade, and what is drawn over them, by its name with unit."""
+    """Return the stations [m] of a blade, and the properties drawn over them, by name with unit."""
     blade, matrices = deck.blade, deck.blade.matrices
     if matrices is None:
         columns = {words: blade.columns[name] for name, words in _DRAWN.items() if name in blade.columns}
@@ -107,7 +108,7 @@ def _along(deck: Deck) -> tuple[np.ndarray, dict[str, np.ndarray]]:
 
 
 def headline(deck: Deck) -> Iterator[KeyResult]:
-    """Kind, length and mass."""
+    """Yield kind, length and mass of a blade."""
     yield KeyResult("file", deck.kind)
     yield KeyResult("length", number(deck.scene.beam.length, "m"))
     yield KeyResult("mass", number(deck.audit.mass, "kg"))
@@ -115,6 +116,12 @@ def headline(deck: Deck) -> Iterator[KeyResult]:
 
 def _scene(deck: Deck) -> str:
     return f"<pre>{escape(deck.scene_text())}</pre>"
+
+
+def _for_screens(deck: Deck) -> str:
+    """Write the scene with options of the screens: speeds up to half of its first frequency, as is usual."""
+    speed = f"{first_frequency(deck.scene) / 2:.2g} rad/s"
+    return f"# options.top_speed = {speed}\n# operation.speed = {speed}\n{deck.scene_text()}"
 
 
 DECK_SCREEN = Screen(
@@ -129,6 +136,7 @@ DECK_SCREEN = Screen(
     rows=lambda deck: (("what", "value", "unit"), *audit_rows(deck.audit)),
     headline=headline,
     picture=lambda deck, _: draw(deck),
+    follows=FollowingFile("Open its scene", _for_screens),
     more=(FoldedPart("The scene as a file for the other screens and the commands", _scene, _scene),),
 )
 DECK = Document(

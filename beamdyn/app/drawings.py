@@ -12,20 +12,21 @@ from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Labe
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch, wall
 
-_DEEP = 0.012  # depth of the drawn beam over its length
-_SHOWN = 0.22  # largest deflection drawn, over the length
+_DEEP = 0.012  # depth of the drawn beam, over its length
+_SHOWN = 0.22  # largest deflection in the drawing, over the length of the beam
 _PHI, _PSI, _ETA = np.radians((36.0, 35.0, 24.0))
 _ROOT, _LENGTH, _TIP = np.array([1.0, 0.0]), 0.9, 0.16
-_AWAY = 0.5 * np.array([np.cos(0.7), np.sin(0.7)])  # of a step along y, in an oblique view
-_SECTIONS = 4  # positions from a section that is drawn to the next
-_HUB = 0.16  # radius at which the sense of rotation is drawn
+_AWAY = 0.5 * np.array([np.cos(0.7), np.sin(0.7)])  # offset on paper of a unit along y, in an oblique view
+_SECTIONS = 4  # number of positions along the beam from one drawn section to the next
+# Radius of the arrow for the sense of rotation, over the drawn distance from the axis to the root.
+_HUB = 0.16
 
 
 # A bent beam ------------------------------------------------------------------------------------------
 
 
 def drawn_larger(largest: float, length: float) -> float:
-    """Factor by which deflections are drawn larger, so that the largest one is seen: 1, 2, 5, 10, ...
+    """Return the factor (1, 2, 5, 10, ...) by which deflections are magnified, so that they can be seen.
 
     Parameters
     ----------
@@ -94,11 +95,11 @@ def bent_strip(
     x : ndarray, shape (n,)
         Positions along the strip [m], from 0 to its length.
     y : ndarray, shape (n, k)
-        Positions across it [m].
+        Positions across the strip [m].
     deflection : ndarray, shape (n, k)
         Deflection as drawn [m].
     across : ndarray, shape (n,)
-        That along -y [m].
+        Deflection of the middle along -y [m].
     title : str
         Title.
     room : float
@@ -128,14 +129,16 @@ def bent_strip(
 
 
 def sketch(entries: Mapping[str, str]) -> Rows:
-    """Sketches for a form with these entries, with the symbols of its inputs."""
-    paths = {entry.path for entry in inputs_of(entries)}
+    """Draw the sketches for a form with these entries, with the symbols of its inputs."""
+    symbols = {entry.path: entry.quantity.symbol for entry in inputs_of(entries)}
+    paths = {*symbols}
     rows = [[_plan(paths)], [_section(paths), _from_the_side()]]
-    return [*rows, [_road()]] if "motion.road.wavelength" in paths else rows
+    speed = symbols.get("motion.rotation.speed", "omega")
+    return [*rows, [_road(speed)]] if "motion.road.wavelength" in paths else rows
 
 
 def _plan(paths: set[str]) -> Drawing:
-    """The beam on its carrier, seen along the axis of rotation."""
+    """Draw the beam on its carrier, seen along the axis of rotation."""
     s = Sketch()
     along = np.array([-np.cos(_PHI), np.sin(_PHI)])
     aside = np.array([along[1], -along[0]])
@@ -160,7 +163,7 @@ def _plan(paths: set[str]) -> Drawing:
 
 
 def _section(paths: set[str]) -> Drawing:
-    """The section of the root, seen from the tip."""
+    """Draw the section of the root, seen from the tip."""
     s = Sketch()
     e, f = np.array([np.cos(_PSI), np.sin(_PSI)]), np.array([-np.sin(_PSI), np.cos(_PSI)])
     h, b = 0.34, 0.9
@@ -177,7 +180,7 @@ def _section(paths: set[str]) -> Drawing:
 
 
 def _from_the_side() -> Drawing:
-    """An outward beam that leaves the plane of rotation."""
+    """Draw an outward beam that leaves the plane of rotation, seen from the side."""
     s = Sketch()
     along = np.array([np.cos(_ETA), np.sin(_ETA)])
     root = np.array([0.42, 0.0])
@@ -189,8 +192,8 @@ def _from_the_side() -> Drawing:
     return s.drawing("From the side", "An outward beam that leaves the plane of rotation: eta")
 
 
-def _road() -> Drawing:
-    """A wheel that rolls over a wavy road."""
+def _road(speed: str) -> Drawing:
+    """Draw a wheel that rolls over a wavy road, with the symbol of its angular speed."""
     s = Sketch()
     x = np.linspace(-1.15, 2.0, 121)
     road = np.column_stack([x, -0.16 * np.cos(2 * np.pi * x / 1.1)])
@@ -198,7 +201,7 @@ def _road() -> Drawing:
     s.add(Outline(road, "ground", 1.6), Disc(hub, 0.4, "wheel", 1.4))
     s.axis(hub)
     s.length("R", hub, hub - (0.0, 0.4), (1.0, 0.0))
-    s.moment("omega_s", hub, 0.52, 2.1, 1.0, "axis")
+    s.moment(speed, hub, 0.52, 2.1, 1.0, "axis")
     s.length("lambda", (0.55, 0.4), (1.65, 0.4), (0.0, 1.0))
     s.dashed((0.55, 0.4), (0.55, 0.16))
     s.dashed((1.65, 0.4), (1.65, 0.16))

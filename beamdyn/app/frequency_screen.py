@@ -1,4 +1,4 @@
-"""The screen of natural frequencies over speed, their lines of excitation, and the critical speed."""
+"""The screen of natural frequencies over speed, with excitation lines and the critical speed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from rich.console import RenderableType
 
 from beamdyn import critical_point, frequency_locus, resonance_speeds
 from beamdyn.analyses.results.cautions import critical_label, notes_of, warnings_of
-from beamdyn.app.scene_form import read
+from beamdyn.app.scene_form import COARSE, coarser, read
 from beamdyn.app.scene_screen import brief, scene_screen, tables_with_choice
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
@@ -19,12 +19,11 @@ from beamdyn.common.edge.tables import table
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.plots.plots import mark_critical
-from beamdyn.common.results.one_line import number
+from beamdyn.common.results.one_line import known_digits, number
 from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus
-from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings, label_crossing
@@ -34,12 +33,12 @@ from beamdyn.studies.campbell.line_crossings import Margin, margins_at_rated
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], what crosses
-_SPEEDS, _FEW_SPEEDS = 121, 31  # number of speeds in full, and while something is dragged
-_COARSE, _ROUGH = "coarse", 1e-3  # a table that asks for a coarse solution, and its tolerance
+CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], and what crosses there
+_SPEEDS, _FEW_SPEEDS = 121, 31  # number of speeds, in full and while something is dragged
+_ROUGH = 1e-3  # tolerance of a coarse solution
 _NOT_MARKED = "the resonance speeds are of other physics than the frequencies, and not marked in the drawing"
-_HEADROOM = 1.08  # height of the chart over the highest frequency
-_MOST_ABOVE = 2.0  # highest frequency shown, over that of the fastest line at the top speed
+_HEADROOM = 1.08  # height of the chart, over the highest frequency
+_MOST_ABOVE = 2.0  # highest frequency shown, over that of the steepest line at the top speed
 
 
 @dataclass(frozen=True)
@@ -52,45 +51,50 @@ class Frequencies:
         Frequencies over speed.
     crossings : Crossings, optional
         Speeds at which the motion excites them; None without a motion, or where that is not known.
-    critical : CriticalPoint
-        Critical speed.
+    critical : CriticalPoint or None
+        Critical speed; None under a load at the tip by which the beam may flutter instead.
     refused : str
         Why there are no crossings, if the motion has none that are known.
     lines : tuple of Line
-        Lines that excite the beam.
+        Excitation lines: the multiples of the speed at which the motion excites the beam.
     crossing_points : tuple of (float, float, str)
         Speed [rad/s] and frequency [Hz] of each crossing, and what crosses.
     margins : tuple of Margin
-        Distances of the modes from the nearest line at the speed at which the motion settles.
+        Distances of the modes from the nearest excitation line at the speed at which the motion settles.
     """
 
     locus: Locus
     crossings: Crossings | None
-    critical: CriticalPoint
+    critical: CriticalPoint | None
     refused: str
     lines: tuple[Line, ...] = ()
     crossing_points: tuple[CrossingPoint, ...] = ()
     margins: tuple[Margin, ...] = ()
 
     @property
+    def critical_speed(self) -> float:
+        """Critical speed [rad/s]; inf where there is none, or it is not known."""
+        return np.inf if self.critical is None else self.critical.speed
+
+    @property
     def have_same_physics(self) -> bool:
-        """Whether the crossings are those of the frequencies."""
+        """Whether the crossings and the frequencies are of the same physics."""
         return self.crossings is None or self.crossings.scene.physics == self.locus.scene.physics
 
 
 def solve(tables: Mapping[str, Any]) -> Frequencies:
-    """The locus, and where the scene's motion excites a mode.
+    """Compute the locus, and where the scene's motion excites a mode.
 
     A coarse solution, for a drawing, is the locus at few speeds, and where lines meet it between them.
     """
-    scene, top, modes = read({name: table for name, table in tables.items() if name != _COARSE})
-    coarse = _COARSE in tables
-    scene, count = (plain_physics(scene), _FEW_SPEEDS) if coarse else (scene, _SPEEDS)
+    scene, top, modes = read(tables)
+    coarse = COARSE in tables
+    count = _FEW_SPEEDS if coarse else _SPEEDS
     accuracy: dict[str, Any] = {"tolerance": _ROUGH} if coarse else {}
     own = motion_speed(scene)
     speeds = np.union1d(np.linspace(0.0, top, count), [own] if own is not None and own < top else [])
     locus = frequency_locus(scene, speeds, modes, **accuracy)
-    critical = critical_point(scene, **accuracy)
+    critical = None if scene.may_flutter_by_load else critical_point(scene, **accuracy)
     motion, crossings = scene.motion, None
     if motion is None:
         return Frequencies(locus, None, critical, "")
@@ -109,19 +113,14 @@ def solve(tables: Mapping[str, Any]) -> Frequencies:
     return Frequencies(locus, crossings, critical, "", lines, points, _margins(locus, lines))
 
 
-def coarser(tables: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Tables of a coarser solution, with fewer speeds and digits, for the drawing."""
-    return {**tables, _COARSE: {}}
-
-
 def motion_speed(scene: Scene) -> float | None:
-    """Speed at which the motion settles [rad/s]; None where it does not turn, or not steadily."""
+    """Return the speed at which the motion settles [rad/s]; None if it does not settle, or at 0."""
     speed = None if scene.motion is None else abs(scene.motion.final_speed)
     return speed if speed is not None and 0 < speed < np.inf else None
 
 
 def _crossing_points(locus: Locus, lines: Sequence[Line]) -> Iterator[CrossingPoint]:
-    """Where lines meet the modes of a locus, taken as straight between its speeds."""
+    """Yield where lines meet the modes of a locus, by linear interpolation between its speeds."""
     names = locus.names()
     for line in lines:
         apart = locus.frequency - line.multiple * locus.speeds[:, None] / (2 * np.pi)
@@ -132,7 +131,10 @@ def _crossing_points(locus: Locus, lines: Sequence[Line]) -> Iterator[CrossingPo
 
 
 def _margins(locus: Locus, lines: Sequence[Line]) -> tuple[Margin, ...]:
-    """Margins at the speed at which the motion settles, if that is on the locus."""
+    """Return the distances of the modes from the nearest lines at the speed at which the motion settles.
+
+    Empty if the locus does not reach that speed, or no lines are known.
+    """
     speed = motion_speed(locus.scene)
     if speed is None or speed > locus.speeds[-1] or not lines:
         return ()
@@ -140,7 +142,7 @@ def _margins(locus: Locus, lines: Sequence[Line]) -> tuple[Margin, ...]:
 
 
 def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
-    """Natural frequencies over speed, with lines of excitation, crossings, margins and the critical speed."""
+    """Make the chart of frequencies over speed: excitation lines, crossings, margins and critical speed."""
     locus, lines, same = answer.locus, answer.lines, answer.have_same_physics
     speed, last = locus.display_units.speed_unit(), float(locus.speeds[-1])
     top = _top(locus.frequency, [line.multiple * last / (2 * np.pi) for line in lines])
@@ -149,20 +151,20 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
         least = np.nanmin(frequency, initial=np.inf)
         above = f" (above: from {least:.4g} Hz)" if top < least < np.inf else ""
         curves.append(ChartCurve(f"{name}{above}", speed.of(locus.speeds), frequency))
-    for line in lines:  # each up to where it leaves the chart
+    for line in lines:  # each line is drawn up to where it leaves the chart
         end = min(last, 2 * np.pi * top / line.multiple) if line.multiple > 0 else last
         ends = np.array([0.0, end])
         curves.append(ChartCurve(line.name, speed.of(ends), line.multiple * ends / (2 * np.pi), True, True))
 
     def placed(at: float, frequency: float, words: str) -> CrossingPoint:
-        return speed.of(at), frequency, f"{words}\n{speed.say(at, 5)}, {frequency:.5g} Hz"
+        return speed.of(at), frequency, f"{words}\n{speed.say(at, 5)}, {known_digits(frequency):.5g} Hz"
 
     met = [placed(*point) for point in answer.crossing_points]
     near = [placed(m.speed, m.frequency, f"{m.name}: {describe_margin(m)}") for m in answer.margins]
     each = [ChartPoints("resonance", met), ChartPoints("margin at the motion's speed", near, "reaction")]
-    critical, motion = answer.critical.speed, motion_speed(locus.scene)
+    critical, motion = answer.critical_speed, motion_speed(locus.scene)
     marks = []
-    if 0 <= critical <= last:
+    if answer.critical is not None and 0 <= critical <= last:
         words = f"{critical_label(answer.critical)} {speed.say(critical, 5)}"
         marks.append(ChartMark(speed.of(critical), words))
     if motion is not None and motion <= last:
@@ -184,7 +186,7 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
 
 
 def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
-    """Highest frequency shown: of the modes that are not far above all lines, or of the lowest mode."""
+    """Return the highest frequency shown [Hz]: of modes not far above all lines, or of the lowest mode."""
     known = [float(np.nanmax(f)) for f in frequency.T if np.isfinite(f).any()]
     fastest = max(ends, default=0.0)
     near = [f for f in known if not fastest or f <= _MOST_ABOVE * fastest]
@@ -192,7 +194,7 @@ def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
 
 
 def describe_margin(margin: Margin) -> str:
-    """A margin in words: how far the nearest line is from the natural frequency."""
+    """Word a margin: how far the nearest line is from the natural frequency."""
     if not margin.margin:
         return f"{margin.line.name} meets it"
     where = "above" if margin.margin > 0 else "below"
@@ -200,13 +202,15 @@ def describe_margin(margin: Margin) -> str:
 
 
 def headline(answer: Frequencies) -> Iterator[KeyResult]:
-    """First frequency at both ends of the speeds, the critical speed, and its margin."""
+    """Yield the first frequency at both ends of the speeds, the critical speed, and its margin."""
     first, top, critical = answer.locus.frequency[:, 0], float(answer.locus.speeds[-1]), answer.critical
     unit = answer.locus.display_units.speed_unit()
     for words, frequency in (("first frequency at rest", first[0]), (f"at {brief(top, unit)}", first[-1])):
         yield KeyResult(words, number(frequency, "Hz") if np.isfinite(frequency) else "diverges")
     for margin in answer.margins[:1]:
         yield KeyResult(f"at the motion's {brief(margin.speed, unit)}", number(margin.frequency, "Hz"))
+    if critical is None:
+        return
     if np.isfinite(critical.speed):
         yield KeyResult("critical speed", brief(critical.speed, unit))
         if answer.margins:
@@ -220,7 +224,7 @@ def headline(answer: Frequencies) -> Iterator[KeyResult]:
 
 
 def make_tables(answer: Frequencies) -> Sequence[RenderableType]:
-    """Crossings and frequencies, each with the physics that was chosen for it."""
+    """Make tables of crossings and frequencies, each with the physics that was chosen for it."""
     parts = [] if answer.crossings is None else tables_with_choice(answer.crossings)
     if answer.margins:
         at = answer.locus.display_units.speed_unit().say(answer.margins[0].speed)
@@ -231,29 +235,30 @@ def make_tables(answer: Frequencies) -> Sequence[RenderableType]:
 
 
 def draw(answer: Frequencies, _: float = 0.0) -> Figure:
-    """Campbell's diagram; without motion the locus alone."""
+    """Draw the Campbell diagram; without a motion, the locus alone."""
     figure = new_figure(9.0, 5.4)
     ax, units = figure.subplots(), answer.locus.display_units
     if answer.crossings is None:
         answer.locus.plot(ax)
     elif answer.have_same_physics:
         answer.crossings.plot(ax)
-    else:  # crossings of other frequencies than these
+    else:  # the crossings belong to frequencies of other physics
         lines = {line.name: line.multiple for line in answer.crossings.lines}
         curves = Curves(answer.locus.speeds, answer.locus.frequency, answer.locus.names())
         plot_campbell([curves], lines, {}, ax, units.speed_unit().name)
-    mark_critical(ax, answer.critical.speed, critical_label(answer.critical), units)
+    if answer.critical is not None:
+        mark_critical(ax, answer.critical.speed, critical_label(answer.critical), units)
     return note_below(figure, notes_of(answer.locus))
 
 
 def warnings(answer: Frequencies) -> Sequence[str]:
-    """Warnings of all, and why there are no crossings."""
+    """Return the warnings of all parts, and why there are no crossings."""
     refused = [answer.refused] if answer.refused else []
     found = [*refused, *warnings_of(answer.locus)]
     if answer.crossings is not None:
         found += [f"resonance speeds: {said}" for said in warnings_of(answer.crossings)]
         found += [] if answer.have_same_physics else [_NOT_MARKED]
-    if answer.critical.speed <= answer.locus.speeds[-1]:
+    if answer.critical is not None and answer.critical.speed <= answer.locus.speeds[-1]:
         found += [f"critical speed: {said}" for said in warnings_of(answer.critical)]
     return found
 

@@ -1,4 +1,4 @@
-"""The screen of mode shapes at one speed, which move as a slider is played."""
+"""The screen of mode shapes at one speed, which move while a slider is played."""
 
 from __future__ import annotations
 
@@ -19,19 +19,20 @@ from beamdyn.equations.effects import words_of_directions
 from beamdyn.modes.model_error.left_out_effects import say_size
 from beamdyn.modes.modes import Mesh, Modes
 
-_PLACES, _ROWS = 41, 5  # along the beam, and across a strip
-_LARGEST, _LARGEST_OF_STRIP = 0.22, 0.12  # deflection drawn, over the length
-_ABREAST = 2  # drawings in a row
+_PLACES, _ROWS = 41, 5  # number of positions along the beam, and across a strip
+# Largest deflection in the drawing of a beam, and of a strip, over the length.
+_LARGEST, _LARGEST_OF_STRIP = 0.22, 0.12
+_ABREAST = 2  # number of drawings in a row
 
 
 def solve(tables: Mapping[str, Any]) -> Modes:
-    """The modes at the speed."""
+    """Compute the modes at the speed."""
     scene, speed, modes = read_at_speed(tables)
     return natural_modes(scene, speed, modes)
 
 
 def drawings(modes: Modes, place: float = 0.0) -> Rows:
-    """Each mode shape at a phase of its vibration: 0 and 2 are the extremes, 1 is the undeflected beam."""
+    """Draw each mode shape at a phase of its vibration: 0 and 2 are the extremes, 1 is the beam at rest."""
     if (mesh := modes.mesh(_PLACES, _ROWS)) is not None:
         return _abreast(_strips(modes, mesh, 1.0 - place))
     length, words = modes.scene.beam.length, words_of_directions(modes.scene)
@@ -47,7 +48,7 @@ def drawings(modes: Modes, place: float = 0.0) -> Rows:
 
 
 def _strips(modes: Modes, mesh: Mesh, swing: float) -> list[Drawing]:
-    """Each mode shape of a strip that twists or cambers, as a part of its extreme position."""
+    """Draw each mode shape of a strip that twists or cambers, as a share of its extreme position."""
     x, y, shapes, across = mesh
     room = _LARGEST_OF_STRIP * float(x[-1])
     each = []
@@ -62,14 +63,14 @@ def _abreast(drawings: list[Drawing]) -> Rows:
 
 
 def quick_headline(modes: Modes) -> Iterator[KeyResult]:
-    """The first frequency, and the largest numerical error of all modes."""
+    """Yield the first frequency, and the largest numerical error of all modes."""
     first = modes.frequency[0]
     yield KeyResult("first frequency", number(first, "Hz") if np.isfinite(first) else "diverges")
     yield KeyResult("numerical error at most", f"{float(np.max(modes.error)):.0e}")
 
 
 def headline(modes: Modes) -> Iterator[KeyResult]:
-    """The results of `quick_headline`, and the largest model error, which takes longer than the modes."""
+    """Yield the results of `quick_headline`, and the largest model error, which takes longer."""
     yield from quick_headline(modes)
     if np.isfinite(modes.model_error).any():
         yield KeyResult("model error at most", say_size(float(np.nanmax(modes.model_error))))

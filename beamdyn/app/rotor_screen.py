@@ -15,18 +15,18 @@ from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.scene.rotor import RotorDrawing
 
-_STEPS = 200  # lengths are dragged in steps of about so many parts of the beam
+_STEPS = 200  # least number of steps into which a dragged length divides the length of the beam
 
 
 def solve(tables: Mapping[str, Any]) -> RotorDrawing:
-    """The rotor of a scene that can be solved."""
+    """Make the drawing of the rotor of a scene that can be solved."""
     scene = read_scene(tables)
-    first_frequency(scene)  # what cannot be solved is refused here, too
+    first_frequency(scene)  # refuses a scene that cannot be solved
     return draw_rotor(scene)
 
 
 def drawings(rotor: RotorDrawing, _: float = 0.0) -> Rows:
-    """The rotor along its axis and the section of its root, beside one another as a page is wide.
+    """Draw the rotor along its axis, beside the section of its root.
 
     The beam by itself, where it is drawn, stands beside the section: both are details.
     """
@@ -36,7 +36,7 @@ def drawings(rotor: RotorDrawing, _: float = 0.0) -> Rows:
 
 
 def handles(rotor: RotorDrawing, _: float = 0.0) -> Sequence[Handle]:
-    """Points that set the radius, the setting angle and the length."""
+    """Make handles that set the radius, the setting angle and the length."""
     r, C = rotor.radius, np.cos(rotor.precone)
     along = np.array([-np.cos(rotor.setting_angle), np.sin(rotor.setting_angle)])
     grain = float(10.0 ** np.floor(np.log10(rotor.length / _STEPS)))

@@ -19,10 +19,11 @@ from beamdyn.common.results.display_units import known_unit
 from beamdyn.common.screens.screen_parts import Drag, Preset
 from beamdyn.files.scene_inputs import MatricesInput, RectangularInput, SceneInput, StiffnessInput
 from beamdyn.files.scenes import scene_from_dict
+from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.scene.scene import Scene
 
-# On the form of each screen, in this order.
-SCENE_TABLES = ("beam", "harvester", "mount", "motion", "model", "damping", "physics")
+# Tables on the form of each screen, in this order.
+SCENE_TABLES = ("beam", "harvester", "mount", "motion", "model", "damping", "tip_load", "physics")
 TABLES = ("options", *SCENE_TABLES)
 DRAGS = (
     Drag("mount.setting_angle", 0.0, 180.0, 1.0, "deg"),
@@ -52,15 +53,16 @@ PRESETS = (
         {name: {"mount.setting_angle": angle} for name, angle in _DIRECTIONS.items()},
     ),
 )
-# What makes an answer take long.
+# Advice on answers that take long.
 EFFORT = "It takes longer at higher speeds, with more modes, and of a beam that varies much along its length."
-# Lists of tables, and their meanings.
+# Inputs that are lists of tables, and their meanings.
 _LISTS = {
     "beam.point_mass": 'point masses, each such as { position = "20 mm", mass = "1 g" }',
     "beam.point_spring": 'springs along the beam, each such as { position = "20 mm", stiffness = "10 N/m" }',
 }
+COARSE = "coarse"  # name of a table whose presence asks for a coarse solution, with plain physics
 _USUAL_SPEED = "rad/s"
-_FASTEST = 10  # times the first natural frequency at rest
+_FASTEST = 10  # highest speed that is accepted, over the first natural angular frequency at rest
 
 
 class OptionsInput(Section):
@@ -114,7 +116,7 @@ class _NoKind(Section):
 
 
 def inputs_of(entries: Mapping[str, str]) -> list[Input]:
-    """Inputs of the alternatives that entries choose: the beam's kind and the motion's."""
+    """List the inputs of the alternatives that entries choose: the beam's kind and the motion's."""
     kinds: dict[str, tuple[str, ...]] = {}
 
     def choose(table: str, models: Sequence[type[BaseModel]]) -> list[type[BaseModel]]:
@@ -122,7 +124,8 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
             given = {
                 path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text
             }
-            given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}  # the heads of its columns
+            # Heads of the columns of beam.stations.
+            given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}
             if "matrices" in given:
                 return [MatricesInput]
             own = set(StiffnessInput.model_fields) - set(RectangularInput.model_fields)
@@ -130,7 +133,8 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
         by_kind = {get_args(model.model_fields["kind"].annotation)[0]: model for model in models}
         kinds[f"{table}.kind"] = tuple(by_kind)
         chosen = any(text for path, text in entries.items() if path.startswith(f"{table}."))
-        usual = next(iter(by_kind)) if chosen else ""  # of a table with other keys alone
+        # The first kind, for a table with keys but without a kind.
+        usual = next(iter(by_kind)) if chosen else ""
         return [by_kind.get(entries.get(f"{table}.kind", "") or usual, _NoKind)]
 
     aside = [entry for table, model in ASIDE.items() for entry in describe(model, f"{table}.")]
@@ -149,12 +153,12 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
 
 
 def read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
-    """The scene, the top speed [rad/s] and the number of modes; raises `ConfigError`."""
+    """Read the scene, the top speed [rad/s] and the number of modes."""
     return _read_with_speed(tables, "options", "top_speed")
 
 
 def read_at_speed(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
-    """The scene, one speed [rad/s] and the number of modes; raises `ConfigError`."""
+    """Read the scene, one speed [rad/s] and the number of modes."""
     return _read_with_speed(tables, "operation", "speed")
 
 
@@ -180,16 +184,22 @@ def _read_with_speed(tables: Mapping[str, Any], table: str, key: str) -> tuple[S
 
 
 def read_scene(tables: Mapping[str, Any]) -> Scene:
-    """The scene alone; raises `ConfigError`."""
-    return scene_from_dict({name: table for name, table in tables.items() if name not in ASIDE})
+    """Read the scene alone, with plain physics for a coarse solution."""
+    own = {name: table for name, table in tables.items() if name not in ASIDE and name != COARSE}
+    return plain_physics(scene_from_dict(own)) if COARSE in tables else scene_from_dict(own)
+
+
+def coarser(tables: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the tables of a coarser solution, which is ready sooner, for the drawing."""
+    return {**tables, COARSE: {}}
 
 
 def read_aside(tables: Mapping[str, Any], name: str) -> Any:
-    """The values of a table that is not in the file of a scene; raises `ConfigError`."""
+    """Read the values of a table that is not in a scene's file."""
     model = create_model("_Aside", __base__=Section, **{name: (ASIDE[name], ...)})  # pyright: ignore[reportCallIssue, reportArgumentType]
     return getattr(validated(model, {name: tables.get(name, {})}, name), name)
 
 
 def first_frequency(scene: Scene) -> float:
-    """The first natural frequency at rest, to some digits [rad/s]."""
+    """Compute the first natural frequency at rest [rad/s], to some digits."""
     return 2 * math.pi * float(natural_modes(scene, 0.0, 1, tolerance=0.01).frequency[0])

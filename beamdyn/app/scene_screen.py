@@ -1,4 +1,4 @@
-"""Screens of a scene: what they share, and those that follow from the description of an analysis."""
+"""Parts that the screens of a scene share: their making, tables with choices, and effects left out."""
 
 from __future__ import annotations
 
@@ -26,11 +26,12 @@ from beamdyn.modes.model_error import left_out_effects
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_LEAST = 1e-6  # relative change with the shortest bar; each decade is as long
-_DECADE = 3  # letters of a bar for a decade
-_LONGEST = 7  # decades
+# Relative change below which no bar is drawn; the length of a bar grows with the logarithm of the change.
+_LEAST = 1e-6
+_DECADE = 3  # number of letters in a bar for each decade of the change above `_LEAST`
+_LONGEST = 7  # largest number of decades of a change that a bar shows
 _BAR = "\u2588"
-_HEADLINES = 3  # most parts of a result's one line that stand first
+_HEADLINES = 3  # number of parts of a result's one-line summary that a screen shows first, at most
 
 
 def scene_screen(
@@ -42,7 +43,7 @@ def scene_screen(
     left_out_of: str = "",
     **special: Any,
 ) -> Screen:
-    """Make a screen on a scene, which shows the result of an answer by its views.
+    """Make a screen for a scene, which shows the result within an answer by the result's views.
 
     Parameters
     ----------
@@ -80,19 +81,19 @@ def scene_screen(
 
 
 def tables_with_choice(result: Result) -> list[RenderableType]:
-    """Tables of a result, and how its physics was chosen."""
+    """Return the tables of a result, with the sentence on how its physics was chosen."""
     return [tables_of(result), *describe_choice(result)]
 
 
 def drawn(result: Result) -> Figure:
-    """The picture of a result, with its notes below."""
+    """Draw the picture of a result, with its notes below."""
     figure = new_figure(9.0, 5.4)
     result.plot(figure.subplots())  # pyright: ignore[reportAttributeAccessIssue]  (results with a picture)
     return note_below(figure, notes_of(result))
 
 
 def brief(value: float, unit: ShownUnit) -> str:
-    """A value in SI with few digits, in the unit shown, as headlines have it."""
+    """Word a value in SI with few digits, in the unit shown."""
     return number(unit.of(value), unit.name)
 
 
@@ -100,19 +101,19 @@ def brief(value: float, unit: ShownUnit) -> str:
 
 
 def left_out_table(effects: left_out_effects.LeftOutEffects, of: str) -> RenderableType:
-    """Table of the effects that a model leaves out, the largest first, with a bar for each.
+    """Make a table of the effects that a model leaves out, the largest first, with a bar for each.
 
     Parameters
     ----------
     effects : LeftOutEffects
         The effects.
     of : str
-        What they change, such as "frequencies".
+        What the effects left out change, such as "frequencies".
     """
     sizes: dict[str, float] = {}
     for name, change in effects.changes.items():
         known = np.asarray(change)[np.isfinite(change)]
-        if known.size:  # the change of the largest size
+        if known.size:  # the change with the largest magnitude
             sizes[name] = float(known[np.abs(known).argmax()])
     rows = []
     for name in sorted(sizes, key=lambda name: -abs(sizes[name])):
@@ -133,6 +134,6 @@ def left_out_table(effects: left_out_effects.LeftOutEffects, of: str) -> Rendera
 
 
 def bar(change: float) -> str:
-    """A bar as long as the decades of a change above 1e-6."""
+    """Draw a bar whose length is the number of decades of a change above 1e-6."""
     decades = np.log10(abs(change) / _LEAST) if change else 0.0
     return _BAR * int(np.ceil(_DECADE * min(max(decades, 0.0), _LONGEST)))

@@ -1,4 +1,4 @@
-"""Sweeps on the beam's screens: any input against frequencies, critical speed, and the steady response."""
+"""Sweeps on the beam's screens: any input against frequencies, critical speed and steady response."""
 
 from __future__ import annotations
 
@@ -35,11 +35,12 @@ from beamdyn.scene.scene import Scene
 from beamdyn.steady.response import SteadyResponse
 
 Kept = TypeVar("Kept")
-_COARSE, _FINE, _ROUNDS = 121, 41, 3  # speeds at first, about the largest amplitude, and refinements of these
+# Number of speeds at first, of speeds near the largest amplitude, and of refinements there.
+_COARSE, _FINE, _ROUNDS = 121, 41, 3
 
 
 class SweepCase:
-    """A case of a sweep: a scene with top speed and number of modes; answers are computed when wanted.
+    """A scene of a sweep, with top speed and number of modes; answers are computed when asked for.
 
     Parameters
     ----------
@@ -53,10 +54,10 @@ class SweepCase:
 
     def __init__(self, scene: Scene, top: float, modes: int) -> None:
         self.scene, self.top, self.modes = scene, top, modes
-        self.answers: dict[tuple[Any, ...], Any] = {}  # those asked for, by function and arguments
+        self.answers: dict[tuple[Any, ...], Any] = {}  # answers so far, by function and arguments
 
     def ask(self, function: Callable[..., Kept], *given: Any) -> Kept:
-        """The answer of a function on the scene, which is computed once."""
+        """Return a function's answer for the scene, which is computed once."""
         asked = function, *given
         if asked not in self.answers:
             self.answers[asked] = function(self.scene, *given)
@@ -69,7 +70,7 @@ class SweepCase:
         return np.array([found.speed for found in self.ask(resonance_speeds, self.top, self.modes)])
 
     def amplitude(self, speed: float) -> float:
-        """Steady amplitude at a speed [m]; nan where there is none."""
+        """Compute the steady amplitude at a speed [m]; nan where there is none."""
         return float(self.ask(_steady_response, (speed,), self.modes).amplitude[0])
 
     @cached_property
@@ -111,7 +112,7 @@ def _steady_response(scene: Scene, speeds: Sequence[float] | np.ndarray, modes: 
 
 
 def frequency_outputs(modes: int) -> list[Output]:
-    """Frequencies at the top speed and at rest, critical speed, lowest speed of resonance."""
+    """List the results on frequencies: at the top speed and at rest, critical speed, lowest resonance."""
     frequencies = [
         Output(f"frequency_{i + 1}{at}", f"frequency {i + 1}", partial(_frequency, i, share), "Hz")
         for at, share in (("", 1.0), ("_at_rest", 0.0))
@@ -126,12 +127,12 @@ def frequency_outputs(modes: int) -> list[Output]:
 
 
 def _frequency(mode: int, share: float, case: SweepCase) -> float:
-    """A natural frequency at a share of the top speed [Hz]; nan where the mode diverges."""
+    """Compute a natural frequency at a share of the top speed [Hz]; nan where the mode diverges."""
     return float(case.ask(natural_modes, share * case.top, case.modes).frequency[mode])
 
 
 def steady_outputs(_: int) -> list[Output]:
-    """The steady amplitude at the top speed, and the largest one up to there."""
+    """List the results on steady motion: amplitude at the top speed, and the largest one up to there."""
     return [
         Output("amplitude", "amplitude at top speed", lambda case: case.amplitude(case.top), "mm", 1e-3),
         Output("largest_amplitude", "largest amplitude", lambda case: case.peak[1], "mm", 1e-3),
@@ -143,7 +144,7 @@ _MODEL_ERROR = Output("model_error", "largest model error", lambda case: case.mo
 
 
 def sweeps_of(outputs: Callable[[int], list[Output]], example: str, results: str) -> Sweeps:
-    """The sweeps of a screen whose outputs follow from the number of modes in the form."""
+    """Make the sweeps of a screen, whose results depend on the number of modes in the form."""
 
     def names(tables: Mapping[str, Any]) -> Sequence[str]:
         return [output.name for output in outputs(read(tables)[2])]
@@ -162,13 +163,14 @@ def sweeps_of(outputs: Callable[[int], list[Output]], example: str, results: str
         return replace(swept, warnings=(*swept.warnings, *_warn_of_model(cases), *_say_choices(cases)))
 
     def draw(swept: InputSweep) -> Figure:
-        return note_below(sweep_figure(swept), swept.warnings)  # a picture may be used without the page
+        # The picture has its warnings, as it may be used without the page.
+        return note_below(sweep_figure(swept), swept.warnings)
 
     return Sweeps(names, example, results, run, draw)
 
 
 def _warn_of_model(cases: Sequence[SweepCase]) -> Iterator[str]:
-    """Yield the warnings of the case with the largest model error, and of the first where it is not known."""
+    """Yield warnings of the case with the largest model error, and of the first case with an unknown one."""
     large = [case for case in cases if case.model_error > LARGE_MODEL_ERROR]
     unknown = [case for case in cases if np.isnan(case.model_error)]
     for some, what in (
@@ -183,7 +185,7 @@ def _warn_of_model(cases: Sequence[SweepCase]) -> Iterator[str]:
 
 
 def _say_choices(cases: Sequence[SweepCase]) -> Iterator[str]:
-    """Yield at how many values which effects were added, where the physics was chosen."""
+    """Yield at how many values each effect was added, where the physics was chosen."""
     choices = [
         [a.physics_choice for a in case.answers.values() if a.physics_choice is not None] for case in cases
     ]

@@ -1,10 +1,11 @@
-"""The screen of the trade-off: the time that digits of natural frequencies take, and the cheapest model."""
+"""The screen of the trade-off: computing time for digits of frequencies, and the cheapest model."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from operator import itemgetter
 from time import process_time
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,8 @@ from beamdyn import natural_modes
 from beamdyn.analyses.results.cautions import notes_of, warnings_of
 from beamdyn.analyses.results.of_studies import diagram_csv, diagram_table
 from beamdyn.app.mode_shapes import headline as headline_of_modes
-from beamdyn.app.scene_form import DRAGS, read_aside, read_at_speed
+from beamdyn.app.mode_shapes import quick_headline as quick_headline_of_modes
+from beamdyn.app.scene_form import COARSE, DRAGS, coarser, read_aside, read_at_speed
 from beamdyn.app.scene_screen import left_out_table, scene_screen
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.tables import table
@@ -33,17 +35,22 @@ from beamdyn.studies.tradeoffs.measurements import Diagram, Digit
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_BUDGET = 2.0  # time for all measurements of a diagram [s]
-_RUNS = 5  # runs of the chosen model, the shortest of which counts
-_KEPT = 8  # scenes whose measurements are kept
-_LARGEST, _LEAST = 1.0, 1e-14  # relative errors that are drawn
-_ROUNDING = 1e-9  # relative, of a power of ten
-_FAMILIES = {"tolerance=": "chosen by tolerance"}  # called so in Python
+# Computing time of all measurements of a diagram [s], for a full and for a coarse solution.
+_BUDGET, _SOON = 2.0, 0.05
+_RUNS = 5  # number of runs of the chosen model, of which the shortest counts
+# Placeholder for a diagram that a coarse solution does not have.
+_FOLLOWS = "follows"
+_LATER = Diagram.make(_FOLLOWS, "", "", 0.0, ())
+_KEPT = 8  # largest number of scenes whose measurements are kept
+_LARGEST, _LEAST = 1.0, 1e-14  # largest and least relative error that are drawn
+_ROUNDING = 1e-9  # relative rounding error of a power of ten
+# Names on the screen of families of models that are named otherwise in Python.
+_FAMILIES = {"tolerance=": "chosen by tolerance"}
 
 
 @dataclass(frozen=True)
 class Trade:
-    """The model chosen for a tolerance, and measurements of others to compare it with.
+    """The model chosen for a tolerance, and measurements of other models for comparison.
 
     Parameters
     ----------
@@ -67,64 +74,71 @@ class Trade:
 
     @property
     def tolerance(self) -> float:
-        """Relative error allowed."""
+        """Allowed relative error."""
         return 10.0**-self.digits
 
     def cheapest(self, diagram: Diagram) -> Digit | None:
-        """The cheapest measurement with as many digits as asked for; None if none has them."""
+        """Return the cheapest measurement with as many digits as asked for; None if none has them."""
         each = (d for d in diagram.per_digit if abs(d.error / self.tolerance - 1) < _ROUNDING)
         return next(each, None)
 
 
 def solve(tables: Mapping[str, Any]) -> Trade:
-    """The chosen model, and measurements of others."""
+    """The chosen model, and measurements of others; of a coarse solution few, and of its numbers alone.
+
+    A coarse solution has one run of the chosen model, whose time is not shown.
+    """
     digits = int(read_aside(tables, "trade").digits)
     scene, speed, modes = read_at_speed(tables)
-    scene = plain_physics(scene)
+    scene, coarse = plain_physics(scene), COARSE in tables
     found, times = [], []
-    for _ in range(_RUNS):
+    for _ in range(1 if coarse else _RUNS):
         start = process_time()
         found.append(natural_modes(scene, speed, modes, tolerance=10.0**-digits))
         times.append(process_time() - start)
-    return Trade(digits, found[-1], min(times), *_measure(scene, speed, modes))
+    measured = _numbers(scene, speed, modes, _SOON), _LATER
+    return Trade(digits, found[-1], min(times), *(measured if coarse else _measure(scene, speed, modes)))
+
+
+def _numbers(scene: Scene, speed: float, modes: int, budget: float) -> Diagram:
+    return frequency_diagram(scene, np.array([speed]), modes, budget)
 
 
 @lru_cache(maxsize=_KEPT)
 def _measure(scene: Scene, speed: float, modes: int) -> tuple[Diagram, Diagram]:
-    """Errors against times of models of a scene, which do not depend on the digits that are asked for."""
-    return (
-        frequency_diagram(scene, np.array([speed]), modes, _BUDGET),
-        physics_diagram(scene, speed, modes, _BUDGET),
-    )
+    """Measure error and computing time of alternative models: of the numbers alone, and with the model error.
+
+    Neither diagram depends on the tolerance of the screen, so that they are cached.
+    """
+    return _numbers(scene, speed, modes, _BUDGET), physics_diagram(scene, speed, modes, _BUDGET)
 
 
 # Charts -------------------------------------------------------------------------------------------
 
 
 def charts(answer: Trade, _: float = 0.0) -> Sequence[Chart]:
-    """Error against time: the numerical error alone, and with the model error."""
-    made = [_chart(answer, answer.numerical, "Error of the numbers")]
-    if answer.of_physics.measurements:
-        made.append(_chart(answer, answer.of_physics, "Error with that of the model"))
-    return made
+    """Make charts of error against time: of the numerical error alone, and with the model error."""
+    each = (answer.numerical, "Error of the numbers"), (answer.of_physics, "Error with that of the model")
+    return [_chart(answer, d, name) for d, name in each if d.measurements or d.title == _LATER.title]
 
 
 def _chart(answer: Trade, diagram: Diagram, name: str) -> Chart:
-    """Errors against times [ms]; errors outside the chart are drawn at its edge."""
+    """Make a chart of errors against times [ms]; errors outside the chart are drawn at its edge."""
     families: dict[str, list[tuple[float, float]]] = {}
     for m in diagram.measurements:
         if 0 < m.error < np.inf:
             families.setdefault(_FAMILIES.get(m.family, m.family), []).append((m.time, m.error))
     families["Pareto front"] = [(m.time, m.error) for m in diagram.front if m.error > 0]
     curves = []
-    for family, points in families.items():
+    for family, points in filter(itemgetter(1), families.items()):
         time, error = np.array(points).reshape(-1, 2).T
         pale = family == "Pareto front"
         error = np.clip(error, _LEAST, _LARGEST)
         curves.append(ChartCurve(family, 1e3 * time, error, pale=pale, points=not pale))
     times, tolerance = [m.time for m in diagram.measurements], answer.tolerance
-    ends = 1e3 * np.array([min(times), max(times)])
-    limit = ChartCurve(f"tolerance {tolerance:.0e}", ends, np.full(2, tolerance), dashed=True, pale=True)
+    if times:
+        ends, limit = 1e3 * np.array([min(times), max(times)]), np.full(2, tolerance)
+        curves.append(ChartCurve(f"tolerance {tolerance:.0e}", ends, limit, dashed=True, pale=True))
     digit, cheapest = answer.cheapest(diagram), []
     for m in diagram.measurements:
         if digit is not None and (m.family, m.setting, m.time) == (digit.family, digit.setting, digit.time):
@@ -135,7 +149,7 @@ def _chart(answer: Trade, diagram: Diagram, name: str) -> Chart:
         f"{name}: {diagram.title.removeprefix('physics: ')}",
         ChartAxis("time", "ms", logarithmic=True),
         ChartAxis("relative error", logarithmic=True, high=_LARGEST),
-        [*curves, limit],
+        curves,
         [ChartPoints(f"cheapest with {answer.digits} digits", cheapest)] if cheapest else [],
     )
 
@@ -144,7 +158,7 @@ def _chart(answer: Trade, diagram: Diagram, name: str) -> Chart:
 
 
 def tables(answer: Trade) -> Sequence[RenderableType]:
-    """The chosen model and the cheapest ones; then all digits, and what the physics leaves out."""
+    """Make tables of the chosen model and the cheapest ones, of all digits, and of effects left out."""
     numbers, physics = answer.cheapest(answer.numerical), answer.cheapest(answer.of_physics)
     n = f"{answer.digits} digit{'s' * (answer.digits > 1)}"
     found = "nothing measured keeps them" if numbers is None else _describe(numbers)
@@ -160,13 +174,13 @@ def tables(answer: Trade) -> Sequence[RenderableType]:
 
 
 def _describe(digit: Digit) -> str:
-    """A measurement in words: the physics and setting of the model, and its time."""
+    """Word a measurement: the physics and setting of the model, and its time."""
     physics = "physics as given" if digit.family == "as given" else digit.family
     return f"{physics}, {digit.setting}, in {1e3 * digit.time:.3g} ms"
 
 
 def _chosen_table(answer: Trade) -> RenderableType:
-    """Table of what the tolerance chooses, and its errors, mode by mode."""
+    """Make a table of the modes of the chosen model, with their errors."""
     modes, tolerance, rows = answer.modes, answer.tolerance, []
     each = zip(modes.frequency, modes.error, modes.model_error.tolist(), strict=True)
     for i, (frequency, error, of_model) in enumerate(each, 1):
@@ -187,7 +201,7 @@ def _chosen_table(answer: Trade) -> RenderableType:
 
 
 def rows(answer: Trade) -> Iterator[Sequence[object]]:
-    """All measurements: of the numerical error, and of that with the model error."""
+    """Yield rows of all measurements: with the numerical error, and with the model error."""
     for name, diagram in (("numerical", answer.numerical), ("with_model_error", answer.of_physics)):
         heads, *lines = diagram_csv(diagram)
         if name == "numerical":
@@ -196,7 +210,7 @@ def rows(answer: Trade) -> Iterator[Sequence[object]]:
 
 
 def draw(answer: Trade, _: float = 0.0) -> Figure:
-    """The diagrams side by side."""
+    """Draw the diagrams side by side."""
     known = [d for d in (answer.numerical, answer.of_physics) if d.measurements]
     figure = new_figure(6.5 * len(known), 5.0)
     for diagram, ax in zip(known, np.atleast_1d(figure.subplots(1, len(known))), strict=True):
@@ -205,12 +219,24 @@ def draw(answer: Trade, _: float = 0.0) -> Figure:
 
 
 def headline(answer: Trade) -> Iterator[KeyResult]:
-    """The cheapest model measured, the time that the chosen one takes, and its errors."""
+    """Yield the cheapest model measured, the time that the chosen one takes, and its errors."""
     digit = answer.cheapest(answer.of_physics if answer.of_physics.measurements else answer.numerical)
     cheapest = "none measured" if digit is None else _describe(digit)
-    yield KeyResult("cheapest, physics included", cheapest)
-    yield KeyResult("time of the chosen model", number(1e3 * answer.time, "ms"))
+    yield from _of_times(cheapest, number(1e3 * answer.time, "ms"))
     yield from [*headline_of_modes(answer.modes)][1:]
+
+
+def quick_headline(answer: Trade) -> Iterator[KeyResult]:
+    """Yield the numerical error; what takes many runs, and the model error, follow."""
+    yield from _of_times(_FOLLOWS, _FOLLOWS)
+    yield from [*quick_headline_of_modes(answer.modes)][1:]
+    yield KeyResult("model error at most", _FOLLOWS)
+
+
+def _of_times(cheapest: str, time: str) -> Iterator[KeyResult]:
+    """Yield the results that many runs are timed for."""
+    yield KeyResult("cheapest, physics included", cheapest)
+    yield KeyResult("time of the chosen model", time)
 
 
 TRADE = scene_screen(
@@ -225,4 +251,6 @@ TRADE = scene_screen(
     drags=(Drag("trade.digits", 1, 10, 1, ""), Drag("operation.speed", 0.0, 150.0, 1.0, "rad/s"), *DRAGS),
     charts=charts,
     headline=headline,
+    quick_headline=quick_headline,
+    coarser=coarser,
 )

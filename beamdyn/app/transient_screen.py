@@ -1,4 +1,4 @@
-"""The screen of a transient: the tip over time beside the moving beam."""
+"""The screen of a transient: the tip deflection over time, beside the moving beam."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from beamdyn import resonance_speeds, simulate
 from beamdyn.analyses.results.cautions import describe_choice
 from beamdyn.analyses.results.of_motion import time_of_peak, transient_table
 from beamdyn.app.drawings import bent_beam, drawn_larger
-from beamdyn.app.scene_form import first_frequency, read_aside, read_scene
+from beamdyn.app.scene_form import COARSE, coarser, first_frequency, read_aside, read_scene
 from beamdyn.app.scene_screen import brief, left_out_table, scene_screen
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.drawing.sheet import Rows
@@ -28,18 +28,18 @@ from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import label_crossing
 from beamdyn.transient.transient import Transient
 
-_TOLERANCE = 1e-4
-_MOST_PERIODS = 20_000  # periods of the first mode at rest in a run
-_PLACES, _TIMES = 41, 201  # along the beam, and in the close-up
+_TOLERANCE, _ROUGH = 1e-4, 1e-2  # tolerance of a full solution, and of a coarse one with few modes
+_MOST_PERIODS = 20_000  # largest number of periods of the first mode at rest in a run
+_PLACES, _TIMES = 41, 201  # number of positions along the beam, and of times in the close-up
 _SAMPLES = 40  # number of the largest samples near which the peak is sought
 _CLOSE = 4  # periods of the first mode before and after the present time in the close-up
-_MOST_SENT = 4000  # points of the whole run on the page: enough to see its periods when zoomed
-_MODES = 3  # modes whose resonances are marked
+_MOST_SENT = 2000  # points of the whole run on the page: enough to see its periods when zoomed
+_MODES = 3  # modes whose resonances are marked, and of a coarse solution
 
 
 @dataclass(frozen=True)
 class Playable:
-    """A transient with its peak and the resonances that it passes, to be played.
+    """A transient to be played, with its peak and the resonances that it passes.
 
     Parameters
     ----------
@@ -63,12 +63,12 @@ class Playable:
     period: float
 
     def time(self, place: float) -> float:
-        """The time at a position of the slider, from 0 to 1 [s]."""
+        """Return the time at a position of the slider, from 0 to 1 [s]."""
         return self.run.path.start + place * (self.run.path.end - self.run.path.start)
 
     @cached_property
     def chart(self) -> Chart:
-        """The tip over the whole run."""
+        """Chart of the tip deflection over the whole run."""
         run, (start, end), unit = self.run, self.window, self.run.display_units.length_unit()
         tips = zip(_names(run), (run.tip, run.tip_across), strict=False)
         peak = unit.of(float(run.deflection([self.peak_at])[0]))
@@ -86,7 +86,7 @@ class Playable:
 
 
 def solve(tables: Mapping[str, Any]) -> Playable:
-    """The motion from rest, its peak, and the resonances that it passes."""
+    """Simulate the motion from rest, and find its peak and the resonances that it passes."""
     given, scene = read_aside(tables, "run"), read_scene(tables)
     if scene.motion is None:
         raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
@@ -101,14 +101,17 @@ def solve(tables: Mapping[str, Any]) -> Playable:
     ):
         if not holds:
             raise InvalidValue(f"run.{option}", value, bound, unit="s", limit=limit)
+    accuracy: dict[str, Any] = {"tolerance": _TOLERANCE}
+    if COARSE in tables:
+        accuracy = {"modes": _MODES, "tolerance": _ROUGH}
     with of_file({"t_end": "run.end"}):
-        run = simulate(scene, given.end, tolerance=_TOLERANCE)
+        run = simulate(scene, given.end, **accuracy)
     at, passages = _time_of_peak(run, start, end), tuple(_passages(scene, given.end))
     return Playable(run, (start, end), run.peak(start, end), at, passages, period)
 
 
 def _time_of_peak(run: Transient, start: float, end: float) -> float:
-    """Time of the largest deflection in a window [s]: beside one of its largest samples."""
+    """Find the time of the largest deflection in a window [s], near one of its largest samples."""
     _, apart = time_of_peak(run, start, end)
     inside = np.flatnonzero((run.t >= start) & (run.t <= end))
     largest = inside[np.argsort(np.hypot(run.tip, run.tip_across)[inside])[-_SAMPLES:]]
@@ -118,13 +121,13 @@ def _time_of_peak(run: Transient, start: float, end: float) -> float:
 
 
 def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
-    """When the motion passes speeds at which a line of excitation meets a mode."""
+    """Yield when the motion passes speeds at which an excitation line meets a mode, and which."""
     assert scene.motion is not None
     t = np.linspace(0.0, min(end, scene.motion.end), 4001)
     speed = np.abs(scene.motion.at(t).speed)
     try:
         found = resonance_speeds(scene, float(speed.max()), _MODES)
-    except ValueError:  # the scene is at rest, or excited by no lines
+    except ValueError:  # the scene is at rest, or no lines excite it
         return
     for c in found:
         over = speed - c.speed
@@ -137,7 +140,7 @@ def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
 
 
 def drawings(answer: Playable, place: float = 1.0) -> Rows:
-    """The beam at a time, in each direction, with its extremes within a period before and after."""
+    """Draw the beam at a time, in each direction, with its extremes within a period before and after."""
     run, now = answer.run, answer.time(place)
     unit, words = run.display_units.length_unit(), modelled_directions(run.scene)
     x = np.linspace(0.0, run.scene.beam.length, _PLACES)
@@ -155,7 +158,7 @@ def drawings(answer: Playable, place: float = 1.0) -> Rows:
 
 
 def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
-    """Times about a time, within the run."""
+    """Return times [s] of some periods before and after the present time, within the run."""
     path, reach = answer.run.path, periods * answer.period
     return np.linspace(max(now - reach, path.start), min(now + reach, path.end), _TIMES)
 
@@ -164,7 +167,7 @@ def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
 
 
 def charts(answer: Playable, place: float = 1.0) -> Sequence[Chart]:
-    """The tip over the whole run, and over some periods about the present time."""
+    """Make charts of the tip over the whole run, and over some periods around the present time."""
     run, now, unit = answer.run, answer.time(place), answer.run.display_units.length_unit()
     t = _around(answer, now, _CLOSE)
     near = [ChartCurve(name, t, unit.of(run.deflection(t, i))) for i, name in enumerate(_names(run))]
@@ -176,12 +179,12 @@ def charts(answer: Playable, place: float = 1.0) -> Sequence[Chart]:
 
 
 def _names(run: Transient) -> Sequence[str]:
-    """Names of the curves."""
+    """Return the names of the curves."""
     return modelled_directions(run.scene) if run.scene.physics.planes > 1 else ("tip deflection",)
 
 
 def _axes(run: Transient, start: float, end: float) -> tuple[ChartAxis, ChartAxis]:
-    """The axes of a chart from a time to another [s]."""
+    """Make the axes of a chart from one time to another [s]."""
     unit = run.display_units.length_unit()
     return ChartAxis("time", "s", low=start, high=end), ChartAxis("tip deflection", unit.name)
 
@@ -190,14 +193,14 @@ def _axes(run: Transient, start: float, end: float) -> tuple[ChartAxis, ChartAxi
 
 
 def tables(answer: Playable) -> Sequence[RenderableType]:
-    """Peaks, resonances passed, and what the physics leaves out."""
+    """Make tables of the peaks, the resonances passed, and the effects left out."""
     said = [f"At {t:.5g} s the speed passes a resonance: {words}." for t, words in answer.passages]
     effects = left_out_table(answer.run.left_out_effects, "largest deflection")
     return [transient_table(answer.run, answer.window), *said, *describe_choice(answer.run), effects]
 
 
 def headline(answer: Playable) -> Iterator[KeyResult]:
-    """The peak, and when the speed first passes a resonance."""
+    """Yield the peak, and when the speed first passes a resonance."""
     unit = answer.run.display_units.length_unit()
     yield KeyResult("largest deflection of the tip", brief(answer.peak, unit))
     yield KeyResult("at the time", number(answer.peak_at, "s"))
@@ -216,4 +219,5 @@ TRANSIENT = scene_screen(
     drawings=drawings,
     charts=charts,
     headline=headline,
+    coarser=coarser,
 )

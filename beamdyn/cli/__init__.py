@@ -9,7 +9,7 @@ __all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "main"]
 
 
 def __getattr__(name: str) -> Any:
-    """The program with all its commands, `app`, which is made when somebody asks for it."""
+    """Make the program with all its commands when somebody asks for the attribute `app`."""
     if name != "app":
         raise AttributeError(f"module 'beamdyn.cli' has no attribute {name!r}")
     return command_line()

@@ -1,4 +1,4 @@
-"""The command of Campbell diagrams."""
+"""The command `campbell`, which draws Campbell diagrams of one scene or several."""
 
 from __future__ import annotations
 
@@ -89,7 +89,8 @@ def campbell(
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     inputs = _read_all(scenes, length, hub_radius)
     alone = inputs[0].scene if len(inputs) == 1 else None  # several have no one rolling radius
-    speeds, unit = parse_top(top_speed, alone)
+    bent = any(given.scene.physics.large_deflection for given in inputs)
+    speeds, unit = parse_top(top_speed, alone, bent)
     question = _question(
         inputs, top_speed=top_speed, rated=rated, operating=operating, per_rev=per_rev, labels=labels,
         length=length, hub_radius=hub_radius, **options, physics=physics,
@@ -109,7 +110,7 @@ def campbell(
 
 
 class _BladeFile(NamedTuple):
-    """A file: its scene, the text of that, and what of a blade's file the scene does not have."""
+    """A file with its scene, the scene's text, and the parts of a blade's file that no scene has."""
 
     path: Path
     scene: Scene
@@ -118,7 +119,7 @@ class _BladeFile(NamedTuple):
 
 
 def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None) -> list[_BladeFile]:
-    """Read the files; the options are for the blades of other programs alone."""
+    """Read the files; the options apply to blades of other programs only."""
     given = {"length": length, "hub_radius": hub_radius}
     decks = [path for path in paths if path.suffix.lower() != ".toml"]
     for name, text in given.items():
@@ -140,14 +141,14 @@ def _read(path: Path, length: str | None, hub_radius: str | None) -> _BladeFile:
 
 
 def _question(inputs: Sequence[_BladeFile], **options: object) -> Question:
-    """The command on each of its files, for the head of a report."""
+    """Make the head of a report: the command on each of its files."""
     each = [Question.of("beamdyn campbell", given.path, given.text, **options) for given in inputs]
     title = f"beamdyn campbell: {', '.join(str(given.path) for given in inputs)}"
     return Question(title, "\n\n".join(question.inputs for question in each))
 
 
 def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -> dict[str, Scene]:
-    """The scenes by their labels, with the physics of the option if that is given."""
+    """Return the scenes by their labels, with the physics of the option if that is given."""
     stems = [given.path.stem for given in inputs]
     names = stems if labels is None else [part.strip() for part in labels.split(",")]
     if len(names) != len(inputs) or not all(names):
@@ -162,6 +163,6 @@ def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -
 
 
 def add(app: App) -> None:
-    """Give a program's command line the command `campbell`."""
+    """Add the command `campbell` to a program's command line."""
     example = 'beamdyn campbell examples/twisted_blade.toml --top-speed "15 rpm" --modes 2'
     app.command(campbell, help_epilogue=examples(example))

@@ -1,4 +1,4 @@
-"""The commands of ``beamdyn``: one imports its own module alone, and the list of commands none of them."""
+"""The commands of ``beamdyn``; running one imports its own module alone, and listing them imports none."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SCREENS = "The interactive program in the browser: frequencies, rotor, mode sha
 
 
 def make_program() -> Program:
-    """The interactive program, imported when it is wanted."""
+    """Import the interactive program when it is wanted."""
     from beamdyn.app.program import BEAMDYN
 
     return BEAMDYN
@@ -38,7 +38,7 @@ def make_program() -> Program:
 
 @cache
 def command_line(command: str = "", *, listed: bool = False) -> App:
-    """The program with one command alone, with all of them, or with all as the list in its help has them."""
+    """Make the program with one command, with all commands, or with all as the list in its help has them."""
     app = App(
         name="beamdyn",
         version=__version__,
@@ -64,7 +64,7 @@ A scene is a TOML file with units; `beamdyn COMMAND --help` lists the options of
 
 
 def _question(command: str) -> str:
-    """First line of the docstring of a command's function, from its source: to import that takes long."""
+    """Return the first line of the docstring of a command's function from source, without imports."""
     if command in COMMANDS:
         file, function = f"analyses/{COMMANDS[command]}.py", command.replace("-", "_")
     else:
@@ -74,7 +74,7 @@ def _question(command: str) -> str:
 
 @cache
 def _first_lines(file: Path) -> dict[str, str]:
-    """First lines of the docstrings of a module's functions, by their names."""
+    """Return the first lines of the docstrings of a module's functions, by their names."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
     functions = (node for node in tree.body if isinstance(node, ast.FunctionDef))
     return {each.name: (ast.get_docstring(each) or "").partition("\n")[0] for each in functions}

@@ -1,4 +1,4 @@
-"""The command that reads blades of other programs."""
+"""The command `import`, which reads blades of other programs."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def import_deck(
     outputs.check(file, output=output, polynomials=polynomials)
     at = None if speed is None else parse_speed("--speed", speed)
     if at is not None and polynomials is None:
-        raise ValueError(f'--speed = "{speed}": it is that of --polynomials; give both, or leave it out')
+        raise ValueError(f'--speed = "{speed}": it needs --polynomials; give both, or leave it out')
     deck = read_with(file, length, hub_radius)
     outputs.check(*deck.sources, output=output, polynomials=polynomials)
     show(deck_tables(deck))
@@ -73,7 +73,7 @@ def import_deck(
 
 
 def _write_polynomials(deck: Deck, path: Path, speed: float | None, force: bool) -> None:
-    """Write the polynomials, and say how well they fit."""
+    """Write the polynomials of the mode shapes, and print how well they fit."""
     fitted = deck.fit_mode_polynomials(speed)
     lines = [line for each in fitted for line in each.lines()]
     write_text(check_writable(path, force=force), "\n".join([*lines, ""]))
@@ -91,6 +91,6 @@ def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:
 
 
 def add(app: App) -> None:
-    """Give a program's command line the command `import`."""
+    """Add the command `import` to a program's command line."""
     example = 'beamdyn import examples/blade_stations.csv --length "40 m" --hub-radius "1 m"'
     app.command(import_deck, name="import", help_epilogue=examples(example))

@@ -1,4 +1,4 @@
-"""The command that reproduces published results."""
+"""The command `reproduce`, which compares published results with computed ones."""
 
 from __future__ import annotations
 
@@ -38,5 +38,5 @@ def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = 
 
 
 def add(app: App) -> None:
-    """Give a program's command line the command `reproduce`."""
+    """Add the command `reproduce` to a program's command line."""
     app.command(reproduce, help_epilogue=examples("beamdyn reproduce --output pictures"))

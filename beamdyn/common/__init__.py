@@ -1,1 +1,1 @@
-"""Parts without mechanics, shared by both packages: checks, results, units, tables, workers, pages."""
+"""Parts without mechanics that both packages share: checks, results, units, tables, workers, pages."""

@@ -15,7 +15,8 @@ from scipy.linalg.blas import dtrsm
 
 def solve_lower(L: np.ndarray, B: np.ndarray) -> np.ndarray:
     """Solve L X = B for lower triangular L (n, n) and B (n, m)."""
-    return dtrsm(1.0, L.T, B, lower=0, trans_a=1)  # the transpose is in the order of columns: no copy
+    # The transpose is stored by columns, as LAPACK wants it, so that nothing is copied.
+    return dtrsm(1.0, L.T, B, lower=0, trans_a=1)
 
 
 def solve_lower_transposed(L: np.ndarray, B: np.ndarray) -> np.ndarray:
@@ -24,40 +25,41 @@ def solve_lower_transposed(L: np.ndarray, B: np.ndarray) -> np.ndarray:
 
 
 def assign(cost: np.ndarray) -> np.ndarray:
-    """Column (n,) of each row of a cost matrix (n, m), n <= m, with the least sum of costs."""
+    """Assign a column (n,) to each row of a cost matrix (n, m), n <= m, with the least sum of costs."""
     least = cost.argmin(axis=1)
     if np.isfinite(cost).all() and len(np.unique(least)) == len(least):
-        return least  # what each row would choose alone
-    from scipy.optimize import linear_sum_assignment  # here, because it takes as long to import as the rest
+        return least  # the columns that each row would choose alone are all different
+    # Imported here, because it takes as long to import as all the rest.
+    from scipy.optimize import linear_sum_assignment
 
     return linear_sum_assignment(cost)[1]
 
 
 @cache
 def gauss_rule(points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights of the Gauss rule on [-1, 1]."""
+    """Return points and weights of the Gauss rule on [-1, 1]."""
     return legendre.leggauss(points)
 
 
 def gauss_points_on(ends: np.ndarray, points: int) -> np.ndarray:
-    """Gauss points on each of c cells between ascending ends (c + 1,): shape (c, points)."""
+    """Return Gauss points on each of c cells between ascending ends (c + 1,): shape (c, points)."""
     return ends[:-1, None] + np.diff(ends)[:, None] * (1 + gauss_rule(points)[0]) / 2
 
 
 def gauss_weights_on(ends: np.ndarray, points: int) -> np.ndarray:
-    """Weights (c points,) of the Gauss points on all of c cells between ascending ends (c + 1,)."""
+    """Return weights (c points,) of the Gauss points on all of c cells between ascending ends (c + 1,)."""
     return (np.diff(ends)[:, None] / 2 * gauss_rule(points)[1]).ravel()
 
 
 @cache
 def legendre_values(points: int, degree: int) -> np.ndarray:
-    """Legendre polynomials up to a degree at the points of the Gauss rule, shape (points, degree + 1)."""
+    """Evaluate Legendre polynomials up to a degree at the points of the Gauss rule: (points, degree + 1)."""
     return legendre.legvander(gauss_rule(points)[0], degree)
 
 
 @cache
 def legendre_series(points: int) -> np.ndarray:
-    """Legendre coefficients, in rows, of the interpolant through Gauss points by its values there."""
+    """Return the matrix from values at Gauss points to the Legendre coefficients of their interpolant."""
     return (np.arange(points)[:, None] + 0.5) * legendre_values(points, points - 1).T * gauss_rule(points)[1]
 
 
@@ -67,7 +69,7 @@ def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     The recurrence of Legendre polynomials P_k gives P_k b; no digits are lost of series of a few terms.
     """
     short, long = sorted((a, b), key=len)
-    if len(short) == 1:  # of constants
+    if len(short) == 1:  # one of the series is a constant
         return short * long
     total = np.zeros((len(a) + len(b) - 1, long.shape[1]))
     before, product = np.zeros_like(total), np.zeros_like(total)
@@ -91,7 +93,7 @@ def integrate_series(series: np.ndarray) -> np.ndarray:
 
 
 def _times_argument(series: np.ndarray) -> np.ndarray:
-    """Multiply series in columns by t, without the term of highest degree, which is to be 0."""
+    """Multiply Legendre series in columns by t; the term of highest degree must be 0, and is dropped."""
     k = np.arange(len(series))[:, None]
     shifted = np.zeros_like(series)
     shifted[1:] = (series * (k + 1) / (2 * k + 1))[:-1]

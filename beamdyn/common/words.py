@@ -1,4 +1,4 @@
-"""Texts made of parts that each medium words in its own way: Python, files and commands, forms."""
+"""Texts made of parts that each medium (Python, files and commands, forms) words in its own way."""
 
 from __future__ import annotations
 
@@ -6,12 +6,16 @@ import json
 import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 
-if TYPE_CHECKING:
-    from typing import Self
-
+_NAMES = {"youngs": "Young's", "poissons": "Poisson's"}  # words with an apostrophe, which keys lack
 _LONG = 10.0  # length [m] from which on it is in m everywhere
+
+
+def name_in_words(path: str) -> str:
+    """The path of an input as forms and pictures say it: "root stiffness" of "root_stiffness"."""
+    words = path.replace(".", " ").replace("_", " ").split(" ")
+    return " ".join(_NAMES.get(word, word) for word in words)
 
 
 class Words(str):
@@ -31,7 +35,7 @@ class Words(str):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Arguments by position and by name that make an equal object, for pickles and files."""
+        """Return arguments by position and by name that make an equal object, for pickles and files."""
         return self.parts, {}
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -39,20 +43,29 @@ class Words(str):
         return partial(type(self), *given, **named), ()
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """The text with each part as a medium words it."""
+        """Return the text with each part as a medium words it."""
         return "".join(worded(part, word) for part in self.parts)
 
 
 class Part(Words):
-    """A part that a medium words in its own way."""
+    """A part of a text that each medium words in its own way."""
 
     def in_units(self, units: Any) -> str:
-        """The part in `DisplayUnits`, as far as they are about it."""
+        """Return the part in `DisplayUnits`, if it has a quantity in such units."""
         return str(self)
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """The part as a medium words it."""
+        """Return the part as a medium words it."""
         return word(self)
+
+
+class InputName(Part):
+    """The name of an input: its path, as files and commands have it, and on a form the words of its field."""
+
+    @property
+    def on_form(self) -> str:
+        """The words of its field; the beam's inputs go without the beam."""
+        return name_in_words(self.removeprefix("beam."))
 
 
 class Named(Part):
@@ -72,7 +85,7 @@ class Named(Part):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Both words."""
+        """Return both words, as arguments that make an equal object."""
         return (str(self), self.elsewhere), {}
 
 
@@ -97,16 +110,16 @@ class Setting(Named):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """The table, and the keys by name."""
+        """Return the table, and its keys by name, as arguments that make an equal object."""
         return (self.table,), self.keys
 
     def on_form(self, heading: str) -> str:
-        """The setting as a form calls it, under the heading of its table."""
+        """Word the setting as a form does, under the heading of its table."""
         return f"{heading}: {_as_toml({key.replace('_', ' '): value for key, value in self.keys.items()})}"
 
 
 def amount(*values: Any, unit: str = "m", digits: int = 6) -> Named:
-    """A length, an angle or the coordinates of a point [m or rad]; files and drawings have mm or degrees.
+    """Word a length, an angle or the coordinates of a point [m or rad]; files and drawings have mm or deg.
 
     Lengths from 10 m on are in m everywhere.
     """
@@ -122,10 +135,10 @@ def _placed(numbers: Sequence[float], digits: int, unit: str) -> str:
 
 
 def _as_toml(keys: Mapping[str, Any]) -> str:
-    """Keys and values as a file has them."""
+    """Write keys and values as a file has them."""
     return ", ".join(f"{key} = {json.dumps(value)}" for key, value in keys.items())
 
 
 def worded(text: str, word: Callable[[Part], str]) -> str:
-    """A text with each part that it knows as a medium words it."""
+    """Return a text with each of its parts as a medium words it."""
     return text.worded(word) if isinstance(text, Words) else text

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.linalg
 
 from beamdyn.common.numerics import solve_lower, solve_lower_transposed
-from beamdyn.equations.circuit import BENDS, Circuit, coupling_of, open_terms
+from beamdyn.equations.circuit import Circuit, coupling_of, open_terms
 from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.equations_of_motion import BACKWARD, Equations, Shape, SteadyPencil, place_blocks
 from beamdyn.equations.fields import FIELDS
@@ -64,21 +64,23 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
 
 
 def _with_electrodes(equations: Equations, beam: Beam) -> Equations:
-    """Add the stiffness of open electrodes, or note the circuit of those with a load."""
+    """Add the stiffness of open electrodes, or store the circuit of electrodes with a load resistance."""
     electrodes, theta = beam.electrodes, np.zeros(equations.size)
     assert electrodes is not None
     if not electrodes.resistance:
         return equations
-    theta[equations.blocks[BENDS]] = coupling_of(beam, equations.deflections[BENDS])
+    coupled = coupling_of(beam, equations.deflections, equations.sections)
+    for name, of_field in coupled.items():
+        theta[equations.blocks[name]] = of_field
     circuit = Circuit(theta, electrodes.capacitance(beam.length), electrodes.resistance)
     if electrodes.is_loaded:
         return replace(equations, circuit=circuit)
-    stiffness = open_terms(circuit, {BENDS: theta[equations.blocks[BENDS]]})
+    stiffness = open_terms(circuit, coupled)
     return replace(equations, terms=(*equations.terms, *stiffness))
 
 
 def damping_terms(equations: Equations, scene: Scene) -> Iterator[Term]:
-    """Yield the terms of all that damps a scene."""
+    """Yield the terms of all damping of a scene: modal, Rayleigh's, and of a damper at the tip."""
     names, damping = {field.name: field.damping_name for field in FIELDS}, scene.damping
     if scene.damping_ratio or any(damping.ratios):
         for part, C in _damping_of_modes(equations, scene):
@@ -91,7 +93,7 @@ def damping_terms(equations: Equations, scene: Scene) -> Iterator[Term]:
         if term.quantity == "unity" and factors.get(term.order):
             name, factor = names[term.rows], factors[term.order] * term.factor
             yield replace(term, name=name, order=1, factor=factor)
-    if damping.tip_damper:  # it acts against the whole deflection in each direction
+    if damping.tip_damper:  # the tip damper acts against the whole deflection in each direction
         tips = {name: (d.direction, d.space.end(0)) for name, d in equations.deflections.items()}
         for row, (direction, tip) in tips.items():
             for column, (other, tip_of_other) in tips.items():
@@ -101,7 +103,9 @@ def damping_terms(equations: Equations, scene: Scene) -> Iterator[Term]:
 
 
 def _damping_of_modes(equations: Equations, scene: Scene) -> Iterator[tuple[tuple[str, ...], np.ndarray]]:
-    """Yield sets of blocks, and matrices that give their modes at rest a damping ratio of 1, or each its own.
+    """Yield coupled sets of blocks with the matrix that gives their modes at rest the scene's damping ratios.
+
+    The damping ratio is 1, to be scaled, or each mode's own, in order of all frequencies together.
 
     Own ratios are given in order of the frequencies of all sets together.
     """
@@ -121,7 +125,7 @@ def _damping_of_modes(equations: Equations, scene: Scene) -> Iterator[tuple[tupl
 
 
 def _modal_damping(part: SteadyPencil, ratios: np.ndarray | None = None) -> np.ndarray:
-    """Damping matrix [kg/s] with which every mode at rest has a damping ratio of 1, or its own (n,).
+    """Compute the damping matrix [kg/s] that gives modes at rest the damping ratio 1, or given ones (n,).
 
     C = 2 L (B - shift B^2)^(1/2) L^T with K + shift M = L L^T and B = L^-1 M L^-T; the shift [1/s2] makes
     a singular stiffness positive definite.
@@ -131,7 +135,7 @@ def _modal_damping(part: SteadyPencil, ratios: np.ndarray | None = None) -> np.n
     compliance = solve_lower(L, solve_lower(L, M).T)
     mu, U = np.linalg.eigh((compliance + compliance.T) / 2)
     unshifted: np.ndarray | float = 1.0
-    if shift:  # v^T K v, 0 within rounding: 1 - shift mu, without its loss of digits on soft springs
+    if shift:  # v^T K v is 0 within rounding: the form 1 - shift mu would lose digits on soft springs
         v = solve_lower_transposed(L, U)
         quotient = np.einsum("nk,nk->k", v, K @ v)
         lost = BACKWARD * np.einsum("nk,nk->k", np.abs(v), np.abs(K) @ np.abs(v))

@@ -1,4 +1,4 @@
-"""The electric circuit of a harvester beside the equations of motion: electrodes, capacitance and resistance.
+"""The electric circuit of a harvester in the equations of motion: electrodes, capacitance and resistance.
 
 With the voltage v, the coordinates q and theta per coordinate, the moment of the electrodes times the change
 of slope between their ends,
@@ -20,32 +20,35 @@ the reduced model is Cp + theta^T g.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
-from beamdyn.equations.fields.field import Deflection, Term
+from beamdyn.common.numerics import gauss_rule
+from beamdyn.equations.fields.field import Deflection, SectionFunctions, Term
 from beamdyn.scene.beam import Beam
 
 BENDS = "bending"  # the field whose slope the electrodes feel
 BLOCK = "circuit"  # name of the block of the circuit's coordinate
+_POINTS = 40  # number of points between breakpoints, at which the curvature across is integrated
 
 
 @dataclass(frozen=True)
 class Circuit:
-    """Electrodes with a load, beside equations of n coordinates.
+    """Electrodes with a load resistance, coupled to equations of n coordinates.
 
     Parameters
     ----------
     coupling : ndarray, shape (n,)
-        theta [N/V per coordinate].
+        Coupling theta [N/V per coordinate].
     capacitance : float
-        Cp [F].
+        Capacitance Cp [F].
     resistance : float
-        R [ohm].
+        Load resistance R [ohm].
     bent : dict of str to ndarray
-        g, the deflection by a unit voltage beyond that of the coordinates, over the functions of each field.
+        Residual flexibility g: deflection by a unit voltage beyond that of the coordinates, by field.
     """
 
     coupling: np.ndarray
@@ -56,27 +59,45 @@ class Circuit:
 
 @dataclass(frozen=True)
 class Voltage:
-    """The voltage [V], or what else, by the coordinates (order 0) or their rates (order 1): row (n,)."""
+    """The voltage [V] or other output: a row (n,) times coordinates (order 0) or rates (order 1)."""
 
     order: int
     row: np.ndarray
 
 
 def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
-    """Strain of the layer's outer face at xi (k,) per function of the bending field: shape (n, k)."""
+    """Compute the strain of the layer's outer face at xi (k,) per function of bending: shape (n, k)."""
     assert beam.electrodes is not None, "electrodes stand on a layer"
     return beam.electrodes.fibre / beam.length**2 * deflection.space.evaluate(xi, 2)
 
 
-def coupling_of(beam: Beam, deflection: Deflection) -> np.ndarray:
-    """Theta over the functions of the bending field: the moment by a unit voltage on the slopes there."""
-    assert beam.electrodes is not None, "electrodes couple"
-    slopes = deflection.space.evaluate(np.array(beam.electrodes.span), 1) / beam.length
-    return beam.electrodes.coupling * (slopes[:, 1] - slopes[:, 0])
+def coupling_of(
+    beam: Beam, deflections: Mapping[str, Deflection], sections: Iterable[tuple[str, SectionFunctions]]
+) -> dict[str, np.ndarray]:
+    """Return Theta over the functions of each field: the moment by a unit voltage on both curvatures.
+
+    Along the beam its work is that on the slopes at the ends of the electrodes.  Where sections camber, it
+    acts on the mean curvature across the width, too.
+    """
+    electrodes, L = beam.electrodes, beam.length
+    assert electrodes is not None, "electrodes couple"
+    slopes = deflections[BENDS].space.evaluate(np.array(electrodes.span), 1) / L
+    coupling = {BENDS: electrodes.moment * (slopes[:, 1] - slopes[:, 0])}
+    for name, functions in sections:
+        assert beam.strip is not None, "sections that camber have a width"
+        ends = beam.mass_per_length.split(electrodes.span).breakpoints
+        inside = [each for each in ends if electrodes.span[0] <= each <= electrodes.span[1]]
+        nodes, weights = gauss_rule(_POINTS)
+        for first, last in pairwise(inside):
+            xi = first + (last - first) * (nodes + 1) / 2
+            per_width = (2 / beam.strip.width(xi)) ** 2 * weights * (last - first) * L / 2
+            of_part = electrodes.moment * functions.curvature_across(xi) @ per_width
+            coupling[name] = coupling.get(name, 0.0) + of_part
+    return coupling
 
 
 def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:
-    """Terms of the flux mu, and the voltage by its rate; theta is given by block."""
+    """Build the terms of the circuit's flux, and the voltage, for a coupling vector of each block."""
     root = np.sqrt(circuit.capacitance)
     terms = [
         Term("capacitance", BLOCK, BLOCK, 2, np.eye(1)),
@@ -90,7 +111,7 @@ def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[lis
 
 
 def charge_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:
-    """Terms of the charge Q, and the voltage by it and the coordinates; theta is given by block."""
+    """Build the terms of the circuit's charge, and the voltage, for a coupling vector of each block."""
     C = circuit.capacitance
     terms = [
         Term("capacitance", BLOCK, BLOCK, 0, np.eye(1) / C),
@@ -105,7 +126,10 @@ def charge_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[l
 
 
 def open_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> list[Term]:
-    """The stiffness theta theta^T / Cp of electrodes whose charge stays."""
+    """Build the stiffness terms of open electrodes, whose charge stays constant.
+
+    They are theta theta^T / Cp, for a coupling vector theta of each block and the capacitance Cp.
+    """
     return [
         Term("piezoelectric stiffness", a, b, 0, np.outer(of_a, of_b) / circuit.capacitance)
         for a, of_a in coupled.items()

@@ -1,4 +1,4 @@
-"""Interface of discretizations: function spaces on a beam, which integrate by Gauss rules on its cells."""
+"""Interface of discretizations: function spaces on a beam, integrated by Gauss rules on its cells."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from beamdyn.scene.profile import Profile
 
 @dataclass(frozen=True)
 class Cells:
-    """Parts of the beam on which the trial functions of a discretization are smooth.
+    """Cells of a beam: parts on which the trial functions of a discretization are smooth.
 
     Parameters
     ----------
     ends : ndarray, shape (c + 1,)
         Ends of the c cells, as x/L from 0 to 1.
     points : int
-        Number p of Gauss points on each that resolve nonlinear functions of the trial functions.
+        Number p of Gauss points on each cell, which resolve nonlinear functions of the trial functions.
     """
 
     ends: np.ndarray
@@ -34,7 +34,7 @@ class Cells:
 
 @dataclass(frozen=True)
 class ArcQuadrature:
-    """Gauss rule on cells, and integrals from the root to each of its points.
+    """Gauss rule on cells of a beam, with integrals from the root to each of its points.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class ArcQuadrature:
 
     @cached_property
     def xi(self) -> np.ndarray:
-        """Points on [0, 1], shape (N,)."""
+        """Gauss points x/L on [0, 1], shape (N,)."""
         return gauss_points_on(self.cells.ends, self.cells.points).ravel()
 
     @cached_property
@@ -59,14 +59,14 @@ class ArcQuadrature:
         return np.diff(self.cells.ends)[:, None] / 2
 
     def integrate(self, values: np.ndarray) -> np.ndarray:
-        """Integrate from 0 to each point, and to 1: values (..., N) at the points, result (..., N + 1)."""
+        """Integrate values (..., N) from the root to each point and to the tip: shape (..., N + 1)."""
         p, N = self.cells.points, len(self.xi)
         of_cells = values.reshape(-1, p)
         shape = *values.shape[:-1], (len(self.cells.ends) - 1), p
         ends = np.cumsum(
             (of_cells @ gauss_rule(p)[1]).reshape(shape[:-1]) * self._half_lengths[:, 0], axis=-1
         )
-        integrals = np.empty((*values.shape[:-1], N + 1))  # new memory costs more than the arithmetic
+        integrals = np.empty((*values.shape[:-1], N + 1))  # allocation costs more than arithmetic
         inside = integrals[..., :N].reshape(shape)
         np.multiply((of_cells @ integrals_between_points(p).T).reshape(shape), self._half_lengths, out=inside)
         inside[..., 1:, :] += ends[..., :-1, None]
@@ -74,7 +74,7 @@ class ArcQuadrature:
         return integrals
 
     def transposed(self, forces: np.ndarray) -> np.ndarray:
-        """Apply the transpose of `integrate`: forces (..., N + 1), result (..., N)."""
+        """Apply the transpose of `integrate` to forces (..., N + 1): shape (..., N)."""
         p = self.cells.points
         _, w = gauss_rule(p)
         inside = forces[..., :-1].reshape(*forces.shape[:-1], (len(self.cells.ends) - 1), p)
@@ -84,7 +84,7 @@ class ArcQuadrature:
         return scaled.reshape(*forces.shape[:-1], (len(self.cells.ends) - 1) * p)
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Weights (k, N) of the integrals from 0 to xi (k,) of the interpolant through the points."""
+        """Compute weights (k, N) that integrate values at the points from the root to each of xi (k,)."""
         cell, t, own = self._find(xi)
         length, p = np.diff(self.cells.ends)[cell], self.cells.points
         matrix = np.where(np.arange(len(self.xi)) < (cell * p)[:, None], self.weights, 0.0)
@@ -92,7 +92,7 @@ class ArcQuadrature:
         return matrix
 
     def interpolate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Weights (k, N) of the interpolants through the points of each cell at xi (k,)."""
+        """Compute weights (k, N) that interpolate values at the points of each cell to xi (k,)."""
         _, t, own = self._find(xi)
         matrix = np.zeros((len(xi), len(self.xi)))
         values = legendre.legvander(t, self.cells.points - 1) @ legendre_series(self.cells.points)
@@ -100,7 +100,7 @@ class ArcQuadrature:
         return matrix
 
     def _find(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Cell (k,) of each xi, place in it from -1 to 1 (k,), and indices (k, p) of the cell's points."""
+        """Find each xi's cell (k,), its place there from -1 to 1 (k,), and the points' indices (k, p)."""
         ends, p = self.cells.ends, self.cells.points
         cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
         t = np.clip(2 * (xi - ends[cell]) / np.diff(ends)[cell] - 1, -1, 1)
@@ -109,28 +109,28 @@ class ArcQuadrature:
 
 @cache
 def integrals_between_points(points: int) -> np.ndarray:
-    """Weights (p, p) of the integrals from -1 to each of p Gauss points of the interpolant through them."""
+    """Compute weights (p, p) that integrate values at p Gauss points from -1 to each of the points."""
     return _integrate_interpolant(gauss_rule(points)[0], points)
 
 
 def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
-    """Weights (k, p) of the integrals from -1 to t (k,) of the interpolant through p Gauss points."""
+    """Compute weights (k, p) that integrate values at p Gauss points from -1 to each of t (k,)."""
     integrals = legendre.legint(np.eye(points), lbnd=-1)
     return legendre.legvander(t, points) @ integrals @ legendre_series(points)
 
 
-_OF_TENSION = 3  # degree of the moment of a linear mass
+_OF_TENSION = 3  # polynomial degree of the moment of a mass per length that is linear in x
 
 
 class Sampler:
-    """Values of properties at the Gauss points of cells, each computed once.
+    """Sampler of the beam's properties at the Gauss points of cells; each is evaluated once.
 
     Parameters
     ----------
     left, right : ndarray, shape (c,)
         Ends of the cells, as x/L; properties are smooth within them.
     points : int
-        Number of points on each.
+        Number of Gauss points on each cell.
     """
 
     def __init__(self, left: np.ndarray, right: np.ndarray, points: int) -> None:
@@ -140,11 +140,11 @@ class Sampler:
 
     @classmethod
     def on_cells(cls, cells: Cells) -> Sampler:
-        """Sample on cells that follow one another."""
+        """Make a sampler on cells that follow one another."""
         return cls(cells.ends[:-1], cells.ends[1:], cells.points)
 
     def __call__(self, profile: Profile) -> np.ndarray:
-        """Values (c points,) of a property."""
+        """Evaluate a property at all Gauss points: shape (c points,)."""
         if profile not in self._known:
             segment, polynomials = self._place(profile.breakpoints, profile.degree)
             series = profile.series.T[segment]
@@ -153,9 +153,9 @@ class Sampler:
         return self._known[profile]
 
     def _place(self, breakpoints: tuple[float, ...], degree: int) -> tuple[np.ndarray, np.ndarray]:
-        """Segment (c,) of each cell, and Legendre polynomials of the segment at its points (c, points, n).
+        """Find the segment (c,) of each cell, and its Legendre polynomials (c, points, n) at the points.
 
-        They are those up to the degree, or to a higher one; most properties have the same segments.
+        The polynomials reach at least the degree; they are cached, as most properties have the same segments.
         """
         placed = self._placed.get(breakpoints)
         if placed is not None and placed[1].shape[2] > degree:
@@ -170,63 +170,63 @@ class Sampler:
 
 
 class SampledSpace(FieldsOnly, ABC):
-    """Base class of spaces of functions that are smooth between the points of a Gauss rule on cells."""
+    """Base class of function spaces that are sampled at the points of a Gauss rule on cells."""
 
     @cached_property
     @abstractmethod
     def points(self) -> np.ndarray:
-        """Points of the rule on [0, 1], shape (k,)."""
+        """Points x/L of the Gauss rule on [0, 1], shape (k,)."""
 
     @cached_property
     @abstractmethod
     def rule(self) -> np.ndarray:
-        """Weights of the rule, shape (k,)."""
+        """Weights of the Gauss rule, shape (k,)."""
 
     @cached_property
     @abstractmethod
     def samples(self) -> list[np.ndarray]:
-        """Values of the functions and of each derivative at the points, each of shape (n, k)."""
+        """Values of the functions and of each derivative at the Gauss points, of shape (n, k) each."""
 
     @property
     def size(self) -> int:
-        """Number n of functions."""
+        """Number n of trial functions."""
         return len(self.samples[0])
 
     @property
     @abstractmethod
     def coarse(self) -> np.ndarray | None:
-        """Indices of functions that span those of the coarser discretization; None where none do."""
+        """Indices of functions that span the coarser discretization; None where no subset does."""
 
     def weights(self, weight: Profile) -> np.ndarray:
-        """Multiply the weights of the rule by a property."""
+        """Multiply the weights of the Gauss rule by a property of the beam."""
         return self.rule * weight(self.points)
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrate the weight times the `order`-th derivatives of functions i and j."""
+        """Integrate a weight times the `order`-th derivatives of functions i and j: shape (n, n)."""
         phi = self.samples[order]
         return (phi * self.weights(weight)) @ phi.T
 
     def load(self, weight: Profile, order: int = 0) -> np.ndarray:
-        """Integrate the weight times the `order`-th derivative of function i."""
+        """Integrate a weight times the `order`-th derivative of each function: shape (n,)."""
         return self.samples[order] @ self.weights(weight)
 
 
 def product_of(
     rows: SampledSpace, columns: SampledSpace, weight: Profile, orders: tuple[int, int]
 ) -> np.ndarray:
-    """Integrate the weight times derivatives of functions i of one space and j of another, on one rule."""
+    """Integrate a weight times derivatives of functions of two spaces on one rule, in rows and columns."""
     return (rows.samples[orders[0]] * rows.weights(weight)) @ columns.samples[orders[1]].T
 
 
 class RootConditions(NamedTuple):
-    """Conditions at the root and smoothness of trial functions.
+    """Conditions that trial functions of a field satisfy at the root, and their smoothness.
 
     Parameters
     ----------
     held : int
         Number of derivatives, from the value on, that vanish at the root.
     derivatives : int
-        Highest order of derivative that is square-integrable.
+        Highest order of a derivative that must be square-integrable.
     stiffness : str
         Property of the sections that resists that derivative, to which functions may be adapted.
     direction : int
@@ -266,7 +266,7 @@ class Space(Functions, Protocol):
 
     @property
     def coarse(self) -> np.ndarray | None:
-        """Indices of functions that span those of the coarser discretization; None where no few do."""
+        """Indices of functions that span the coarser discretization; None where no subset does."""
         ...
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
@@ -282,9 +282,9 @@ class Spaces(Protocol):
     """The function spaces of one discretization of one beam."""
 
     def functions(self, conditions: RootConditions) -> Space:
-        """Trial functions that satisfy conditions at the root.
+        """Build trial functions that satisfy conditions at the root.
 
-        Those of `HINGED` are one with a slope at the root, then those of `CLAMPED`.
+        The functions for `HINGED` are one with a slope at the root, then the functions for `CLAMPED`.
         """
         ...
 
@@ -296,16 +296,16 @@ class Spaces(Protocol):
 
     @property
     def across(self) -> int:
-        """Number of functions across the width of a plate beyond the mean."""
+        """Number of functions across the width of a plate, without the constant one."""
         ...
 
     @property
     def fewer_across(self) -> int:
-        """Number of those of the coarser discretization."""
+        """Number of functions across the width of a plate in the coarser discretization."""
         ...
 
     def shares_functions(self, other: Self) -> bool:
-        """Whether the functions are those of other spaces of the same kind, but for the quadrature."""
+        """Whether two spaces of one kind have the same functions, whatever their quadrature."""
         ...
 
 
@@ -346,30 +346,30 @@ class Discretization(Protocol):
 
     @property
     def converges_regularly(self) -> bool:
-        """Whether further functions change an eigenvalue ever less, rather than by fits and starts."""
+        """Whether the changes of an eigenvalue with each refinement decrease steadily, without setbacks."""
         ...
 
     @property
     def rounding(self) -> float:
-        """Relative rounding error of eigenvalues due to the integrals of the discretization."""
+        """Relative rounding error of eigenvalues that stems from the integrals of the discretization."""
         ...
 
     def spaces(self, beam: Beam) -> Spaces:
-        """The function spaces on a beam."""
+        """Build the function spaces on a beam."""
         ...
 
     def cells(self, beam: Beam) -> Cells:
-        """Parts of the beam on which the functions are smooth, for integrals of large deflections."""
+        """Divide a beam into cells on which the functions are smooth, for integrals of large deflections."""
         ...
 
     def coarser(self) -> Discretization:
-        """A coarser discretization, from whose results those of this one differ by about their error."""
+        """Return a coarser discretization; the difference of their results estimates the error."""
         ...
 
     def finer(self) -> Discretization | None:
-        """The next finer discretization; None at the largest."""
+        """Return the next finer discretization; None at the largest."""
         ...
 
     def fits(self, modes: int) -> bool:
-        """Whether the coarser discretization has functions enough for a number of modes."""
+        """Whether even the coarser discretization has functions enough for a number of modes."""
         ...

@@ -1,6 +1,6 @@
-"""Effects beyond the plain beam: what each is named, how it is added, and what a model says that lacks it.
+"""Physical effects beyond the plain beam: names, how each is added, and what a model without it assumes.
 
-They are said with the names of the two directions of bending at the root.
+Sentences name the two directions of bending at the root.
 """
 
 from __future__ import annotations
@@ -9,7 +9,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.words import Setting, Words
+from beamdyn.common.results.statements import joined
+from beamdyn.common.words import InputName, Setting, Words
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.physics import Physics
@@ -29,17 +30,17 @@ class Effect:
     assumed : str
         What a model assumes in its place; "{across}" stands for the direction across that of bending.
     switch : str
-        Field of `Physics` that includes it; empty if no model has it.
+        Field of `Physics` that includes the effect; empty if no model has it.
     value : int
-        Value of that field with the effect.
+        Value of the field `switch` of `Physics` with which the effect is included.
     needs : tuple of str
-        Properties of the beam, of which the effect needs one; those that follow from others come last.
+        Properties of the beam of which the effect needs at least one; derived properties come last.
     bends : bool
-        Whether it can be combined with large deflection in one plane.
+        Whether the effect can be combined with large deflection in one plane.
     taken_out : str
-        Name of what is taken out where large deflection takes its place.
+        Words for the effect where it must be left out so that large deflection can be included.
     uncertainty : float
-        Share of its change that models here miss in short thick beams, held against solids.
+        Relative error of the effect's change of frequencies in short thick beams, against solid bodies.
     """
 
     name: str
@@ -58,7 +59,7 @@ class Effect:
         return bool(self.switch) and getattr(scene.physics, self.switch) == self.value
 
     def is_left_out(self, scene: Scene) -> bool:
-        """Whether the model of a scene lacks the effect: twist and offsets only of a beam that has them."""
+        """Whether a scene's model lacks the effect; twist and offsets count only for beams that have them."""
         has = {
             TWIST: scene.beam.is_twisted,
             OFFSETS: scene.beam.has_offsets,
@@ -68,11 +69,11 @@ class Effect:
 
     @property
     def bends_in_space(self) -> bool:
-        """Whether it can be combined with large deflection in space: sections keep their shape there."""
+        """Whether the effect can be combined with large deflection of rigid sections in space."""
         return self is not CAMBER
 
     def reason(self, scene: Scene) -> str:
-        """Say what the model of a scene assumes in place of the effect, and how to include that."""
+        """Say what the model of a scene assumes in place of the effect, and how to include the effect."""
         assumed = self.assumption(scene)
         return Words(assumed, "; ", self._how_to_include(scene)) if self.switch else assumed
 
@@ -86,13 +87,17 @@ class Effect:
         if (refused := self._why_refused(scene)) is not None:
             return refused
         lacking = [name for name in self.needs[:1] if _lacks(scene.beam, name)]
-        data = f", with {' or '.join(self.needs)} of the beam" if lacking else ""
+        needed = joined(" or ", map(InputName, self.needs))
+        data = Words(", with ", needed, " of the beam") if lacking else ""
         others = [e.taken_out for e in EFFECTS if not e.bends_in_space and e.is_in(scene)]
         without = f", without {' and '.join(others)}" if others and self is LARGE_DEFLECTION else ""
-        return Words(Setting("physics", **{self.switch: self.value}), f" includes it{data}{without}")
+        return Words(Setting("physics", **{self.switch: self.value}), " includes it", data, without)
 
     def _why_refused(self, scene: Scene) -> str | None:
-        """Why no model has the effect of a beam with all data; None if one has, or data are lacking."""
+        """Say why no model has the effect even with all data.
+
+        None if some model can have it, or if only data are missing; with large deflection it is not asked.
+        """
         if scene.physics.large_deflection or self is LARGE_DEFLECTION:
             return None
         try:
@@ -103,10 +108,10 @@ class Effect:
 
 
 def _lacks(beam: Beam, name: str) -> bool:
-    """Whether a beam lacks a property that neither is given nor follows from its section."""
+    """Whether a property of a beam is neither given nor follows from its section."""
     has_ratio = beam.section is not None and beam.section.poissons_ratio is not None
     if name == "poissons_ratio":
-        return not has_ratio
+        return beam.strip is None or beam.strip.poissons_ratio is None
     return getattr(beam, name) is None and not (name == "torsion_stiffness" and has_ratio)
 
 
@@ -156,15 +161,16 @@ _OFFSETS, _LINE = (
     "offsets of sections",
     "their centres of gravity, tension and shear are on one straight line",
 )
-OFFSETS = Effect(_OFFSETS, _LINE, "torsion", needs=("torsion_stiffness",))  # given, but without torsion
-_IN_LINE = Effect(_OFFSETS, _LINE)  # none are given
+# Offsets are given, but torsion is not modelled.
+OFFSETS = Effect(_OFFSETS, _LINE, "torsion", needs=("torsion_stiffness",))
+_IN_LINE = Effect(_OFFSETS, _LINE)  # no offsets are given
 EFFECTS = SECOND_PLANE, TWIST, SHEAR, ROTARY_INERTIA, CAMBER, STRETCH, LARGE_DEFLECTION, TORSION, OFFSETS
 NEVER_MODELLED = _IN_LINE, Effect("contact", "nothing touches the beam")
 NAMED = {effect.name: effect for effect in EFFECTS}
 
 
 def add_effects(scene: Scene, effects: Iterable[Effect]) -> Scene:
-    """The scene with further effects.
+    """Return the scene with further effects switched on in its physics.
 
     Raises
     ------
@@ -203,7 +209,7 @@ class OmittedEffect:
 
 
 def effects_left_out(scene: Scene) -> Iterator[Effect]:
-    """The effects that the model of a scene leaves out, those that it could include first."""
+    """Yield the effects that the model of a scene leaves out, first those that it could include."""
     yield from (effect for effect in (*EFFECTS, *NEVER_MODELLED) if effect.is_left_out(scene))
 
 
@@ -221,8 +227,8 @@ def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
         yield OmittedEffect(effect.name, reason, effect.switch)
 
 
-_OUTWARD = -1.0, 0.0  # cosine and sine of the setting angle
-# Directions in words, and in a word.
+_OUTWARD = -1.0, 0.0  # cosine and sine of the setting angle of a beam that points outward
+# Names of directions of bending, each in a phrase and in one word.
 _EDGE = "in the plane of rotation (edge)", "edge"
 _FLAP = "out of the plane of rotation (flap)", "flap"
 _OWN_EDGE = "edgewise, in the section's direction (edge)", "edge"
@@ -232,7 +238,7 @@ _ACROSS = "across the direction of bending", "across"
 
 
 def check_direction(direction: int) -> int:
-    """Refuse what is no direction of deflection: 0 is that of bending at the root, 1 that across."""
+    """Refuse an invalid direction of deflection: 0 is the one of bending at the root, 1 the one across."""
     if direction not in (0, 1):
         bound = "give 0 for the direction of bending at the root, or 1 for the direction across"
         raise InvalidValue("direction", direction, bound)
@@ -240,10 +246,10 @@ def check_direction(direction: int) -> int:
 
 
 def name_directions(scene: Scene) -> tuple[tuple[str, str], tuple[str, str]]:
-    """Name the direction of bending at the root, and that across, each in words and in a word.
+    """Name the direction of bending at the root and the one across, each in a phrase and in one word.
 
-    They are edge and flap where the bending angle is a whole number of quarter turns.  Of a beam that points
-    outward they are so at any angle, a blade's pitch: flap is the direction nearer to the axis of rotation.
+    The words are edge and flap where the bending angle is a whole number of quarter turns, and at any angle
+    (a blade's pitch) for a beam that points outward: flap is the direction nearer to the axis of rotation.
     """
     c, s = aligned_cos_sin(scene.mount.bending_angle)
     if s == 0:
@@ -256,15 +262,15 @@ def name_directions(scene: Scene) -> tuple[tuple[str, str], tuple[str, str]]:
 
 
 def first_drawn(scene: Scene) -> int:
-    """Direction that is drawn solid: flap if one is, else the direction of bending."""
+    """Choose the direction that is drawn with a solid line: flap if there is one, else that of bending."""
     return 1 if name_directions(scene)[1][1] == "flap" else 0
 
 
 def modelled_directions(scene: Scene) -> tuple[str, ...]:
-    """Names of the directions in which a scene's beam bends, that of bending at the root first."""
+    """Name the directions in which a scene's beam bends, the one of bending at the root first."""
     return tuple(words for words, _ in name_directions(scene))[: scene.physics.planes]
 
 
 def words_of_directions(scene: Scene) -> tuple[str, ...]:
-    """Names of the directions in a word each; none where one plane is modelled, as there is no other."""
+    """Name the directions of bending in one word each; empty where only one plane is modelled."""
     return tuple(word for _, word in name_directions(scene) if scene.physics.planes == 2)

@@ -1,4 +1,4 @@
-"""The equations of motion, as a list of terms.
+"""The equations of motion of a scene, as a list of terms.
 
 M q'' + C q' + K q = f for the coordinates q of all fields.  Each matrix is a sum of terms
 ``factor * quantity(t) * matrix`` with a quantity of the root's motion: batches over speeds, harmonic balance
@@ -27,7 +27,7 @@ from beamdyn.scene.mount import Mount
 # Rounding errors of eigenproblems were fitted by benchmarks/stated_frequency_errors.py to 720 frequencies of
 # random scenes.  The matrices are graded, so that the errors are smaller than their norms suggest.
 BACKWARD = 8 * np.finfo(float).eps  # backward error of the stiffness, relative to the sum of its terms
-ROUNDING_SIZE = 40  # functions above which rounding errors grow in proportion to their number: measured
+ROUNDING_SIZE = 40  # number of functions above which rounding errors grow in proportion to it, as measured
 
 
 @dataclass(frozen=True)
@@ -58,27 +58,27 @@ class SteadyPencil:
     planes: int = 1
 
     def part(self, coordinates: np.ndarray) -> SteadyPencil:
-        """Extract the equations of some coordinates, ascending, which others do not affect."""
+        """Extract the equations of some coordinates (ascending) that no others affect."""
         first, end = int(coordinates[0]), int(coordinates[-1]) + 1
         own = np.ix_(coordinates, coordinates)
-        if end - first == len(coordinates):  # a block is copied faster
+        if end - first == len(coordinates):  # a contiguous block is copied faster
             own = slice(first, end), slice(first, end)
         M, C, G, K0, K2 = (A[own].copy() for A in (self.M, self.C, self.G, self.K0, self.K2))
         return SteadyPencil(M, C, G, K0, K2, self.f2[coordinates], self.shift, self.planes)
 
     def undamped(self) -> SteadyPencil:
-        """Leave out damping and gyroscopic coupling."""
+        """Return the equations without damping and gyroscopic coupling."""
         return replace(self, C=np.zeros_like(self.C), G=np.zeros_like(self.G))
 
     @cached_property
     def conservative(self) -> bool:
-        """Whether there is neither damping nor gyroscopic coupling."""
+        """Whether the equations have neither damping nor gyroscopic coupling."""
         return not (self.C.any() or self.G.any())
 
 
 @dataclass(frozen=True)
 class Shape:
-    """Coordinates of a field as a linear function of those of the equations.
+    """Coordinates of a field as a linear function of the coordinates of the equations.
 
     Parameters
     ----------
@@ -114,16 +114,16 @@ class Equations:
     deflections : dict of str to Deflection
         Functions and loads of each field that deflects the beam.
     shift : float
-        As for `SteadyPencil`.
+        Squared first angular frequency with a clamped root [1/s2], 0 if clamped: see `SteadyPencil`.
     coarse : ndarray or None
         Indices of the coordinates whose functions span those of the coarser discretization; None where no
         few do, and after a reduction.
     sections : tuple of (str, SectionFunctions)
-        Each field that deforms the sections of a strip, and its functions.
+        Names of the fields that deform the sections of a strip, and their functions.
     circuit : Circuit or None
-        That of a harvester with a load, whose coordinate is not among these.
+        Circuit of a harvester with a load, if its coordinate is not among those of the equations.
     voltage : Voltage or None
-        That of a harvester, where its circuit has a coordinate.
+        Voltage of a harvester whose circuit has a coordinate in the equations.
     """
 
     blocks: dict[str, slice]
@@ -146,7 +146,7 @@ class Equations:
 
     @property
     def modes(self) -> int:
-        """Largest number of coordinates of a block."""
+        """Number of coordinates of the largest block."""
         return max(place.stop - place.start for place in self.blocks.values())
 
     @cached_property
@@ -157,7 +157,7 @@ class Equations:
     # Deflection of the beam by the coordinates ----------------------------------------------------
 
     def deflection(self, xi: np.ndarray, order: int = 0, direction: int = 0) -> np.ndarray:
-        """Derivatives with respect to x/L of the deflection per coordinate, at xi (k,): shape (n, k).
+        """Evaluate derivatives by x/L of the deflection per coordinate at xi (k,): shape (n, k).
 
         The direction is 0 for that of the bending angle, 1 for that across.
         """
@@ -166,9 +166,9 @@ class Equations:
         return self._over_coordinates(lambda d: d.space.evaluate(xi, order), direction, xi.shape)
 
     def surface(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Deflection in the direction of bending over a strip per coordinate: shape (n, k, l).
+        """Evaluate a strip's deflection in the direction of bending per coordinate: shape (n, k, l).
 
-        It is given at xi = x/L (k,) along and eta = 2 y/b (l,) across, where y is in the direction across.
+        The points are xi = x/L (k,) along and eta = 2 y/b (l,) across, with y in the direction across.
         A ValueError is raised if an eta lies beside the strip.
         """
         eta = real_array("eta", eta)
@@ -183,7 +183,7 @@ class Equations:
         return values
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Second derivative by eta = 2 y/b per coordinate, as a mean over the width, at xi (k,): (n, k)."""
+        """Evaluate the second derivative by eta = 2 y/b per coordinate at xi (k,), width mean: (n, k)."""
         values = np.zeros((self.size, len(xi)))
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -191,7 +191,7 @@ class Equations:
         return values
 
     def momentum(self, vectors: np.ndarray) -> np.ndarray:
-        """Mass times vectors (..., n, k), block by block."""
+        """Multiply vectors (..., n, k) by the mass matrix, block by block."""
         total = np.zeros_like(vectors)
         for term in (t for t in self.terms if t.order == 2 and t.quantity == "unity"):
             moved = vectors[..., self.blocks[term.columns], :]
@@ -218,11 +218,11 @@ class Equations:
         return np.array([self._over_coordinates(lambda d: d.space.end(0), k) for k in range(self.planes)])
 
     def P(self, direction: int) -> np.ndarray:
-        """Load under a unit root acceleration in a direction of bending [kg], shape (n,)."""
+        """Compute the load under a unit root acceleration in a direction of bending [kg], shape (n,)."""
         return self._over_coordinates(lambda d: d.P, direction)
 
     def Q(self, direction: int) -> np.ndarray:
-        """Load under a unit angular acceleration in the plane of a direction [kg m], shape (n,).
+        """Compute the load under a unit angular acceleration in a direction's plane [kg m], shape (n,).
 
         Oblique sections and an oblique tip body are also tilted towards the other direction.
         """
@@ -232,7 +232,7 @@ class Equations:
     def _over_coordinates(
         self, quantity: Callable[[Deflection], np.ndarray], direction: int, shape: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """Gather a quantity of the functions over all coordinates; 0 for fields without that direction."""
+        """Gather a quantity of trial functions over all coordinates; 0 for fields without the direction."""
         values = np.zeros((self.size, *shape))
         for name, deflection in self.deflections.items():
             if deflection.direction == direction:
@@ -244,11 +244,11 @@ class Equations:
 
     @cached_property
     def matrices(self) -> tuple[dict[Quantity, np.ndarray], ...]:
-        """Sums of the matrices of each quantity, for the time derivatives of orders 0, 1, 2 of q."""
+        """Sums of the matrices that each quantity multiplies, for time derivatives of q of orders 0, 1, 2."""
         return self._sum_terms(self.blocks)
 
     def _sum_terms(self, blocks: Mapping[str, slice]) -> tuple[dict[Quantity, np.ndarray], ...]:
-        """Sum the matrices of some blocks, which no term couples with others, at the given places."""
+        """Sum the matrices of blocks that no term couples with others, and place them in given slices."""
         sums: tuple[dict[Quantity, np.ndarray], ...] = ({}, {}, {})
         size = sum(place.stop - place.start for place in blocks.values())
         for term in self.terms:
@@ -259,11 +259,11 @@ class Equations:
 
     @cached_property
     def vectors(self) -> dict[Quantity, np.ndarray]:
-        """Sums of the load vectors of each quantity."""
+        """Sums of the load vectors that each quantity of the root's motion multiplies."""
         return self._sum_loads(self.blocks)
 
     def _sum_loads(self, blocks: Mapping[str, slice]) -> dict[Quantity, np.ndarray]:
-        """Sum the load vectors of some blocks, at the given places."""
+        """Sum the load vectors of some blocks, and place them in given slices."""
         sums: dict[Quantity, np.ndarray] = {}
         size = sum(place.stop - place.start for place in blocks.values())
         for load in self.loads:
@@ -277,15 +277,15 @@ class Equations:
         return root_motion(self.mount, sample, self.gravity)
 
     def matrix(self, order: int, root: RootMotion) -> np.ndarray:
-        """Matrix of the `order`-th time derivative of q: shape (..., n, n) for quantities of shape (...)."""
+        """Compute the matrix of the `order`-th time derivative of q: shape (..., n, n) at times (...)."""
         return _sum_over_quantities(self.matrices[order], root, (self.size, self.size))
 
     def load(self, root: RootMotion) -> np.ndarray:
-        """Right-hand side: shape (..., n) for quantities of shape (...)."""
+        """Compute the right-hand side of the equations: shape (..., n) at times (...)."""
         return _sum_over_quantities(self.vectors, root, (self.size,))
 
     def steady(self) -> SteadyPencil:
-        """Equations at steady speed, as polynomials of it; about a fixed centre and without gravity."""
+        """Return the equations at constant speed as polynomials of it, for a fixed centre and no gravity."""
         return self._steady
 
     @cached_property
@@ -294,7 +294,7 @@ class Equations:
 
     @cached_property
     def separate(self) -> tuple[SteadyPencil, ...]:
-        """Equations at steady speed of each of the sets of blocks in `connected`."""
+        """Equations at steady speed, separately for each set of blocks in `connected`."""
         sizes = {name: place.stop - place.start for name, place in self.blocks.items()}
         each = [place_blocks({name: sizes[name] for name in names}) for names in self.connected]
         return tuple(self._pencil(self._sum_terms(own), self._sum_loads(own)) for own in each)
@@ -302,11 +302,11 @@ class Equations:
     def _pencil(
         self, matrices: Sequence[dict[Quantity, np.ndarray]], vectors: dict[Quantity, np.ndarray]
     ) -> SteadyPencil:
-        """Equations at steady speed, by the matrices and loads of each quantity."""
+        """Build the equations at steady speed from the matrices and loads of each quantity."""
         rotating, parts = root_motion(self.mount, MotionSample.steady(1.0)), []
-        shape = matrices[2]["unity"].shape  # mass is there always
+        shape = matrices[2]["unity"].shape  # a mass matrix is always present
         nothing = np.zeros(shape)
-        for of_order in matrices:  # what is there at rest, and what motion of the root adds to it
+        for of_order in matrices:  # constant matrix, and the sum of those that steady rotation adds
             moving: dict[Quantity, np.ndarray] = {q: A for q, A in of_order.items() if q != "unity"}
             turning = _sum_over_quantities(moving, rotating, shape) if moving else nothing
             parts.append((of_order.get("unity", nothing), turning))
@@ -316,12 +316,12 @@ class Equations:
 
     @cached_property
     def coupled(self) -> tuple[tuple[str, ...], ...]:
-        """Sets of blocks that mass or stiffness couples, at steady speed or by an acceleration."""
+        """Sets of blocks that are coupled by mass or stiffness, but for terms of angular acceleration."""
         return self._connected(t for t in self.terms if t.order != 1 and t.quantity != "acceleration")
 
     @cached_property
     def connected(self) -> tuple[tuple[str, ...], ...]:
-        """Sets of blocks that any term couples."""
+        """Sets of blocks that are coupled by any term."""
         return self._connected(self.terms)
 
     def _connected(self, terms: Iterable[Term]) -> tuple[tuple[str, ...], ...]:
@@ -338,13 +338,13 @@ class Equations:
         return [name for name in self.deflections if name in self.blocks]
 
     def places(self, names: Iterable[str]) -> np.ndarray:
-        """Indices of the coordinates of some blocks."""
+        """List the indices of the coordinates of the named blocks."""
         return np.concatenate([np.arange(self.blocks[n].start, self.blocks[n].stop) for n in names])
 
     # Reduction to fewer coordinates -----------------------------------------------------------------
 
     def reduced(self, bases: Mapping[tuple[str, ...], np.ndarray]) -> Equations:
-        """Transform the equations to other coordinates: for each set of blocks, q = basis @ q_reduced.
+        """Transform the equations to fewer coordinates: for each set of blocks, q = basis @ q_reduced.
 
         Parameters
         ----------
@@ -391,14 +391,14 @@ class Equations:
             voltage=voltage,
         )
 
-    # The circuit of a harvester ---------------------------------------------------------------------
+    # Circuit of a harvester -------------------------------------------------------------------------
 
     def with_flux(self) -> Equations:
-        """Add the circuit, if there is one, by its flux: with mass, and without stiffness."""
+        """Add the harvester's circuit, if any, by its flux: a coordinate with mass, but no stiffness."""
         return self if self.circuit is None else self._with(*flux_terms(self.circuit, self._coupled_blocks))
 
     def with_charge(self) -> Equations:
-        """Add the circuit, if there is one, by its charge: with stiffness, and without mass."""
+        """Add the harvester's circuit, if any, by its charge: a coordinate with stiffness, but no mass."""
         if self.circuit is None:
             return self
         return self._with(*charge_terms(self.circuit, self._coupled_blocks))
@@ -419,7 +419,7 @@ class Equations:
 def _sum_over_quantities(
     coefficients: Mapping[Quantity, np.ndarray], root: RootMotion, shape: tuple[int, ...]
 ) -> np.ndarray:
-    """Sum each quantity times its matrix or vector of the given shape, at all times of the root's motion."""
+    """Sum each quantity times its matrix or vector of a given shape, at all times of the root's motion."""
     total = np.zeros((*root.unity.shape, *shape))
     for quantity, coefficient in coefficients.items():
         values = getattr(root, quantity)

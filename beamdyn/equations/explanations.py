@@ -1,4 +1,4 @@
-"""Reasons why a term is present or absent in a scene: sentences and conditions for `beamdyn.terms`."""
+"""Reasons why a term is present in a scene or not: sentences and conditions for `beamdyn.terms`."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
-_ROUNDING = 1e-15  # relative to the largest acceleration of the root: rounding error of pi
-_SAMPLES = 501  # times in each of the two parts of a motion: until the speed is steady, and at steady speed
-_TURNS = 10  # revolutions sampled at steady speed
-_MOST_PLACES = 6  # places of point masses that are listed
+_ROUNDING = 1e-15  # rounding error of pi, relative to the largest acceleration of the root
+_SAMPLES = 501  # sampled times before the speed is steady, and as many at steady speed
+_TURNS = 10  # number of revolutions that are sampled at steady speed
+_MOST_PLACES = 6  # largest number of point masses whose places are listed
 _HORIZON = 100.0  # time sampled of a motion that is never steady and has no end [s]
 
 
-# A scene over its motion ----------------------------------------------------------------------------
+# A scene with its motion sampled ----------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class SampledScene:
         start = min(motion.steady_start, motion.end)
         if not math.isfinite(start):
             start = max(_HORIZON, *motion.breakpoints, 0.0)
-        speed = abs(motion.final_speed)  # some revolutions at it are sampled, too
+        speed = abs(motion.final_speed)  # some revolutions at the final speed are sampled, too
         times = (
             np.linspace(0, start, _SAMPLES),
             np.linspace(0, _TURNS * 2 * math.pi / (speed or np.inf), _SAMPLES),
@@ -48,7 +48,7 @@ class SampledScene:
 
     @cached_property
     def root(self) -> RootMotion:
-        """Motion of the root at these times, with accelerations below rounding set to 0."""
+        """Motion of the root at the sampled times, with accelerations below rounding set to 0."""
         root = root_motion(self.scene.mount, self.sample, self.scene.gravity)
         names = ("root_axial", "root_transverse", "root_across")
         above = {name: np.abs(getattr(root, name)) > self.rounding for name in names}
@@ -63,11 +63,11 @@ class SampledScene:
         return _ROUNDING * (float(size) + abs(self.scene.gravity))
 
     def is_nonzero(self, quantity: str) -> bool:
-        """Whether a quantity of the root's motion differs from 0 at any time."""
+        """Whether a quantity of the root's motion differs from 0 at any sampled time."""
         return bool(getattr(self.root, quantity).any())
 
     def sources(self, quantity: str) -> list[str]:
-        """Sources that contribute to an acceleration of the root: each is evaluated without the others."""
+        """List the sources (gravity, road ...) that contribute to an acceleration of the root."""
         rest = replace(MotionSample.steady(0 * self.sample.speed), angle=self.sample.angle)
         names = {
             "rotation": "speed", "angular acceleration": "acceleration", "translation": "carrier_acceleration"
@@ -85,7 +85,7 @@ Sentence: TypeAlias = "str | Callable[[SampledScene], str]"
 
 @dataclass(frozen=True)
 class Condition:
-    """A condition for the presence of a term, and the sentence to give if it is not met."""
+    """Condition for the presence of a term, with the sentence that explains its absence."""
 
     is_met: Callable[[SampledScene], bool]
     otherwise: Sentence
@@ -93,7 +93,7 @@ class Condition:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Symbol of a term, the reason for its presence, and the conditions of it.
+    """Symbol of a term, the reason for its presence, and the conditions of its presence.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ class Explanation:
 
 
 def say_mass(scene: SampledScene) -> str:
-    """Say that there is mass in every scene, and which of it is that of point masses."""
+    """Say that mass is present in every scene, and which point masses contribute to it."""
     heavy = [lump for lump in scene.scene.beam.point_masses if lump.mass]
     if not heavy:
         return "always"
@@ -130,7 +130,7 @@ def say_mass(scene: SampledScene) -> str:
 
 
 def say_tension(scene: SampledScene) -> str:
-    """Say what accelerates the root along the beam."""
+    """Say what accelerates the root along the beam and so causes tension."""
     sources = scene.sources("root_axial")
     if sources == ["rotation"]:
         return "the root's steady acceleration; no translation, so no parametric tension"
@@ -145,14 +145,14 @@ def say_softening(scene: SampledScene) -> str:
 
 
 def say_static_load(scene: SampledScene) -> str:
-    """Say what accelerates the root in the direction of bending."""
+    """Say what accelerates the root in the direction of bending and so loads the beam."""
     sources = [source for name in _transverse(scene) for source in scene.sources(name)]
     where = "across the beam" if scene.scene.physics.planes == 2 else "in the direction of bending"
     return f"the root accelerates {where} by {_enumerate([*dict.fromkeys(sources)])}"
 
 
 def _transverse(scene: SampledScene) -> tuple[str, ...]:
-    """Quantities of the root's motion that load the beam transversely."""
+    """List the quantities of the root's motion that load the beam transversely."""
     return ("root_transverse", "root_across")[: scene.scene.physics.planes]
 
 
@@ -208,7 +208,7 @@ def _say_root(scene: SampledScene) -> str:
     return "the root is clamped" if 0 not in springs else "the root is clamped or a hinge: no spring holds it"
 
 
-# Conditions of terms in several fields.
+# Conditions that terms of several fields share.
 
 TURNS = Condition(lambda s: s.is_nonzero("speed"), "the carrier does not turn")
 ACCELERATES = Condition(lambda s: s.is_nonzero("acceleration"), "constant speed: no angular acceleration")

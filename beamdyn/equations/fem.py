@@ -17,10 +17,10 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
-_ACROSS = 8  # functions across the width of a plate
-MOST_ELEMENTS = 1000  # largest number accepted
-MOST_REFINED = 100  # largest number that `finer` gives: beyond it Ritz functions are the better choice
-# Shortest segment over the length, below which rounding leaves no digit, with a margin for its last digit.
+_ACROSS = 8  # number of functions across the width of a plate
+MOST_ELEMENTS = 1000  # largest accepted number of elements
+MOST_REFINED = 100  # largest number of elements from `finer`: beyond it Ritz functions are the better choice
+# Shortest segment, as a fraction of the length: on shorter ones rounding leaves no correct digit.
 _SHORTEST = 1e-5 * (1 - 1e-9)
 _POINTS = 5  # Gauss points on each element that resolve the cosine and sine of its slope
 _GRADING = 3.0  # the element size grows from the root to the tip by the factor 1 + 2 _GRADING
@@ -30,7 +30,7 @@ _ELEMENTS = {2: ElementLineHermite, 1: ElementLineP2}
 
 @dataclass(frozen=True)
 class Fem:
-    """Euler-Bernoulli beam elements.
+    """Finite-element discretization of a beam by Euler-Bernoulli elements.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class Fem:
     mesh : {"graded", "uniform"}
         Graded elements shrink towards the root, where a fast outward beam has a boundary layer.
     on_each : int
-        Fewest elements on each segment between breakpoints, so that half as many are a coarser mesh.
+        Smallest number of elements on each segment between breakpoints; the coarser mesh halves it.
 
     References
     ----------
@@ -74,21 +74,21 @@ class Fem:
 
     @property
     def order(self) -> int:
-        """Order of convergence: the error of eigenvalues is as the fourth power of the element length."""
+        """Order of convergence of eigenvalues, as a power of the element length."""
         return 4
 
     @property
     def converges_regularly(self) -> bool:
-        """The error falls as a power of the element length."""
+        """True: the eigenvalue error falls as a power of the element length."""
         return True
 
     @property
     def rounding(self) -> float:
-        """Relative rounding error of eigenvalues: as the cube of the number of elements (2e-10 at 100)."""
+        """Relative rounding error of eigenvalues, in proportion to the cubed number of elements."""
         return 4 * float(np.finfo(float).eps) * self.elements**3
 
     def nodes(self, beam: Beam) -> np.ndarray:
-        """Positions x/L of the nodes: each segment has elements in proportion to its length."""
+        """Compute the positions x/L of nodes: segments have elements in proportion to their length."""
         ends = _meshable(np.array(beam.breakpoints))
         g = 0.0 if self.mesh == "uniform" else _GRADING
         # A mesh that is uniform over s is seven times as fine at the root as at the tip, over x/L.
@@ -107,26 +107,26 @@ class Fem:
         return FemSpaces(self.nodes(beam), order)
 
     def cells(self, beam: Beam) -> Cells:
-        """The elements."""
+        """Return the elements as cells of the beam."""
         return Cells(self.nodes(beam), _POINTS)
 
     def coarser(self) -> Fem:
-        """A mesh of half as many elements."""
+        """Return a mesh of half as many elements."""
         return replace(self, elements=max(2, self.elements // 2), on_each=max(1, self.on_each // 2))
 
     def finer(self) -> Fem | None:
-        """A mesh of a quarter more elements, up to 100; None at 100 or more."""
+        """Return a mesh of a quarter more elements, up to 100; None at 100 or more."""
         if self.elements >= MOST_REFINED:
             return None
         return replace(self, elements=min(MOST_REFINED, 5 * self.elements // 4))
 
     def fits(self, modes: int) -> bool:
-        """Whether the coarser mesh has functions enough for a number of modes."""
+        """Whether even the coarser mesh has functions enough for a number of modes."""
         return 2 * self.coarser().elements >= modes
 
 
 def _meshable(ends: np.ndarray) -> np.ndarray:
-    """Return the ends x/L of segments; refuse a segment on which elements lose all digits."""
+    """Return the ends x/L of segments, or refuse one too short for elements to keep any correct digit."""
     lengths = np.diff(ends)
     bound = "a segment between breakpoints must be at least 1e-5 of the length for finite elements"
     remedy = "let the section jump there, or take discretization='ritz'"
@@ -135,10 +135,10 @@ def _meshable(ends: np.ndarray) -> np.ndarray:
 
 
 def _distribute(total: int, lengths: np.ndarray, least: int) -> np.ndarray:
-    """Distribute elements among segments in proportion to their length, at least so many on each.
+    """Distribute a number of elements among segments by their length, at least `least` on each.
 
-    Short segments are refined with the others: none has less than half of an equal share, but in elements ten
-    times as short as equal ones, beyond which rounding costs more than it gains.
+    Short segments are refined with the others: each has at least half of an equal share, unless its elements
+    were then ten times as short as equal ones, beyond which rounding costs more than it gains.
     """
     part = lengths / lengths.sum()
     share = np.minimum(np.maximum(part, 0.5 / len(part)), 10 * part)
@@ -150,7 +150,7 @@ def _distribute(total: int, lengths: np.ndarray, least: int) -> np.ndarray:
 
 @dataclass(frozen=True)
 class FemSpaces(FieldsOnly):
-    """Function spaces on one mesh with one quadrature rule.
+    """Function spaces on one finite-element mesh with one quadrature rule.
 
     Parameters
     ----------
@@ -165,47 +165,47 @@ class FemSpaces(FieldsOnly):
 
     @cached_property
     def mesh(self) -> Mesh:
-        """Mesh over x/L."""
+        """scikit-fem's mesh of elements over x/L."""
         return MeshLine(self.nodes)
 
     def functions(self, conditions: RootConditions) -> FemSpace:
-        """Trial functions that satisfy conditions at the root."""
+        """Build trial functions that satisfy conditions at the root."""
         return FemSpace(self, RootConditions(conditions.held, conditions.derivatives))
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
+        """Integrate a weight times derivatives of functions i of `rows` and j of `columns`: shape (n, m)."""
         return _integrate(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
     def across(self) -> int:
-        """Number of functions across the width of a plate beyond the mean."""
+        """Number of functions across the width of a plate, without the constant one."""
         return _ACROSS
 
     @property
     def fewer_across(self) -> int:
-        """Number of functions `across` of the coarser model: its mesh differs along the beam alone."""
+        """Number of functions across in the coarser model: the same, as meshes differ along the beam only."""
         return _ACROSS
 
     def shares_functions(self, other: FemSpaces) -> bool:
-        """Whether the nodes are the same."""
+        """Whether other finite-element spaces have the same nodes."""
         return np.array_equal(self.nodes, other.nodes)
 
 
 @dataclass(frozen=True)
 class FemSpace(FieldsOnly):
-    """Finite-element functions without those that the conditions at the root exclude.
+    """Finite-element functions that satisfy the conditions at the root.
 
-    A slope at a hinged root is that of a turn of the whole beam, x/L, not of a bend of the first element:
-    it has no curvature, not even by rounding, beside which a soft spring would be lost.
+    A slope at a hinged root is a rotation of the whole beam, x/L, not bending of the first element:
+    the rotation has no curvature, not even by rounding, beside which a soft spring would be lost.
 
     Parameters
     ----------
     spaces : FemSpaces
         Mesh and quadrature.
     conditions : RootConditions
-        Conditions at the root: as many degrees of freedom there are fixed as derivatives vanish.
+        Conditions at the root; each derivative that vanishes there fixes one degree of freedom.
     """
 
     spaces: FemSpaces
@@ -213,7 +213,7 @@ class FemSpace(FieldsOnly):
 
     @cached_property
     def basis(self) -> Basis:
-        """Mesh, element and quadrature."""
+        """scikit-fem's basis: mesh, element and quadrature."""
         # A new element for each basis, because ElementLineHermite caches the matrix of its first mesh.
         return Basis(self.spaces.mesh, _ELEMENTS[self.conditions.derivatives](), intorder=self.spaces.order)
 
@@ -225,12 +225,12 @@ class FemSpace(FieldsOnly):
 
     @property
     def size(self) -> int:
-        """Number of functions."""
+        """Number n of trial functions."""
         return self.basis.N - self.conditions.held
 
     @property
     def turns(self) -> bool:
-        """Whether the first function is a turn about the root."""
+        """Whether the first trial function is a rotation of the beam about its root."""
         return self.conditions == HINGED
 
     @cached_property
@@ -240,34 +240,34 @@ class FemSpace(FieldsOnly):
 
     @property
     def coarse(self) -> None:
-        """None: each function of a coarser mesh is a sum of several."""
+        """None: no subset of the functions spans a coarser mesh, whose functions are sums of several."""
         return None
 
     def weights(self, weight: Profile) -> np.ndarray:
-        """Evaluate a property at the quadrature points."""
+        """Evaluate a property of the beam at the quadrature points, as weight of integrals."""
         return weight(self.points)
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrate the weight times the `order`-th derivatives of functions i and j."""
+        """Integrate a weight times the `order`-th derivatives of functions i and j: shape (n, n)."""
         return _integrate(self, self, weight, (order, order))
 
     def load(self, weight: Profile, order: int = 0) -> np.ndarray:
-        """Integrate the weight times the `order`-th derivative of function i."""
+        """Integrate a weight times the `order`-th derivative of each function: shape (n,)."""
         return self.integrate(self.weights(weight), order)
 
     def integrate(self, values: np.ndarray, order: int) -> np.ndarray:
-        """Integrate values at the quadrature points times the `order`-th derivative of function i."""
+        """Integrate values at the quadrature points times the `order`-th derivatives of functions: (n,)."""
         vector = _LOADS[order].assemble(self.basis, weight=values)[self.free]
         if self.turns:
             vector[0] = (self.basis.dx * values * _turn(self.points, order)).sum()
         return vector
 
     def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at the tip."""
+        """Evaluate the `order`-th derivatives of the functions at the tip: shape (n,)."""
         return self.evaluate(np.array([1.0]), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at xi."""
+        """Evaluate the `order`-th derivatives of the functions at xi (k,): shape (n, k)."""
         x = np.asarray(xi, dtype=float)[None, :]
         mesh, element, mapping = self.basis.mesh, self.basis.elem, self.basis.mapping
         cells = mesh.element_finder(mapping=mapping)(*x)
@@ -284,12 +284,12 @@ class FemSpace(FieldsOnly):
 
 
 def _turn(xi: np.ndarray, order: int) -> np.ndarray:
-    """Evaluate the `order`-th derivative of a turn about the root, x/L."""
+    """Evaluate the `order`-th derivative at xi (k,) of x/L, a rotation about the root."""
     return (xi, np.ones_like(xi), np.zeros_like(xi))[order]
 
 
 def _integrate(rows: FemSpace, columns: FemSpace, weight: Profile, orders: tuple[int, int]) -> np.ndarray:
-    """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
+    """Integrate a weight times derivatives of functions i of `rows` and j of `columns`: shape (n, m)."""
     values = rows.weights(weight)
     assembled = _PRODUCTS[orders].assemble(columns.basis, rows.basis, weight=values)
     matrix = assembled.toarray()[np.ix_(rows.free, columns.free)]
@@ -300,7 +300,7 @@ def _integrate(rows: FemSpace, columns: FemSpace, weight: Profile, orders: tuple
     return matrix
 
 
-# Weak forms.  Their arguments are scikit-fem's, which has no types for them.
+# Weak forms: their arguments are scikit-fem's, which has no types for them.
 
 
 def _derivative(u: Any, order: int) -> Any:

@@ -1,4 +1,4 @@
-"""Voltage, current and strain of a harvester's layers, by the coordinates of equations of motion."""
+"""Voltage, current and layer strain of a harvester as linear functions of coordinates of the equations."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from beamdyn.equations.circuit import BENDS, Voltage, coupling_of, strain_of
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.scene.beam import Beam
 
-_FACES = 9  # places along the layers at which their strain is compared
+_FACES = 9  # places along the layers at which strains are compared
 
 
 def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Voltage, Voltage]:
-    """Voltage across the load [V] and current through it [A], by the coordinates of given equations.
+    """Build voltage across the load [V] and current through it [A] in the coordinates of equations.
 
     Parameters
     ----------
     equations : Equations
-        Equations with the circuit, if it has a coordinate.
+        Equations with the circuit's coordinate, if there is one.
     full : Equations
-        Those of all functions that they were made from.
+        Equations in all functions of the discretization, from which `equations` were reduced.
     beam : Beam
         The beam.
     """
@@ -27,15 +27,17 @@ def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Vo
     assert electrodes is not None, "a harvester has electrodes"
     if (voltage := equations.voltage) is not None:
         return voltage, Voltage(voltage.order, voltage.row / electrodes.resistance)
-    row, shape = np.zeros(equations.size), equations.shapes[BENDS]
-    row[equations.blocks[shape.block]] = coupling_of(beam, full.deflections[BENDS]) @ shape.matrix
+    row = np.zeros(equations.size)
+    for name, theta in coupling_of(beam, full.deflections, full.sections).items():
+        shape = equations.shapes[name]
+        row[equations.blocks[shape.block]] += theta @ shape.matrix
     if electrodes.resistance:
         return Voltage(0, -row / electrodes.capacitance(beam.length)), nothing
     return nothing, Voltage(1, -row)
 
 
 def strain_rows(equations: Equations, beam: Beam) -> np.ndarray:
-    """Strain of the layer's outer face at places along it, per coordinate of given equations: (k, n)."""
+    """Compute the strain of the layer's outer face at places along it, per coordinate: shape (k, n)."""
     assert beam.electrodes is not None, "electrodes stand on a layer"
     xi, shape = beam.electrodes.inside(np.linspace(0, 1, _FACES)), equations.shapes[BENDS]
     rows = np.zeros((_FACES, equations.size))

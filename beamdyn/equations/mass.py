@@ -1,6 +1,6 @@
-"""Integrals over the mass along the beam, and the axial force by it: polynomials on parts of the beam.
+"""Integrals over the mass along the beam, and the axial force by its acceleration, as piecewise polynomials.
 
-A body at the tip is not among the integrals: it has an offset and moments of inertia, and enters with the
+A body at the tip is not included: it has an offset and moments of inertia, and enters with the
 fields.
 """
 
@@ -15,6 +15,7 @@ from numpy.polynomial import legendre
 
 from beamdyn.equations.discretization import Functions, RootConditions, Space, Spaces
 from beamdyn.scene.beam import Beam
+from beamdyn.scene.mount import Mount, exact_cos_sin
 from beamdyn.scene.profile import FRACTION, Profile, mean
 
 
@@ -31,11 +32,11 @@ class PiecewisePolynomials:
     ends: tuple[float, ...]
 
     def counts(self, number: int) -> list[int]:
-        """Numbers of functions on the parts, of so many if there is one; short parts need fewer."""
+        """Share a number of functions among the parts of the beam; short parts get fewer."""
         return [int(np.ceil(number * length**0.5)) for length in np.diff(self.ends)]
 
     def __call__(self, xi: np.ndarray, counts: Sequence[int], continuous: bool) -> np.ndarray:
-        """Values at xi (N,) of all polynomials: shape (n, N).
+        """Evaluate all polynomials at xi (N,): shape (n, N).
 
         Parameters
         ----------
@@ -51,11 +52,11 @@ class PiecewisePolynomials:
             return on_parts[0]
         if not continuous:
             return np.concatenate(on_parts)
-        bubbles = [P[2:] - P[:-2] for P in on_parts]  # 0 at both ends of their part
+        bubbles = [P[2:] - P[:-2] for P in on_parts]  # bubbles are 0 at both ends of their part
         return np.concatenate([self._hats(xi), *bubbles])
 
     def _on_part(self, xi: np.ndarray, k: int, number: int) -> np.ndarray:
-        """Legendre polynomials of part k, 0 elsewhere: shape (number, N)."""
+        """Evaluate Legendre polynomials of part k, which are 0 elsewhere: shape (number, N)."""
         a, b = self.ends[k : k + 2]
         inside = self._part(xi) == k
         values = np.zeros((number, len(xi)))
@@ -64,22 +65,22 @@ class PiecewisePolynomials:
         return values
 
     def _hats(self, xi: np.ndarray) -> np.ndarray:
-        """Functions that are 1 at one end of a part and 0 at all others, linear between: (p + 1, N)."""
+        """Evaluate hat functions: 1 at one end of a part, 0 at all others, linear in between: (p + 1, N)."""
         return np.array([np.interp(xi, self.ends, unit) for unit in np.eye(len(self.ends))])
 
     def _part(self, xi: np.ndarray) -> np.ndarray:
-        """Number of the part (N,) in which each xi lies."""
+        """Find the index of the part in which each xi lies: shape (N,)."""
         return np.clip(np.searchsorted(self.ends, xi, side="right") - 1, 0, len(self.ends) - 2)
 
     def contained(self, counts: Sequence[int], fewer: Sequence[int], continuous: bool) -> np.ndarray:
-        """Whether each of the functions of some counts (n,) is also among those of smaller counts."""
+        """Tell which polynomials of given counts per part are also among those of smaller counts: (n,)."""
         bubbles = 2 if continuous and len(counts) > 1 else 0
         on_parts = [np.arange(max(n - bubbles, 0)) < m - bubbles for n, m in zip(counts, fewer, strict=True)]
         hats = np.ones(len(self.ends) if bubbles else 0, dtype=bool)
         return np.concatenate([hats, *on_parts])
 
     def phases(self, left: np.ndarray, right: np.ndarray, number: int) -> np.ndarray:
-        """Change of phase (c,) [rad] of the highest polynomial over each cell between its ends (c,)."""
+        """Compute the phase change (c,) [rad] of the highest polynomial over cells with given ends (c,)."""
         part, ends = self._part((left + right) / 2), np.array(self.ends)
         start, length = ends[part], np.diff(ends)[part]
         first, last = (np.arccos(np.clip(1 - 2 * (x - start) / length, -1, 1)) for x in (left, right))
@@ -120,7 +121,7 @@ def product_at_lumps(beam: Beam, rows: Functions, columns: Functions) -> np.ndar
 
 
 def moments_about_root(beam: Beam) -> tuple[float, float, float]:
-    """Mass [kg], and its first and second moments about the root [kg m, kg m2], without the tip body."""
+    """Compute mass [kg], first [kg m] and second moment [kg m2] about the root, without the tip body."""
     (xi, mass), weight, moments = beam.lumps, beam.mass_per_length, []
     for k in range(3):
         moments.append(beam.length ** (k + 1) * mean(weight) + float(mass @ (xi * beam.length) ** k))
@@ -130,13 +131,13 @@ def moments_about_root(beam: Beam) -> tuple[float, float, float]:
 
 @lru_cache(maxsize=64)
 def _moment_per_length(beam: Beam) -> Profile:
-    """Mass per length times x/L [kg/m]."""
+    """Compute mass per length times x/L [kg/m]."""
     return beam.mass_per_length * FRACTION
 
 
 @lru_cache(maxsize=64)
 def outboard_moments(beam: Beam) -> tuple[Profile, Profile]:
-    """Mass [kg] outboard of each section, and its first moment about the root [kg m], over x/L."""
+    """Compute the mass [kg] outboard of each section and its first moment about the root [kg m], over x/L."""
     (xi, mass), length, of_sections = beam.lumps, beam.length, beam.mass_per_length
     outboard = of_sections.scaled(length).outboard_integral()
     moment = _moment_per_length(beam).scaled(length**2).outboard_integral()
@@ -145,7 +146,7 @@ def outboard_moments(beam: Beam) -> tuple[Profile, Profile]:
 
 @lru_cache(maxsize=64)
 def axial_tension(beam: Beam) -> tuple[Profile, Profile]:
-    """Tension N_A [kg] per root acceleration and N_B [kg m] per squared speed, over x/L.
+    """Compute the tension per root acceleration, N_A [kg], and per squared speed, N_B [kg m], over x/L.
 
     The axial force at steady speed is omega^2 N_B - a_O1 N_A: Lee and Yoo (2019), eqs. (18), (19).
     """
@@ -154,6 +155,23 @@ def axial_tension(beam: Beam) -> tuple[Profile, Profile]:
         return n_a, n_b
     reach = beam.length + beam.tip.offset
     return _add_constant(n_a, beam.tip.mass), _add_constant(n_b, beam.tip.mass * reach)
+
+
+PLACES = np.linspace(0.0, 1.0, 101)  # positions x/L from root to tip at which the axial force is evaluated
+
+
+def steady_tension(beam: Beam, mount: Mount) -> np.ndarray:
+    """Compute the axial force by steady rotation, per squared speed [N s2], at `PLACES`: shape (101,)."""
+    n_a, n_b = _sampled_tension(beam)
+    cosine, _ = exact_cos_sin(mount.precone)
+    inward = exact_cos_sin(mount.setting_angle)[0] * mount.radius
+    return cosine * (cosine * n_b - inward * n_a)
+
+
+@lru_cache(maxsize=64)
+def _sampled_tension(beam: Beam) -> tuple[np.ndarray, np.ndarray]:
+    n_a, n_b = axial_tension(beam)
+    return n_a(PLACES), n_b(PLACES)
 
 
 def _add_constant(profile: Profile, constant: float) -> Profile:

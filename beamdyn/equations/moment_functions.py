@@ -1,4 +1,4 @@
-"""Assumed modes by bending moments, for beams of many segments.
+"""Assumed modes given by their bending moments, for beams of many segments.
 
 Where properties have a kink or a jump, at each station of a table, the curvature of a beam has one, too;
 its bending moment M is smooth.  Trial functions with the curvature
@@ -47,19 +47,22 @@ from beamdyn.scene.profile import Profile, merge_breakpoints
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
 
 NODES = 10  # nodes on each cell, through which the quotients are interpolated
-_RESOLVED = 1e-7  # last coefficients of an interpolant over the largest; eigenvalues depend on their square
-_ROUNDING = 10 * float(np.finfo(float).eps)  # rounding error of a sum of polynomials, relative
+# Largest of the last coefficients of an interpolant, over its largest coefficient, at which the cell counts
+# as resolved: eigenvalues depend on the square.
+_RESOLVED = 1e-7
+_ROUNDING = 10 * float(np.finfo(float).eps)  # relative rounding error of a sum of polynomials
 _PHASE = 7.0  # largest change of phase of the highest polynomial within a cell [rad]
-_SHORTEST = 1e-10  # cell that is halved, as x/L
-_BLOCK = 32  # columns that LAPACK treats at once
-_DEPENDENT = 1e-9  # part of a function that the others lack, below which it is left out
+_SHORTEST = 1e-10  # shortest cell that is still halved, as x/L
+_BLOCK = 32  # number of columns that LAPACK treats at once
+# Size of a function's part that is independent of the other functions, below which it is left out.
+_DEPENDENT = 1e-9
 
 Values: TypeAlias = "dict[tuple[int, int], np.ndarray]"  # entries of a tensor, by directions
 # Order of the derivative of a displacement that each stiffness resists.
 _ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "axial_stiffness": 1}
 _ORDERS |= {"torsion_stiffness": 1, "warping_stiffness": 2}
-_SCALAR = ("axial_stiffness", "torsion_stiffness", "warping_stiffness")  # those without a direction
-# Stiffnesses against displacements that cause forces in the functions for each.
+_SCALAR = ("axial_stiffness", "torsion_stiffness", "warping_stiffness")  # stiffnesses without a direction
+# For each stiffness, the stiffnesses whose displacements cause inertial forces in its functions.
 _COUPLED = {
     "bending_stiffness": ("bending_stiffness", "shear_stiffness"),
     "shear_stiffness": ("bending_stiffness", "shear_stiffness"),
@@ -69,7 +72,7 @@ _COUPLED = {
 
 @dataclass(frozen=True)
 class MomentSpaces(FieldsOnly):
-    """Function spaces of moments, and of other forces, on a beam.
+    """Function spaces on a beam whose functions are given by moments and other forces.
 
     Parameters
     ----------
@@ -79,7 +82,7 @@ class MomentSpaces(FieldsOnly):
         Number of forces or moments in each direction; with point masses, by the square root of its share of
         the length on each part between them.
     coarse : int
-        Number of those that the coarser discretization has.
+        Number of forces that the coarser discretization has.
     """
 
     beam: Beam
@@ -87,27 +90,27 @@ class MomentSpaces(FieldsOnly):
     coarse: int = 0
 
     def functions(self, conditions: RootConditions) -> MomentSpace:
-        """Trial functions that satisfy conditions at the root."""
+        """Build trial functions that satisfy conditions at the root."""
         return _build_space(self, conditions)
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
+        """Integrate a weight times derivatives of functions i of `rows` and j of `columns`: shape (n, m)."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
     def across(self) -> int:
-        """Number of functions across the width of a plate beyond the mean."""
+        """Number of functions across the width of a plate, without the constant one."""
         return self.forces
 
     @property
     def fewer_across(self) -> int:
-        """Number of those of the coarser basis."""
+        """Number of functions across the width of a plate in the coarser basis."""
         return self.coarse
 
     def shares_functions(self, other: MomentSpaces) -> bool:
-        """Whether beam and numbers are the same: cells and forces follow every stiffness."""
+        """Whether other spaces have the same beam and sizes; cells and forces follow every stiffness."""
         return self == other
 
     @cached_property
@@ -123,7 +126,7 @@ class MomentSpaces(FieldsOnly):
         return _halve(halved, self._are_unresolved)
 
     def _are_unresolved(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-        """Whether an entry of a compliance on each cell, of these ends, needs a smaller one."""
+        """Tell which cells with given ends are too long to resolve some entry of a compliance."""
         at_nodes, unresolved = Sampler(left, right, NODES), np.zeros(len(left), dtype=bool)
         for tensor in self._stiffnesses.values():
             values = {entry: at_nodes(profile).reshape(-1, NODES) for entry, profile in tensor.items()}
@@ -132,30 +135,31 @@ class MomentSpaces(FieldsOnly):
                     continue
                 largest = float(np.abs(tensor[i, i].end_values()).max())
                 rounding = _ROUNDING * largest / np.abs(values[i, i]).min(axis=1)
-                series = np.abs(entry @ legendre_series(NODES).T)  # of interpolants through the nodes
+                # Legendre series of the interpolants through the nodes.
+                series = np.abs(entry @ legendre_series(NODES).T)
                 least = np.maximum(_RESOLVED, rounding) * series.max(axis=1)
                 unresolved |= ~(series[:, -2:].max(axis=1) <= least)
         return unresolved
 
     @cached_property
     def _stiffnesses(self) -> dict[str, Tensor]:
-        """Stiffnesses that the sections have, by name."""
+        """Stiffness tensors of the sections, by name."""
         tensors = {name: stiffness_tensor(self.beam, name) for name in _ORDERS}
         return {name: tensor for name, tensor in tensors.items() if tensor}
 
     @cached_property
     def nodes(self) -> ArcQuadrature:
-        """Points of all cells through which quotients are interpolated."""
+        """Gauss points of all cells through which the quotients of force and stiffness are interpolated."""
         return ArcQuadrature(Cells(self.cells, NODES))
 
     @cached_property
     def at_nodes(self) -> Sampler:
-        """Values of properties at the nodes."""
+        """Sampler of the beam's properties at the nodes."""
         return Sampler.on_cells(self.nodes.cells)
 
     @cached_property
     def compliance(self) -> dict[str, Values]:
-        """Inverse of each stiffness of the sections at the nodes."""
+        """Inverse of each stiffness tensor of the sections at the nodes, by name."""
         return {
             name: invert({entry: self.at_nodes(profile) for entry, profile in tensor.items()})
             for name, tensor in self._stiffnesses.items()
@@ -168,12 +172,12 @@ class MomentSpaces(FieldsOnly):
 
     @cached_property
     def at_points(self) -> Sampler:
-        """Values of properties at the points of that rule."""
+        """Sampler of the beam's properties at the points of `quadrature`."""
         return Sampler.on_cells(self.quadrature.cells)
 
 
 def _halve(ends: np.ndarray, are_coarse: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
-    """Ends (c + 1,) of cells after those that are coarse, by a function of their ends, have been halved."""
+    """Halve cells with ends (c + 1,) until `are_coarse(left, right)` marks none."""
     fine, (left, right) = [], (ends[:-1], ends[1:])
     while left.size:
         coarse = are_coarse(left, right) & (right - left > _SHORTEST)
@@ -184,7 +188,7 @@ def _halve(ends: np.ndarray, are_coarse: Callable[[np.ndarray, np.ndarray], np.n
     return np.append(np.sort(np.concatenate(fine)), ends[-1])
 
 
-@lru_cache(maxsize=16)  # fields of a scene, and pairs of them, ask for the same functions
+@lru_cache(maxsize=16)  # fields of a scene, and pairs of fields, ask for the same functions
 def _build_space(spaces: MomentSpaces, conditions: RootConditions) -> MomentSpace:
     return MomentSpace(spaces, conditions)
 
@@ -193,7 +197,7 @@ def _build_space(spaces: MomentSpaces, conditions: RootConditions) -> MomentSpac
 
 
 def stiffness_tensor(beam: Beam, name: str) -> Tensor:
-    """A stiffness of the sections in the directions e1, e2; those without a direction have one entry."""
+    """Return a stiffness of the sections in the directions e1, e2; an undirected one has one entry."""
     if name in _SCALAR:
         stiffness = getattr(beam, name)
         return {} if stiffness is None else {(0, 0): stiffness}
@@ -201,7 +205,7 @@ def stiffness_tensor(beam: Beam, name: str) -> Tensor:
 
 
 def invert(values: Values) -> Values:
-    """Entries of the inverse of a tensor of sections, by directions."""
+    """Invert a tensor of the sections at all points; entries are given by directions."""
     if (0, 1) not in values:
         return {entry: 1 / value for entry, value in values.items()}
     determinant = values[0, 0] * values[1, 1] - values[0, 1] ** 2
@@ -216,24 +220,24 @@ def invert(values: Values) -> Values:
 
 @cache
 def _interpolation(points: int) -> np.ndarray:
-    """Values at Gauss points of the interpolants through fewer: shape (points, nodes)."""
+    """Compute the interpolation matrix from nodes to Gauss points: shape (points, nodes)."""
     return legendre_values(points, NODES - 1) @ legendre_series(NODES)
 
 
 # Forces -------------------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=8)  # sections that are twisted bend in both directions under the same moments
+@lru_cache(maxsize=8)  # twisted sections bend in both directions under the same moments
 def _build_forces(
     spaces: MomentSpaces, stiffness: str, derivatives: int, direction: int
 ) -> tuple[np.ndarray, np.ndarray | None]:
-    """Forces or moments in a direction at the nodes, shape (n, N).
+    """Compute forces or moments in one direction at the nodes, shape (n, N), and which are coarse (n,).
 
-    They are polynomials, and what displacements by the first of these cause by inertia and by tension.  Also
-    whether each is one of the coarser discretization (n,); None if that has others.
+    The first are polynomials; displacements by them cause the others by inertia and by tension.  The second
+    result tells which forces the coarser discretization has, too; None if it has others.
     """
     beam, parts, causes = spaces.beam, spaces.polynomials, []
-    # Loads: the stiffness against the displacement, the derivative of that, and its weight.
+    # Loads: stiffness against the displacement, order of the displacement's derivative, and weight.
     mass, tension = spaces.at_nodes(beam.mass_per_length), spaces.at_nodes(axial_tension(beam)[1])
     for name in _COUPLED[stiffness]:
         if name in spaces.compliance:
@@ -264,17 +268,17 @@ def _build_forces(
     return np.concatenate([P, *caused]), np.concatenate(of_coarse)
 
 
-@lru_cache(maxsize=4)  # each direction has the same
+@lru_cache(maxsize=4)  # all directions share the same polynomials
 def _polynomials(spaces: MomentSpaces, counts: tuple[int, ...], continuous: bool) -> np.ndarray:
-    """So many polynomials on each part of the beam, at the nodes: shape (n, N)."""
+    """Evaluate polynomials on each part of the beam, `counts` of them, at the nodes: shape (n, N)."""
     return spaces.polynomials(spaces.nodes.xi, counts, continuous)
 
 
 def _share(counts: Sequence[int], causes: int) -> tuple[list[int], list[int]]:
-    """Share forces on each part: how many polynomials cause others, by each cause, and how many there are.
+    """Divide counts of forces per part into polynomials that cause others, and polynomials in total.
 
-    Which trial functions there are is a choice, and approximates nothing but the space that they span; errors
-    are told by fewer of them.
+    Each of `causes` adds one force for each causing polynomial.  The division only affects which space the
+    trial functions span; its error is estimated with fewer of them.
     """
     causing = [count // (1 + causes) for count in counts]
     return causing, [count - causes * n for count, n in zip(counts, causing, strict=True)]
@@ -285,9 +289,9 @@ def _share(counts: Sequence[int], causes: int) -> tuple[list[int], list[int]]:
 
 @dataclass(frozen=True)
 class MomentSpace(SampledSpace):
-    """Trial functions with a highest derivative that is a force over a stiffness.
+    """Trial functions whose highest derivative is a force divided by a stiffness.
 
-    Their highest derivatives are orthonormal with the stiffness in their direction as weight; a rotation
+    The highest derivatives are orthonormal with the stiffness in their direction as weight; a rotation
     about the root stands before them where the root turns.
 
     Parameters
@@ -303,7 +307,7 @@ class MomentSpace(SampledSpace):
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points of the Gauss rule on [0, 1], shape (k,)."""
+        """Points x/L of the Gauss rule on [0, 1], shape (k,)."""
         return self.spaces.quadrature.xi
 
     @cached_property
@@ -312,7 +316,7 @@ class MomentSpace(SampledSpace):
         return self.spaces.quadrature.weights
 
     def weights(self, weight: Profile) -> np.ndarray:
-        """Multiply the weights of the rule by a property."""
+        """Multiply the weights of the Gauss rule by a property of the beam."""
         return self.rule * self.spaces.at_points(weight)
 
     @property
@@ -321,9 +325,9 @@ class MomentSpace(SampledSpace):
 
     @cached_property
     def _quotients(self) -> tuple[int, np.ndarray]:
-        """Orthonormal quotients of forces and stiffness at the points, shape (m, k).
+        """Number of coarse quotients, and orthonormal quotients of forces and stiffness at the points (m, k).
 
-        The first of them, whose number is returned, span those of the coarser discretization; 0 if none do.
+        The first quotients, whose number is returned, span the coarser discretization; 0 if none do.
         """
         stiffness, direction = self.conditions.stiffness, self.conditions.direction
         compliance = self.spaces.compliance[stiffness]
@@ -345,12 +349,12 @@ class MomentSpace(SampledSpace):
 
     @property
     def coarse(self) -> np.ndarray | None:
-        """The first functions."""
+        """Indices of functions that span the coarser discretization, which come first; None if none do."""
         return np.arange(self._turns + self._quotients[0]) if self._quotients[0] else None
 
     @cached_property
     def _derivatives(self) -> list[np.ndarray]:
-        """Values and derivatives at the points, and at the tip but of the highest derivative: (n, k + 1)."""
+        """Functions and derivatives at the points and, except for the highest, at the tip: (n, k + 1)."""
         rows = [self._quotients[1]]
         for _order in reversed(range(self.conditions.derivatives)):
             rows.insert(0, self.spaces.quadrature.integrate(rows[0][:, : len(self.rule)]))
@@ -362,51 +366,51 @@ class MomentSpace(SampledSpace):
 
     @cached_property
     def samples(self) -> list[np.ndarray]:
-        """Values of the functions and of each derivative at the points."""
+        """Values of the functions and of each derivative at the Gauss points, of shape (n, k) each."""
         return [values[:, : len(self.rule)] for values in self._derivatives]
 
     def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at the tip."""
+        """Evaluate the `order`-th derivatives of the functions at the tip: shape (n,)."""
         if order < self.conditions.derivatives:
             return self._derivatives[order][:, -1]
         return self.evaluate(np.ones(1), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at xi."""
+        """Evaluate the `order`-th derivatives of the functions at xi (k,): shape (n, k)."""
         xi, quadrature = np.asarray(xi, dtype=float), self.spaces.quadrature
         if order == self.conditions.derivatives:
             return self.samples[order] @ quadrature.interpolate_to(xi).T
         values = self.samples[order + 1] @ quadrature.integrate_to(xi).T
         if self._turns and order == 1:
-            values[0] = 1.0  # the slope of the rotation is there at the root, too
+            values[0] = 1.0  # the rotation has its slope at the root, too
         return values
 
 
 def _orthonormalize_nested(
     columns: np.ndarray, of_coarse: np.ndarray, weight: np.ndarray
 ) -> tuple[int, np.ndarray]:
-    """Orthonormal basis as `orthonormalize`, the first of which, so many, span the marked columns."""
+    """Orthonormalize columns so that the first vectors, whose number is returned, span the marked columns."""
     root = np.sqrt(weight)[:, None]
     first, rest = _span(_unit(columns[:, of_coarse] * root)), _unit(columns[:, ~of_coarse] * root)
-    for _ in range(2):  # the first time leaves rounding errors relative to what was there before
+    for _ in range(2):  # the first pass leaves errors relative to the components that it removed
         rest = rest - first @ (first.T @ rest)
     return first.shape[1], np.concatenate([first, _span(rest)], axis=1) / root
 
 
 def orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Orthonormal basis (k, m) of the span of columns (k, n), with a weight (k,), but for rounding."""
+    """Compute an orthonormal basis (k, m) of columns (k, n) under a weight (k,), to rounding."""
     root = np.sqrt(weight)[:, None]
     return _span(_unit(columns * root)) / root
 
 
 def _unit(columns: np.ndarray) -> np.ndarray:
-    """Divide columns by their norms; without those that are 0."""
+    """Divide columns by their norms, and leave out columns that are 0."""
     norm = np.linalg.norm(columns, axis=0)
     return columns[:, norm > 0] / norm[norm > 0]
 
 
 def _span(columns: np.ndarray) -> np.ndarray:
-    """Orthonormal basis (k, m) of the span of columns (k, n) of norm 1 or less, but for rounding."""
+    """Compute an orthonormal basis (k, m) of columns (k, n) of norm 1 or less, to rounding."""
     n = columns.shape[1]
     reflectors, _, tau, _, _ = dgeqp3(columns, lwork=_BLOCK * (n + 1) + 2 * n)
     rank = int((np.abs(np.diag(reflectors)) > _DEPENDENT).sum())

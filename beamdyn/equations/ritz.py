@@ -18,14 +18,16 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
-_MOST_ACROSS = 16  # functions across the width of a plate
-MOST_FUNCTIONS = 200  # largest number accepted, on each segment
+_MOST_ACROSS = 16  # number of functions across the width of a plate
+MOST_FUNCTIONS = 200  # largest accepted number of functions on each segment
 _POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
 _POINTS_OF_MOMENTS = 8  # Gauss points on each of the many cells of moments, which are small
 
-_COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}  # sizes: the slower, the smaller
+# Number of functions of the coarser basis, over that of the basis: smaller where the basis converges slowly.
+_COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}
 _WORDS = {"legendre": "Legendre functions", "eigenfunctions": "eigenfunctions", "moments": "bending moments"}
-_FINER = {"legendre": 1.2, "eigenfunctions": 1.2, "moments": 1.35}  # the slower, the larger
+# Number of functions of the finer basis, over that of the basis: larger where the basis converges slowly.
+_FINER = {"legendre": 1.2, "eigenfunctions": 1.2, "moments": 1.35}
 
 
 @dataclass(frozen=True)
@@ -74,17 +76,17 @@ class Ritz:
 
     @property
     def order(self) -> None:
-        """None: the error does not fall as a power of the size."""
+        """None: the error of eigenvalues does not fall as a power of the number of functions."""
         return None
 
     @property
     def rounding(self) -> float:
-        """0: scaling of the functions keeps all digits of their integrals."""
+        """0: the scaling of the functions keeps all digits of their integrals."""
         return 0.0
 
     @property
     def converges_regularly(self) -> bool:
-        """Not where moments over the whole beam serve many segments, of which each resolves some."""
+        """Whether further functions change eigenvalues less and less; false for moments on many segments."""
         return self.basis != "moments"
 
     def spaces(self, beam: Beam) -> RitzSpaces | MomentSpaces:
@@ -97,14 +99,14 @@ class Ritz:
         return RitzSpaces(self, tuple(beam.breakpoints), points, max(2, across))
 
     def cells(self, beam: Beam) -> Cells:
-        """The segments, with points enough for cosine and sine of a slope of several turns."""
+        """Return the segments as cells, with points enough for cosines of slopes of several turns."""
         spaces = self.spaces(beam)
         if isinstance(spaces, MomentSpaces):
             return Cells(spaces.cells, _POINTS_OF_MOMENTS)
         return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
-        """A basis small enough that its distance from this one exceeds the truncation error of this one."""
+        """Return a smaller basis, whose distance from this one exceeds the truncation error of this one."""
         return replace(self, functions=self.fewer)
 
     @property
@@ -113,19 +115,19 @@ class Ritz:
         return max(1, min(int(_COARSER[self.basis] * self.functions), self.functions - 2))
 
     def finer(self) -> Ritz | None:
-        """The next larger basis; None at the largest."""
+        """Return the next larger basis; None at the largest."""
         if self.functions == MOST_FUNCTIONS:
             return None
         return replace(self, functions=min(MOST_FUNCTIONS, int(_FINER[self.basis] * self.functions) + 1))
 
     def fits(self, modes: int) -> bool:
-        """Whether the coarser basis has functions enough for a number of modes."""
+        """Whether even the coarser basis has functions enough for a number of modes."""
         return self.fewer >= modes
 
 
 @dataclass(frozen=True)
 class RitzSpaces:
-    """Function spaces of one basis with one quadrature rule; each space is built once and cached.
+    """Function spaces of one Ritz basis with one quadrature rule; each space is built once and cached.
 
     Parameters
     ----------
@@ -145,28 +147,28 @@ class RitzSpaces:
     across: int
 
     def functions(self, conditions: RootConditions) -> RitzSpace:
-        """Trial functions that satisfy conditions at the root."""
+        """Build trial functions that satisfy conditions at the root."""
         return _build_space(self, RootConditions(conditions.held, conditions.derivatives))
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
+        """Integrate a weight times derivatives of functions i of `rows` and j of `columns`: shape (n, m)."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
     def fewer_across(self) -> int:
-        """Number of those of the coarser basis: one less of torsion, and one of camber."""
+        """Number of functions across in the coarser basis: one less of torsion, and one less of camber."""
         return max(2, self.across - 2)
 
     def shares_functions(self, other: RitzSpaces) -> bool:
-        """Whether the basis and the segments are the same."""
+        """Whether other spaces have the same basis and segments."""
         return (self.ritz, self.breakpoints) == (other.ritz, other.breakpoints)
 
 
 @dataclass(frozen=True)
 class RitzSpace(SampledSpace):
-    """Trial functions sampled at the points of a Gauss rule.
+    """Trial functions of a Ritz basis, sampled at the points of a Gauss rule.
 
     Parameters
     ----------
@@ -181,19 +183,20 @@ class RitzSpace(SampledSpace):
 
     @property
     def coarse(self) -> np.ndarray:
-        """The first functions of each segment, and the rotation where the root turns."""
+        """Indices of the coarser basis' functions: the first of each segment, and the root's rotation."""
         return self._coarse
 
     @cached_property
     def _coarse(self) -> np.ndarray:
         functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.fewer
-        turns = self.conditions.derivatives - self.conditions.held  # the rotation is one function
+        # Where the root turns, the rotation is one more function.
+        turns = self.conditions.derivatives - self.conditions.held
         on_segment = np.arange(self.size - turns) % functions < fewer
         return np.flatnonzero(np.concatenate([np.ones(turns, dtype=bool), on_segment]))
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points of the Gauss rule on [0, 1], shape (k,)."""
+        """Points x/L of the Gauss rule on [0, 1], shape (k,)."""
         return gauss_points_on(np.array(self.spaces.breakpoints), self.spaces.points).ravel()
 
     @cached_property
@@ -202,14 +205,14 @@ class RitzSpace(SampledSpace):
         return gauss_weights_on(np.array(self.spaces.breakpoints), self.spaces.points)
 
     def weights(self, weight: Profile) -> np.ndarray:
-        """Multiply the weights of the rule by a property."""
+        """Multiply the weights of the Gauss rule by a property of the beam."""
         if weight.breakpoints == self.spaces.breakpoints:
             return self.rule * weight.at_points(self.spaces.points).ravel()
         return super().weights(weight)
 
     @cached_property
     def samples(self) -> list[np.ndarray]:
-        """Values of the functions and of each derivative at the points."""
+        """Values of the functions and of each derivative at the Gauss points, of shape (n, k) each."""
         return [self.evaluate(self.points, order) for order in range(self.conditions.derivatives + 1)]
 
     @cached_property
@@ -218,11 +221,11 @@ class RitzSpace(SampledSpace):
         return [self.evaluate(np.ones(1), order)[:, 0] for order in orders]
 
     def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at the tip."""
+        """Evaluate the `order`-th derivatives of the functions at the tip: shape (n,)."""
         return self._tip_values[order]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at xi; first that of a rotation x/L where the root turns."""
+        """Evaluate the `order`-th derivatives at xi (k,); where the root turns, the rotation x/L is first."""
         xi, (held, derivatives) = np.asarray(xi, dtype=float), self.conditions[:2]
         ritz, ends = self.spaces.ritz, self.spaces.breakpoints
         values = _BASES[ritz.basis](ritz.functions, ends, derivatives, xi, order)
@@ -232,7 +235,8 @@ class RitzSpace(SampledSpace):
         return np.concatenate([rotation[None, :], values])
 
 
-@lru_cache(maxsize=128)  # independent of the beam's properties: saves half the time of a small model
+# The functions are independent of the beam's properties: caching halves the time of a small model.
+@lru_cache(maxsize=128)
 def _build_space(spaces: RitzSpaces, conditions: RootConditions) -> RitzSpace:
     return RitzSpace(spaces, conditions)
 
@@ -243,7 +247,7 @@ def _build_space(spaces: RitzSpaces, conditions: RootConditions) -> RitzSpace:
 def _integrated_legendre(
     functions: int, ends: tuple[float, ...], derivatives: int, xi: np.ndarray, order: int
 ) -> np.ndarray:
-    """Derivatives at xi of functions of which the highest is a Legendre polynomial on one segment, else 0.
+    """Evaluate derivatives at xi of functions whose highest one is a Legendre polynomial on one segment.
 
     Being integrals from the root, they satisfy the conditions there and are smooth at breakpoints up to the
     highest derivative, which may jump; scaled so that these derivatives are orthonormal.
@@ -273,7 +277,7 @@ def _integrate_on_segment(n: int, a: float, b: float, xi: np.ndarray, integratio
 
 @cache
 def _integrate_legendre(n: int, integrations: int) -> np.ndarray:
-    """Legendre coefficients, in columns, of P_0 ... P_(n-1) integrated repeatedly from -1."""
+    """Compute Legendre coefficients, in columns, of P_0 ... P_(n-1) integrated repeatedly from -1."""
     if integrations == 0:
         return np.eye(n)
     return legendre.legint(_integrate_legendre(n, integrations - 1), lbnd=-1)
@@ -283,7 +287,7 @@ def _integrate_legendre(n: int, integrations: int) -> np.ndarray:
 
 
 def clamped_free_roots(count: int) -> np.ndarray:
-    """Roots b of cos b + 1/cosh b = 0: wave numbers of a uniform clamped-free beam of unit length."""
+    """Compute roots b of cos b + 1/cosh b = 0: wave numbers of a uniform clamped-free beam of unit length."""
     b = np.pi * (np.arange(1, count + 1) - 0.5)
     b[0] = 1.8751040687119611664
     for _ in range(8):
@@ -295,9 +299,9 @@ def clamped_free_roots(count: int) -> np.ndarray:
 def _eigenfunctions(
     functions: int, ends: tuple[float, ...], derivatives: int, xi: np.ndarray, order: int
 ) -> np.ndarray:
-    """Clamped-free mode shapes divided by b^2; those of a rod, fixed and free, divided by b.
+    """Evaluate derivatives of the uniform beam's mode shapes, divided by b^2; of a rod's, divided by b.
 
-    Their form does not overflow or cancel at high modes.
+    The formula used neither overflows nor cancels at high modes.
     """
     quarter = order * np.pi / 2  # the order-th derivative of cos and sin shifts their phase
     if derivatives == 1:

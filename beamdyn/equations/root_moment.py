@@ -33,7 +33,7 @@ from beamdyn.scene.scene import Scene
 
 @dataclass(frozen=True)
 class RootMoment:
-    """Bending moment at the root as a linear function of coordinates and velocities.
+    """Bending moment at the root as a linear function of coordinates and their velocities.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class RootMoment:
     velocity: Mapping[Quantity, np.ndarray]
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Moment [N m], positive if it bends towards positive deflection, for q and v (T, n): shape (T,)."""
+        """Compute the moment [N m] for q and v (T, n), positive if it bends to positive deflection: (T,)."""
         moment = np.zeros(root.unity.shape)
         for quantity, value in self.load.items():
             moment += getattr(root, quantity) * value
@@ -61,14 +61,14 @@ class RootMoment:
 def root_moment(scene: Scene, discretization: Discretization, equations: Equations) -> RootMoment:
     """Derive the bending moment at the root for the coordinates of given equations.
 
-    It is that about the axis of bending of the section at the root, which the twist may have turned.
+    The moment is about the axis of bending of the section at the root, which the twist may have turned.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     discretization : Discretization
-        Its discretization.
+        Discretization of the scene's equations.
     equations : Equations
         Equations of the scene in this discretization, as they are or reduced.
 
@@ -86,20 +86,20 @@ def root_moment(scene: Scene, discretization: Discretization, equations: Equatio
 
 
 def strain_per_moment(scene: Scene) -> float:
-    """Strain of the outer fibre at the root per bending moment there [1/(N m)]; the beam has an outer fibre.
+    """Compute the strain of the outer fibre at the root per bending moment there [1/(N m)].
 
-    In a plate it is the mean over the width, whose section the clamp keeps flat.
+    The beam must have an outer fibre.  In a plate, the strain is the mean over the width.
     """
     beam, root = scene.beam, np.zeros(1)
     assert beam.outer_fibre is not None
     stiffness = float(beam.bending_stiffness(root)[0])
-    if scene.physics.camber and beam.section is not None:
-        stiffness *= float(beam.section.camber_stiffening(root)[0])
+    if scene.physics.camber and beam.strip is not None:
+        stiffness *= float(beam.strip.camber_stiffening(root)[0])
     return float(beam.outer_fibre(root)[0]) / stiffness
 
 
 def _weighted_sum(parts: Sequence[Mapping[Quantity, Any]], factors: list[float]) -> dict[Quantity, Any]:
-    """Sum of values by quantity, times factors; quantities may be missing in some parts."""
+    """Sum values by quantity times factors, one factor for each part; a missing quantity counts as 0."""
     names: dict[Quantity, None] = dict.fromkeys(name for part in parts for name in part)
     return {
         name: sum(f * part.get(name, 0.0) for f, part in zip(factors, parts, strict=True)) for name in names
@@ -113,7 +113,7 @@ class StaticLoad:
     Parameters
     ----------
     accelerations : dict of str to complex
-        Quantities of the root's motion, beside those of the steady rotation.
+        Quantities of the root's motion that load the beam in addition to the steady rotation.
     force : tuple of (float, int), optional
         Position x/L and direction of a unit force.
     deflection : ndarray, shape (n,)
@@ -128,7 +128,7 @@ class StaticLoad:
 def static_moment(
     scene: Scene, discretization: Discretization, equations: Equations, root: RootMotion, load: StaticLoad
 ) -> complex:
-    """Bending moment at the root by a static load [N m], from forces alone.
+    """Compute the bending moment at the root under a static load [N m], from forces alone.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def static_moment(
     root : RootMotion
         The root's motion at the steady speed.
     load : StaticLoad
-        The load, and what it does.
+        The load, and the deflection under it.
     """
     twist, total = scene.modelled_beam.root_twist, 0.0 + 0.0j
     for about, factor in enumerate([math.cos(twist), math.sin(twist)][: equations.planes]):
@@ -157,29 +157,29 @@ def static_moment(
 
 
 def _freed(scene: Scene, discretization: Discretization, direction: int) -> Equations:
-    """Equations of the scene with a root that turns freely in one direction."""
+    """Assemble the equations of the scene with a root that turns freely in one direction."""
     hinges = {"root_stiffness": 0.0} if direction == 0 else {"second_root_stiffness": 0.0}
-    local = replace(scene.damping, ratios=())  # damping of modes does no work on the test function
+    local = replace(scene.damping, ratios=())  # modal damping does no work on the test function
     freed = replace(scene, damping_ratio=0.0, damping=local, mount=replace(scene.mount, **hinges))
     return assemble_over(freed, discretization.spaces(scene.modelled_beam))
 
 
 def _field_of(equations: Equations, direction: int) -> str:
-    """Name of the field that bends in a direction."""
+    """Find the name of the field that bends the beam in a direction."""
     return next(n for n, d in equations.deflections.items() if d.direction == direction)
 
 
 def _moment(scene: Scene, discretization: Discretization, equations: Equations, direction: int) -> RootMoment:
-    """Moment that holds the root, or that of its spring, by virtual work of a rotation."""
+    """Derive the moment of the clamp or spring at the root, by virtual work of a rotation."""
     spring = scene.mount.root_stiffnesses[direction]
     if spring == 0:
         return RootMoment({}, {}, {})
     full, name = _freed(scene, discretization, direction), _field_of(equations, direction)
     kept, M, rigid = _embed(full, equations), full.matrices[2]["unity"], _rotation(full, full.blocks[name])
-    moving = kept.any(axis=0)  # all but the coordinate of a circuit
+    moving = kept.any(axis=0)  # leaves out the coordinate of a circuit
     share, own = np.zeros(equations.size), kept if moving.all() else kept[:, moving]
     share[moving] = np.linalg.solve(own.T @ M @ own, own.T @ M @ rigid)
-    rotation = rigid - kept @ share  # minus its projection by the mass on the kept shapes
+    rotation = rigid - kept @ share  # the mass projection on the kept shapes is subtracted
     length = scene.beam.length  # the slope of the rotation x/L is 1/L
 
     def rows(order: int) -> dict[Quantity, np.ndarray]:
@@ -202,7 +202,7 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
 
 
 def _embed(full: Equations, equations: Equations) -> np.ndarray:
-    """Shapes of the coordinates of given equations, in columns, over those of equations with a free root."""
+    """Express the coordinates of given equations (columns) in those of equations with a free root."""
     kept = np.zeros((full.size, equations.size))
     for name, shape in equations.shapes.items():
         end = full.blocks[name].stop
@@ -211,9 +211,9 @@ def _embed(full: Equations, equations: Equations) -> np.ndarray:
 
 
 def _rotation(full: Equations, field: slice) -> np.ndarray:
-    """Rigid rotation x/L about the root: the deflection without elastic energy.
+    """Build the rigid rotation x/L about the root, a deflection without elastic energy, as coordinates (n,).
 
-    Its only coordinate with a slope at the root is the first of its field.
+    The only coordinate with a slope at the root is the field's first.
     """
     first, others = field.start, np.arange(field.start + 1, field.stop)
     K, rotation = full.matrices[0]["unity"], np.zeros(full.size)

@@ -18,7 +18,7 @@ CONSTANT_AT_STEADY_SPEED: tuple[Quantity, ...] = ("unity", "speed", "acceleratio
 
 @dataclass(frozen=True)
 class RootMotion:
-    """Functions of time in the equations of motion, at some times; arrays of one shape.
+    """Quantities of the root's motion that multiply terms of the equations, as arrays over time.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class RootMotion:
     root_across : ndarray
         Acceleration c a_O3 - s a_O2 in the direction across, minus gravity [m/s2].
 
-    The axes are those of the beam, which the precone turns.
+    Directions are those of the beam's axes, which the precone turns.
     """
 
     unity: np.ndarray

@@ -9,7 +9,6 @@ from time import perf_counter
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.equations.assembly import assemble_equations
@@ -21,12 +20,12 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 
-_BASIS = Ritz(3)  # the list of terms does not depend on the basis
+_BASIS = Ritz(3)  # any small basis: the list of terms does not depend on it
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One term of the equations.
+    """One term of the equations of motion, and why it is present in a scene or absent.
 
     Parameters
     ----------
@@ -35,11 +34,11 @@ class Entry:
     symbol : str
         The term as written in docs/conventions.md, for one plane of bending.
     fields : tuple of str
-        The fields in whose equations it stands.
+        The fields whose equations contain the term.
     quantity : str
-        The quantity of the root's motion that multiplies it.
+        The quantity of the root's motion that multiplies the term.
     largest : float
-        Largest absolute value of its coefficient over the motion [SI units]; 0 if it is absent.
+        Largest absolute value of the coefficient over the motion [SI units]; 0 if the term is absent.
     present : bool
         Whether the term is present in the scene.
     reason : str
@@ -85,7 +84,7 @@ class Terms(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the one-line summary of the terms; see `Result.headline`."""
         yield f"{len(self.present)} of {counted(len(self), 'term')} present"
         yield f"{counted(len(self.left_out), 'effect')} left out"
         yield counted(len(self.lines), "line")
@@ -108,7 +107,7 @@ class Terms(Result):
         return tuple(entry.name for entry in self if entry.present)
 
     def rows(self) -> list[tuple[str, str, str, str, str]]:
-        """Rows of the table: presence, name, symbol, largest coefficient, reason."""
+        """List the rows of the table: presence, name, symbol, largest coefficient, reason."""
         return [
             ("in" if e.present else "-", e.name, e.symbol, f"{e.largest:.4g}" if e.present else "", e.reason)
             for e in self
@@ -166,12 +165,12 @@ def terms(scene: Scene) -> Terms:
         entries.append(_ANY_SLOPE)
     lines = scene.motion.lines if scene.motion is not None else ()
     gravity = (Line("gravity", 1.0),) if scene.gravity else ()
-    provenance = Provenance(__version__, str(_BASIS), "", perf_counter() - start)
+    provenance = Provenance.since(start, str(_BASIS))
     return Terms(tuple(entries), (*list_left_out(scene),), (*lines, *gravity), provenance, scene)
 
 
 def _terms_by_name(scene: Scene) -> dict[str, list[Term | Load]]:
-    """Terms and loads of a scene; those of one name stand in the equations of several fields."""
+    """Group the terms and loads of a scene by name; one name may be in the equations of several fields."""
     equations, found = assemble_equations(scene, _BASIS), {}
     for term in (*equations.terms, *equations.loads):
         found.setdefault(term.name, []).append(term)

@@ -1,1 +1,1 @@
-"""Scenes from TOML files with units, and blades of other programs; all mistakes in one message."""
+"""Reading of scenes from TOML files with units, and of blades from other programs' files."""

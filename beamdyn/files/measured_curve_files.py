@@ -1,4 +1,4 @@
-"""Files of histories, peaks, loads along the span, responses and mode shapes, as tables with units."""
+"""Reading of histories, peaks, loads along the span, responses and mode shapes, as tables with units."""
 
 from __future__ import annotations
 
@@ -31,24 +31,24 @@ _SPEED = {"speed": Quantity("rad/s")}
 _SHAPE = re.compile(r"\s*(?:mode )?shape at ([\d.eE+-]+ *[\w/]+)\s*(?=[,;\t]|$)", re.IGNORECASE)
 _OTHER_SHAPE = re.compile(r"\b(?:mode )?shape\b[^,;\t]*", re.IGNORECASE)
 _RESPONSE = re.compile(r"\s*(.+?) (?:by|per) (.+?)\s*")
-_MOST = 40  # shapes in a file
+_MOST = 40  # largest number of shapes in a file
 _REMEDY = 'name yours by columns, as in --columns "{name} = {head}"'
 
 Half = Callable[[str], float]
 
 
 class Frequency(Quantity):
-    """A frequency, which papers give as an angular one, too."""
+    """A frequency, which may be given as an angular one, too."""
 
     def convert(self, given: object) -> float:
-        """The frequency [Hz]."""
+        """Convert to a frequency [Hz]."""
         if isinstance(given, str) and given.rstrip().endswith("rad/s"):
             return quantity(given, "rad/s") / (2 * math.pi)
         return super().convert(given)
 
 
 def reader_of(text: DataText) -> Callable[..., MeasuredCurves | MeasuredFrequencies] | None:
-    """What reads a table, by its heads; None of a table of frequencies."""
+    """Return the function that reads a table with the heads of a text; None if it has frequencies."""
     line = text.lines[head_line(text) - 1].lower()
     heads = {plain_name(re.sub(r"[\[(].*", "", cell)) for cell in re.split(r"[,;\t]", line)}
     if "time" in heads:
@@ -61,9 +61,10 @@ def reader_of(text: DataText) -> Callable[..., MeasuredCurves | MeasuredFrequenc
 
 
 def read_history(text: DataText, half: Half, speed: float | None) -> MeasuredHistory:
-    """Read histories: a column of times, and at least one of "tip", "root moment" and so on."""
+    """Read histories: a column of times, and at least one column such as "tip" or "root moment"."""
     if speed is not None:
-        raise InvalidValue("speeds", speed, "histories are compared with the scene's motion", "leave it out")
+        bound = "histories are compared with the scene's motion"
+        raise InvalidValue("speeds", speed, bound, "leave it out", "rad/s")
     table, columns = _read(text, MeasuredHistory)
     _check_ascending(table, "time", "s")
     return MeasuredHistory(table.named()["time"].values, **_values(table, columns, half))
@@ -72,7 +73,7 @@ def read_history(text: DataText, half: Half, speed: float | None) -> MeasuredHis
 def read_peaks(text: DataText, half: Half, speed: float | None) -> MeasuredPeaks:
     """Read peaks over speed: "speed [rad/s], from [s], to [s], largest tip [mm]"."""
     if speed is not None:
-        raise InvalidValue("speeds", speed, "the file has speeds of its own", "leave it out")
+        raise InvalidValue("speeds", speed, "the file has speeds of its own", "leave it out", "rad/s")
     table, columns = _read(text, MeasuredPeaks, 1, "from", "to")
     _check_ascending(table, "speed", "rad/s")
     window = [_only(table, name, "the window") for name in ("from", "to")]
@@ -82,7 +83,7 @@ def read_peaks(text: DataText, half: Half, speed: float | None) -> MeasuredPeaks
 
 
 def _check_ascending(table: CsvTable, name: str, unit: str) -> None:
-    """Refuse a value [unit] that does not follow a smaller one, at its line."""
+    """Refuse a value [unit] that does not follow a smaller one, with its line."""
     values = table.named()[name].values
     if later := next((k for k in range(1, len(values)) if values[k] <= values[k - 1]), 0):
         found = f"{name} = {values[later]:g} {unit} follows {values[later - 1]:g} {unit}"
@@ -90,7 +91,7 @@ def _check_ascending(table: CsvTable, name: str, unit: str) -> None:
 
 
 def _only(table: CsvTable, name: str, what: str) -> float:
-    """The one value of a column [SI]."""
+    """Return the single value of a column [SI]; refuse different values."""
     values = table.named()[name].values
     if other := next((k for k, value in enumerate(values) if value != values[0]), 0):
         raise table.text.refusal(
@@ -100,16 +101,16 @@ def _only(table: CsvTable, name: str, what: str) -> float:
 
 
 def _speed(table: CsvTable, given: float | None) -> float | None:
-    """The speed of the file [rad/s], or that given with it; None if there is none."""
+    """Return the speed in the file [rad/s], or the one given with it; None if there is none."""
     if "speed" not in table.named():
         return given
     if given is not None:
-        raise InvalidValue("speeds", given, "the file has a speed of its own", "leave it out")
+        raise InvalidValue("speeds", given, "the file has a speed of its own", "leave it out", "rad/s")
     return _only(table, "speed", "one speed")
 
 
 def read_loads(text: DataText, half: Half, speed: float | None) -> MeasuredLoads:
-    """Read loads along the span: a column of positions, and at least one of "moment", "shear" and so on."""
+    """Read loads along the span: a column of positions, and at least one column such as "moment"."""
     table, columns = _read(text, MeasuredLoads)
     check_places(table, "position")
     at = _speed(table, speed)
@@ -122,7 +123,7 @@ def _read(
     least_rows: int = 2,
     *times: str,
 ) -> tuple[CsvTable, list[CsvColumn]]:
-    """The table, and its columns of values; `times` names columns of further times."""
+    """Read the table, and its columns of values; `times` names columns of further times."""
     along, unit = kind.along
     known = {along: Quantity(unit, least=0.0)} | {name: Quantity("s", least=0.0) for name in times}
     known |= _SPEED if kind is MeasuredLoads else {}
@@ -142,7 +143,7 @@ def _read(
 
 
 def _values(table: CsvTable, columns: list[CsvColumn], half: Half) -> dict[str, Any]:
-    """Fields of the data that all kinds of columns have."""
+    """Return the fields that data of all kinds of columns have."""
     values, named = np.array([column.values for column in columns]).T, table.named()
     none = np.full(len(values), np.nan)
     spreads = [named.get(f"{column.name} {_SPREAD}") for column in columns]
@@ -156,7 +157,7 @@ def _values(table: CsvTable, columns: list[CsvColumn], half: Half) -> dict[str, 
 
 
 def _size(column: CsvColumn) -> float:
-    """The unit of a column in SI."""
+    """Return the size of the unit of a column in SI."""
     si = (MeasuredHistory.units | MeasuredPeaks.units | MeasuredLoads.units)[column.name]
     return quantity(f"1 {column.unit}", si) if si else 1.0
 
@@ -188,7 +189,7 @@ def read_response(text: DataText, half: Half, speed: float | None) -> MeasuredRe
 
 
 def _check_response(table: CsvTable, column: CsvColumn) -> None:
-    """Refuse frequencies that do not ascend, and amplitudes below 0, at their lines."""
+    """Refuse frequencies that do not ascend, and amplitudes below 0, with their lines."""
     _check_ascending(table, "frequency", "Hz")
     if (below := next((k for k, value in enumerate(column.values) if value < 0), None)) is not None:
         found = f"{column.head} = {column.values[below]:g}"
@@ -197,7 +198,7 @@ def _check_response(table: CsvTable, column: CsvColumn) -> None:
 
 
 def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]:
-    """Unit of a response in SI, and its output and input by their words."""
+    """Return the unit of a response in SI, and the words for its output and input."""
     said = f"expected a head such as 'tip by tip force [mm/N]', found '{column.head}'"
     if (match := _RESPONSE.fullmatch(column.head)) is None:
         raise table.text.refusal(table.head_line, said)
@@ -205,7 +206,7 @@ def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]
         seen, drive = as_observation("output", match[1]), as_excitation("input", match[2])
     except ValueError as error:
         raise table.text.refusal(table.head_line, f"{said}: {error}") from None
-    for sign in re.finditer(r"/| per ", column.unit):  # at which the unit of the input may begin
+    for sign in re.finditer(r"/| per ", column.unit):  # places at which the unit of the input may begin
         above, below = (
             part.strip(" ()") for part in (column.unit[: sign.start()], column.unit[sign.end() :])
         )
@@ -219,7 +220,7 @@ def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]
 
 
 def _plain_unit(unit: str) -> float:
-    """The unit of a plain number such as strain: "", "-" or a positive number; else a ValueError."""
+    """Return the unit of a plain number, such as strain: "", "-" or a positive number; else a ValueError."""
     size = 1.0 if unit in ("", "-") else float(unit)
     if not 0 < size < math.inf:
         raise ValueError(unit)
@@ -230,7 +231,7 @@ def _plain_unit(unit: str) -> float:
 
 
 def read_shapes(text: DataText, half: Half, speed: float | None) -> MeasuredFrequencies:
-    """Read mode shapes: a column of positions, and one a mode, such as "shape at 62.1 Hz"."""
+    """Read mode shapes: a column of positions, and one for each mode, such as "shape at 62.1 Hz"."""
     line = head_line(text)
     given = _SHAPE.findall(text.lines[line - 1])
     if len(given) > _MOST:

@@ -1,4 +1,4 @@
-"""Files of measured values: tables with units, and what other programs write; and tables of frequencies."""
+"""Reading of measured values: tables with units, and other programs' files; and tables of frequencies."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from beamdyn.files.program_tables import UNIVERSAL, as_table, universal_table
 from beamdyn.scene.measured_curves import MeasuredCurves
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 
-_MOST_SPEED = 1e5  # rad/s, a million revolutions per minute: faster is a unit mistaken
-_MOST = 40  # columns of frequencies
+_MOST_SPEED = 1e5  # highest speed [rad/s], a million revolutions per minute: more is a mistaken unit
+_MOST = 40  # largest number of columns of frequencies
 _SPEED, _OF_ALL = "speed", "uncertainty"
 _KNOWN = {
     _SPEED: Quantity("rad/s", least=-_MOST_SPEED, most=_MOST_SPEED),
@@ -88,7 +88,7 @@ def measurements_of(
     speeds: Sequence[float] | np.ndarray | None = None,
     columns: Mapping[str, str] | None = None,
 ) -> MeasuredFrequencies | MeasuredCurves:
-    """Read measured values from the text of a file; arguments as of `read_measurements`."""
+    """Read measured values from the text of a file; arguments as for `read_measurements`."""
     given = None if speeds is None else real_array("speeds", speeds)
     head = next((k for k, line in enumerate(text.lines, 1) if _SET_LIST.match(line)), 0)
     if not head:
@@ -103,7 +103,7 @@ def measurements_of(
 
 
 def _checked(columns: Mapping[str, str] | None) -> Mapping[str, str]:
-    """The heads asked for, as a mapping of texts."""
+    """Refuse `columns` of `read_measurements` that map no texts to texts; return them, or {} for None."""
     if columns is None:
         return {}
     texts = isinstance(columns, Mapping) and all(
@@ -115,7 +115,7 @@ def _checked(columns: Mapping[str, str] | None) -> Mapping[str, str]:
 
 
 def _one_speed(speeds: np.ndarray | None) -> float | None:
-    """The one speed of loads, shapes or a response [rad/s]."""
+    """Return the single speed of loads, shapes or a response [rad/s]; None if none is given."""
     if speeds is not None and len(speeds) != 1:
         raise InvalidValue("speeds", speeds.tolist(), "such data are at one speed", "give one")
     return None if speeds is None else float(speeds[0])
@@ -125,10 +125,12 @@ _Read = tuple[np.ndarray, list[list[str]], tuple[str, ...], Mapping[str, np.ndar
 
 
 def _speeds(text: DataText, own: np.ndarray | None, given: np.ndarray | None, count: int) -> np.ndarray:
-    """Speeds of the rows, from the file or as given with it."""
+    """Return the speeds of the rows, from the file or as given with it."""
     if own is not None:
         if given is not None:
-            raise InvalidValue("speeds", given, "the file has speeds of its own", "leave it out")
+            raise InvalidValue(
+                "speeds", given.tolist(), "the file has speeds of its own", "leave it out", "rad/s"
+            )
         return own
     if given is None and count == 1:
         return np.zeros(1)
@@ -140,7 +142,7 @@ def _speeds(text: DataText, own: np.ndarray | None, given: np.ndarray | None, co
 
 
 def _half_digits(written: list[list[str]], values: np.ndarray) -> np.ndarray:
-    """Half a unit of the last digit of each cell, in the unit of the values (S, m)."""
+    """Compute half a unit of the last digit of each cell, in the unit of the values (S, m)."""
     numbers = [[half_unit(cell) for cell in row] for row in written]
     sizes = [[abs(float(_plain(cell))) if cell else 1.0 for cell in row] for row in written]
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -152,7 +154,7 @@ def _plain(cell: str) -> str:
 
 
 def half_unit(cell: str) -> float:
-    """Half a unit of the last digit of a number as it is written; 0 of an empty cell."""
+    """Compute half a unit of the last digit of a number as written; 0 for an empty cell."""
     if not cell:
         return 0.0
     mantissa, _, exponent = _plain(cell).lower().partition("e")
@@ -195,7 +197,7 @@ def _of_frequency(table: CsvTable) -> Iterator[CsvColumn]:
 
 
 def _as_rows(table: CsvTable) -> _Read:
-    """Frequencies, their cells, labels, and what stands beside them, a row a speed; the unit of speeds."""
+    """Return frequencies, cells, labels and further data, a row for each speed, and the unit of speeds."""
     columns, named = [*_of_frequency(table)], table.named()
     rows, written = (
         np.array([c.values for c in columns]).T,
@@ -207,7 +209,8 @@ def _as_rows(table: CsvTable) -> _Read:
         if of_one is not None:
             spread[:, k] = of_one.values
     labels = tuple(column.head for column in columns)
-    if len(columns) == 1 and len(rows) > 1 and _SPEED not in named:  # a list of modes at one speed
+    # A column without speeds is a list of modes at one speed.
+    if len(columns) == 1 and len(rows) > 1 and _SPEED not in named:
         labels = tuple(f"{columns[0].head} {k}" for k in range(1, len(rows) + 1))
         rows, written, spread = rows.T, [[row[0] for row in written]], spread.T
     if _SPEED in named:
@@ -220,7 +223,7 @@ def _as_rows(table: CsvTable) -> _Read:
 
 
 def _from_list(text: DataText, head: int) -> _Read:
-    """Frequencies of each load step, below the heads of the list."""
+    """Read the frequencies of each load step, below the heads of the list."""
     steps: dict[int, list[tuple[float, str]]] = {}
     for line in range(head + 1, len(text.lines) + 1):
         match = _SET.fullmatch(text.lines[line - 1])

@@ -26,12 +26,13 @@ _AXIS = re.compile(r"(^|[,;\t])(\s*\"?)[XY]:", re.IGNORECASE)
 _CELL = re.compile(r"[^,;\t]+")
 UNIVERSAL = (".uff", ".unv", ".58")
 _RESPONSE, _HISTORY = 4, 1  # kinds of functions of dataset 58
-_OBSERVED = {8: ("tip", "m"), 12: ("tip acceleration", "m/s2")}  # by the number of the kind of data
+# Measured quantities by the number of the kind of data.
+_OBSERVED = {8: ("tip", "m"), 12: ("tip acceleration", "m/s2")}
 _DRIVES = {13: ("tip force", "N"), 12: ("bending", "m/s2")}
 
 
 def as_table(text: DataText, columns: Mapping[str, str]) -> DataText:
-    """A file as a table of heads with units, a comma or another sign between its cells.
+    """Return a file as a table of heads with units, with separators between its cells.
 
     Parameters
     ----------
@@ -58,12 +59,12 @@ def as_table(text: DataText, columns: Mapping[str, str]) -> DataText:
 
 
 def head_line(text: DataText) -> int:
-    """Line of the heads: the first that is no comment; 0 if there is none."""
+    """Return the line of the heads, the first that is no comment; 0 if there is none."""
     return next((line for line in range(1, len(text.lines) + 1) if not text.is_comment(line)), 0)
 
 
 def _without_titles(text: DataText) -> list[str]:
-    """Lines of a CSV file from the first with several cells, if any has; its heads without "X:" and "Y:"."""
+    """Return lines of a CSV file from the first with several cells on; heads without "X:" and "Y:"."""
     lines = [*text.lines]
     first = next((k for k, line in enumerate(lines) if _AXIS.search(f",{line}") or _has_cells(line)), None)
     if first is None or text.is_comment(first + 1):
@@ -88,7 +89,7 @@ def _of_two_heads(text: DataText, units: int) -> list[str]:
 
 
 def _of_list(text: DataText, head: int) -> list[str]:
-    """Rows of a list of variables over time or frequency; its heads are repeated on each page."""
+    """Return rows of a list of variables over time or frequency, whose heads are repeated on each page."""
     rows = {
         k: words
         for k, line in enumerate(text.lines)
@@ -111,7 +112,7 @@ def _of_list(text: DataText, head: int) -> list[str]:
 
 
 def _renamed(text: DataText, columns: Mapping[str, str]) -> DataText:
-    """The table with heads of other words; a unit of the file stays where the new head has none."""
+    """Return the table with other heads; the file's unit stays where the new head has none."""
     if not columns or not (line := head_line(text)):
         return text
     wanted = {plain_name(source): head for head, source in columns.items()}
@@ -136,7 +137,7 @@ def _renamed(text: DataText, columns: Mapping[str, str]) -> DataText:
 
 
 def universal_table(path: Path) -> DataText:
-    """The one function of a universal file (dataset 58): a frequency response, or a history.
+    """Return the only function of a universal file (dataset 58): a frequency response, or a history.
 
     Raises
     ------
@@ -150,7 +151,7 @@ def universal_table(path: Path) -> DataText:
 
     try:
         sets = pyuff.UFF(str(path)).read_sets()
-    except Exception as error:  # the package raises what its parts do
+    except Exception as error:  # the package raises any error that its parts raise
         raise ConfigError(str(path), [f"it is no universal file that can be read ({error})"]) from None
     each = [found for found in (sets if isinstance(sets, list) else [sets]) if found["type"] == 58]
     if len(each) != 1 or each[0]["func_type"] not in (_RESPONSE, _HISTORY):
@@ -175,7 +176,7 @@ def _lines_of_function(path: Path, found: Mapping[str, Any]) -> list[str]:
 def _kind_of(
     path: Path, found: Mapping[str, Any], axis: str, known: Mapping[int, tuple[str, str]]
 ) -> tuple[str, str]:
-    """Our word for the data on an axis, and their unit."""
+    """Return this package's word for the data on an axis, and their unit."""
     number = int(found.get(f"{axis}_spec_data_type", 0))
     if number not in known:
         kinds = ", ".join(f"{k} ({words})" for k, (words, _) in known.items())

@@ -1,4 +1,4 @@
-"""The tables of a scene's TOML file, as texts with units, and the core objects that they make."""
+"""Tables of a scene's TOML file, with texts with units, and the core objects that they make."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from beamdyn.scene.harvester import Harvester
 from beamdyn.scene.motion import KINDS, Rotation
 from beamdyn.scene.mount import Damping, Mount
 from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
-from beamdyn.scene.points import PointMass, PointSpring, TipMass
+from beamdyn.scene.points import PointMass, PointSpring, TipLoad, TipMass
 from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.section_matrices import UPPER, SectionMatrices, entry_name, entry_units
@@ -34,14 +34,14 @@ Along = float | Polynomial | Table  # a property along the beam
 
 
 class Metres(float):
-    """A position given as a length, which becomes a fraction when the length of the beam is known."""
+    """A position given as a length, which becomes a fraction once the length of the beam is known."""
 
 
 class Position(Quantity):
     """A position along the beam: a bare fraction x/L or a length with its unit."""
 
     def convert(self, given: object) -> float:
-        """A fraction, or `Metres`."""
+        """Convert to a fraction, or to `Metres`."""
         return Metres(quantity(given, "m")) if isinstance(given, str) else super().convert(given)
 
 
@@ -71,7 +71,7 @@ class Varying(Quantity):
 
 
 def _table(build: Any, **lists: CoreSchema) -> CoreSchema:
-    """Schema of an inline table of lists, from which something is built."""
+    """Return the schema of an inline table of lists, from which `build` makes an object."""
     fields = {
         name: core_schema.typed_dict_field(core_schema.list_schema(item, strict=True, min_length=1))
         for name, item in lists.items()
@@ -89,7 +89,7 @@ def _stations(given: dict[str, list[float]]) -> Table:
 
 
 def _kind_of_variation(given: Any) -> str | None:
-    if isinstance(given, Table):  # a column of beam.stations
+    if isinstance(given, Table):  # the property comes from a column of beam.stations
         return "<column>"
     if not isinstance(given, dict):
         return None if isinstance(given, list) else "<constant>"
@@ -103,7 +103,7 @@ def _kind_of_variation(given: Any) -> str | None:
 # Tables of the file -------------------------------------------------------------------------------
 
 
-# By kind, in the order of the list of motions
+# By kind, in the order of the list of motions.
 ROTATIONS = {name: section_of(made, name) for name, made in KINDS.items() if issubclass(made, Rotation)}
 _ROTATION = {Rotation: one_of_kinds(ROTATIONS)}
 MOTIONS = {name: ROTATIONS.get(name) or section_of(made, name, _ROTATION) for name, made in KINDS.items()}
@@ -118,7 +118,7 @@ class _ChoosablePhysics(MadeSection):
 
     @cached_property
     def core(self) -> Physics:
-        """The physics."""
+        """Make the physics."""
         with of_file(self.key_of):
             given = self.made(**self.given)
         if not self.auto:
@@ -131,12 +131,12 @@ class _ChoosablePhysics(MadeSection):
 
 
 def with_physics_as_table(tables: dict[str, Any]) -> dict[str, Any]:
-    """The tables of a scene, the word "auto" for its physics as the table that says the same."""
+    """Return the tables of a scene, with a table in place of the word "auto" for its physics."""
     return tables | ({"physics": _auto_as_table(tables["physics"])} if "physics" in tables else {})
 
 
 def _auto_as_table(given: Any) -> Any:
-    """The word "auto" as the table that says the same."""
+    """Return the table that means the same as the word "auto"."""
     if isinstance(given, Mapping):
         return given
     if given != AUTO_NAME:
@@ -145,7 +145,7 @@ def _auto_as_table(given: Any) -> Any:
 
 
 def _in_a_list(key: str) -> BeforeValidator:
-    """A validator that refuses one table where there may be several."""
+    """Make a validator that refuses a single table where a list of tables is expected."""
 
     def refuse_one(given: Any) -> Any:
         if isinstance(given, Mapping):
@@ -157,9 +157,10 @@ def _in_a_list(key: str) -> BeforeValidator:
 
 if TYPE_CHECKING:
     _TipInput = _PointMassInput = _PointSpringInput = _MountInput = CoreSection
-    _MotionInput = _PhysicsInput = _DampingInput = _HarvesterInput = CoreSection
+    _MotionInput = _PhysicsInput = _DampingInput = _HarvesterInput = _TipLoadInput = CoreSection
 else:
     _TipInput, _PointMassInput, _MountInput = map(section_of, (TipMass, PointMass, Mount))
+    _TipLoadInput = section_of(TipLoad)
     _PointSpringInput, _DampingInput, _HarvesterInput = map(section_of, (PointSpring, Damping, Harvester))
     _PhysicsInput = section_of(Physics, base=_ChoosablePhysics)
     _MotionInput = one_of_kinds(MOTIONS)
@@ -225,7 +226,7 @@ class RectangularInput(_BeamInput):
 
     @cached_property
     def core(self) -> Beam:
-        """The beam."""
+        """Make the beam."""
         with _of_stations(self.stations), _of_points():
             return Beam.rectangular(**self._arguments)
 
@@ -276,7 +277,7 @@ class StiffnessInput(_BeamInput):
 
     @cached_property
     def core(self) -> Beam:
-        """The beam."""
+        """Make the beam."""
         with _of_stations(self.stations), _of_points(), _naming_missing_key(StiffnessInput):
             return Beam.from_stiffness(**self._arguments)
 
@@ -295,7 +296,7 @@ class MatricesInput(_BeamInput):
 
     @cached_property
     def core(self) -> Beam:
-        """The beam."""
+        """Make the beam."""
         with _of_stations(self.stations), _of_points():
             matrices = _read_matrices(self.matrices, self.length)
             arguments: dict[str, Any] = self._arguments | {"matrices": matrices}
@@ -306,7 +307,7 @@ ENTRIES = {name: Quantity(unit, meaning="entry of a matrix") for name, unit in e
 
 
 def _read_matrices(rows: list[Any], length: float) -> SectionMatrices:
-    """The matrices of a table, whose entries that are not given are 0."""
+    """Read the matrices of a table; entries that are not given are 0."""
     columns = read_columns("matrices", rows, PLACES | ENTRIES)
     places = [name for name in columns if name in PLACES]
     if len(places) != 1:
@@ -321,18 +322,18 @@ def _read_matrices(rows: list[Any], length: float) -> SectionMatrices:
 
 
 def _to_fractions(given: Any, length: float) -> Any:
-    """Turn positions in metres into fractions of the length; all else is unchanged."""
+    """Convert positions in metres to fractions of the length; leave all else unchanged."""
     if isinstance(given, Table):
         return Table(_to_fractions(given.stations, length), given.values)
     if isinstance(given, list | tuple):
-        # Rounded, or 20 mm of 50 mm would lie beside the fraction 0.4, with a sliver between them.
+        # Rounded: otherwise 20 mm of 50 mm would differ from the fraction 0.4, with a sliver between them.
         return tuple(round(x / length, 14) if isinstance(x, Metres) else x for x in given)
     return given
 
 
 @contextmanager
 def _of_points() -> Iterator[None]:
-    """Within it, what the core says about a point mass or spring is said of its table."""
+    """Reword refusals by the core about a point mass or spring, so that they name its table."""
     try:
         yield
     except InvalidValue as error:
@@ -342,7 +343,7 @@ def _of_points() -> Iterator[None]:
 
 @contextmanager
 def _naming_missing_key(beam: type[BaseModel]) -> Iterator[None]:
-    """Within it, a refusal for lack of a property says which key of the beam brings it."""
+    """Reword refusals for lack of a property, so that they name the beam's key for it."""
     try:
         yield
     except InvalidValue as error:
@@ -385,7 +386,7 @@ def _with_columns(given: Any) -> Any:
 
 @contextmanager
 def _of_stations(rows: list[Any] | None) -> Iterator[None]:
-    """Within it, what the core says about a property's stations is said of the cells of the table."""
+    """Reword refusals by the core about a property's stations, so that they name the table's cells."""
     keys: dict[str, str] = {}
     if rows:
         place = next(c for c, head in enumerate(rows[0]) if head.partition("[")[0].strip() in PLACES)
@@ -402,7 +403,7 @@ def _own(section: type[Section]) -> list[str]:
 
 
 def _needed(section: type[Section]) -> str:
-    """The keys of its own that a kind of beam needs, in words; others are optional."""
+    """Word the required keys that only this kind of beam has."""
     return " and ".join(name for name in _own(section) if section.model_fields[name].is_required())
 
 
@@ -454,15 +455,16 @@ class SceneInput(CoreSection):
     motion: _MotionInput | None = None
     model: ModelInput = ModelInput()
     damping: _DampingInput = _DampingInput()
+    tip_load: _TipLoadInput = _TipLoadInput()
     harvester: _HarvesterInput | None = None
     physics: Annotated[_PhysicsInput, BeforeValidator(_auto_as_table)] = _PhysicsInput()
 
     @cached_property
     def core(self) -> Scene:
-        """The scene."""
+        """Make the scene."""
         motion = self.motion and self.motion.core
         with _naming_missing_key(type(self.beam)):
-            made = {"physics": self.physics.core, "damping": self.damping.core}
+            made = {name: getattr(self, name).core for name in ("physics", "damping", "tip_load")}
             bare = self.beam.core
             beam = bare if self.harvester is None else self.harvester.core.on(bare)
             return Scene(beam, self.mount.core, motion, **dict(self.model), **made)

@@ -1,4 +1,4 @@
-"""Scenes in TOML, with the CSV files that they name: text with units in, core objects out."""
+"""Reading of scenes in TOML, with the CSV files that they name: from text with units to core objects."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _TABLE = re.compile(r"\s*\[([^\[\]]+)\]\s*(#.*)?")
 
 
 def with_numbers_in_text(text: str, values: Mapping[str, float], head: Iterable[str] = ()) -> str:
-    """The text of a scene's file with some of its numbers replaced, or added to their tables.
+    """Replace some of the numbers in the text of a scene's file, or add them to their tables.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def with_numbers_in_text(text: str, values: Mapping[str, float], head: Iterable[
 
 
 def _written(path: str, value: float) -> str:
-    """A number as the file has it: text with its unit."""
+    """Word a number as the file has it: text with its unit."""
     if math.isinf(value):
         return '"inf"'
     unit = unit_of(path)
@@ -69,7 +69,7 @@ def _written(path: str, value: float) -> str:
 
 
 def _put(lines: list[str], table: str, key: str, line: str) -> None:
-    """Replace the line of a key in a table, or add it at the end of the table, or with the table."""
+    """Replace the line of a key in a table, or add it at the end of the table, or together with the table."""
     heads = {match[1].strip(): k for k, each in enumerate(lines) if (match := _TABLE.fullmatch(each))}
     if table not in heads:
         lines += ["", f"[{table}]", line]
@@ -87,7 +87,7 @@ def _put(lines: list[str], table: str, key: str, line: str) -> None:
 
 
 RADIUS = "r"  # head in CSV files of the distance from the axis of rotation
-# Heads of CSV files, beside the keys of the beam.
+# Heads of CSV files, in addition to the keys of the beam.
 _HEADS = {
     "x/L": ("span", "blfract", "sec_loc", "span_loc"),
     "mass_per_length": ("mass", "mass per metre", "BMassDen", "mass_den"),
@@ -127,7 +127,10 @@ def read_station_file(text: DataText, more: Mapping[str, Quantity] | None = None
 
 
 def with_station_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[str, Any]:
-    """The tables of a scene with the rows of the CSV file that `beam.stations` names, if it names one."""
+    """Replace the name of a CSV file in `beam.stations` by the file's rows.
+
+    Return the tables of the scene.
+    """
     beam = data.get("beam")
     if not isinstance(beam, dict) or not isinstance(beam.get("stations"), str):
         return data
@@ -145,7 +148,7 @@ def with_station_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[s
 
 
 class RecordedQuantity(Quantity):
-    """A number of a record, of which there are many in one unit: its conversion is found once."""
+    """A number of a record, where many have one unit, whose conversion is computed once."""
 
     def parse(self, given: object) -> float:
         """Convert to SI."""
@@ -155,13 +158,13 @@ class RecordedQuantity(Quantity):
 
 @cache
 def _si_value(unit: str, of: str) -> Decimal:
-    """Size of a unit in SI."""
+    """Return the size of a unit in SI."""
     return Decimal(repr(quantity(f"1 {unit}", of)))
 
 
 FILE = "file"
 _TIMES = "times"
-# Heads beside the keys of the motion.
+# Heads, in addition to the keys of the motion.
 _RECORD_HEADS = {
     "times": ("t", "time"),
     "speeds": ("speed", "omega"),
@@ -172,7 +175,7 @@ _RECORD_HEADS = {
 
 
 def with_record_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[str, Any]:
-    """The tables of a scene with the columns of the CSV files that its motion names, if it names any.
+    """Add the columns of the CSV files that a scene's motion names; return the tables of the scene.
 
     Raises
     ------
@@ -192,7 +195,7 @@ def with_record_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[st
 
 
 def _with_columns(motion: dict[str, Any], place: str, path: str | PathLike[str]) -> dict[str, Any]:
-    """A table of a motion with its lists from the file that it names."""
+    """Return the table of a motion with its lists from the file that it names."""
     if not isinstance(motion.get(FILE), str):
         return motion
     name, known = motion[FILE], _lists_of(motion.get("kind"))
@@ -207,7 +210,7 @@ def _with_columns(motion: dict[str, Any], place: str, path: str | PathLike[str])
 
 
 def _lists_of(kind: object) -> dict[str, RecordedQuantity]:
-    """The lists of a kind of motion that a record may give, by key."""
+    """Return the lists of a kind of motion that a record may give, by key."""
     made = KINDS.get(kind) if isinstance(kind, str) else None
     if made is None:
         return {}
@@ -256,7 +259,7 @@ def _check_times(table: CsvTable, times: tuple[float, ...]) -> None:
 
 
 def as_velocity(text: object) -> float | None:
-    """A velocity [m/s], None if it is not one."""
+    """Convert a text to a velocity [m/s]; None if it is none."""
     try:
         return quantity(text, "m/s") if isinstance(text, str) else None
     except InvalidInput:
@@ -264,14 +267,14 @@ def as_velocity(text: object) -> float | None:
 
 
 def with_rolling_speeds(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The tables of a file with velocities in the rotation of a rolling wheel as angular speeds [rad/s]."""
+    """Convert velocities in a rolling wheel's rotation to speeds [rad/s]; return the tables of the file."""
     motion = data.get("motion")
     rotation = motion.get("rotation") if isinstance(motion, Mapping) else None
     if not isinstance(motion, Mapping) or not isinstance(rotation, Mapping):
         return data
     try:
         radius = quantity(motion.get("rolling_radius"), "m")
-    except InvalidInput:  # the check of the table names this mistake
+    except InvalidInput:  # the check of the table reports this mistake
         return data
     velocities = {key: as_velocity(value) for key, value in rotation.items()}
     if radius <= 0 or all(value is None for value in velocities.values()):
@@ -336,14 +339,13 @@ def parse_scene(text: str, source: str = "scene") -> Scene:
 
 
 def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
-    """A scene from the tables of a TOML file.
+    """Make a scene from the tables of a TOML file.
 
     Parameters
     ----------
     data : mapping
-        Tables "beam" and "mount", and where wanted "motion", "model", "damping",
-        "harvester" and "physics", as
-        tomllib reads them.
+        Tables "beam" and "mount", and where wanted "motion", "model", "damping", "tip_load", "harvester" and
+        "physics", as tomllib reads them.
     source : str
         Name of its origin, for messages.
 
@@ -356,14 +358,14 @@ def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
 
 
 def _units_of(data: Mapping[str, Any]) -> DisplayUnits:
-    """Units in which the file gives the length of the beam and the speed of the motion, if it has one."""
+    """Return the units in which the file gives the length of the beam and the speed of the motion."""
     length = unit_as_written(data["beam"].get("length"), "m")[0]
     speed = unit_as_written(_speed_in(data.get("motion")), "rad/s")[0]
     return DisplayUnits(known_unit("speed", speed), known_unit("length", length))
 
 
 def _speed_in(motion: Any) -> Any:
-    """The speed of a motion as its table has it, or that of the rotation within it."""
+    """Return the speed of a motion as its table gives it, or that of the rotation within it."""
     if not isinstance(motion, Mapping):
         return motion
     inner = motion.get("speed", motion.get("rotation"))

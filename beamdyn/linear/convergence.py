@@ -1,4 +1,4 @@
-"""How many modes a linear model needs, and the error of what is computed with it."""
+"""Convergence of linear models: the number of modes they need, and the error of what they give."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from beamdyn.modes.model_error.effect_choice import NOTHING_BARRED, choose_physi
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
-_MODES = 5  # modes by which physics and functions are chosen, where all functions are kept
+_MODES = 5  # number of modes by which physics and functions are chosen, where all functions are kept
 _STRAIGHT = "linear models are those about the straight beam"
 _OR_ALL = Named("or None, which keeps all functions", "or auto")
 
@@ -35,12 +35,12 @@ _OR_ALL = Named("or None, which keeps all functions", "or auto")
 def check_linear(
     scene: Scene, speed: float, modes: int | None, barred: Mapping[str, str] = NOTHING_BARRED
 ) -> tuple[Scene, float]:
-    """The scene with its physics chosen, without effects that are barred, and the speed [rad/s].
+    """Check arguments of a linear analysis; return the scene with its physics chosen, and the speed [rad/s].
 
     Raises
     ------
     InvalidValue
-        If the scene is none or has a large deflection, or the speed or the modes are out of range.
+        If `scene` is not a scene, it has large deflection, or speed or modes are out of range.
     """
     check_scene(scene)
     speed = real("speed", speed, "rad/s")
@@ -57,7 +57,7 @@ def check_linear(
 
 
 def with_forces(scene: Scene, inputs: Sequence[Excitation]) -> Scene:
-    """The scene with breakpoints of the beam where forces act within the span, and the shear force jumps."""
+    """Add breakpoints to the beam where point forces act within the span, and the shear force jumps."""
     found = [force[0] for each in inputs if (force := each.force(scene.beam)) is not None and force[0] < 1]
     if not found:
         return scene
@@ -73,9 +73,9 @@ def model_at_speed(
     discretization: DiscretizationChoice,
     tolerance: float | None = None,
 ) -> ModelAtSpeed:
-    """The linear equations of a scene in as many modes; functions are chosen for modes without damping.
+    """Build the linear model of a scene with a number of modes, and functions that suit undamped modes.
 
-    The tolerance is that of `natural_modes`.
+    For the tolerance see `natural_modes`.
 
     Raises
     ------
@@ -93,45 +93,50 @@ def model_at_speed(
 def model_of_few_modes(
     scene: Scene, speed: float, few: int, discretization: DiscretizationChoice, tolerance: float | None = None
 ) -> ModelAtSpeed:
-    """Make the model of a few modes that nobody asked for: of fewer if the discretization has no more."""
+    """Build the model with `few` modes, or with as many as a given `Discretization` can compute."""
     return model_at_speed(scene, speed, most_modes(scene, discretization, few), discretization, tolerance)
 
 
-# How many modes are needed ------------------------------------------------------------------------
+# Number of modes needed --------------------------------------------------------------------------
 
 
 Evaluation = Callable[[ModelAtSpeed], np.ndarray]
-# A value by a model, and by the one with twice as many modes, if there is one.
+# A model and its value, and the model with twice as many modes and its value; None if there is no such model.
 _Doubled: TypeAlias = tuple[ModelAtSpeed, np.ndarray, ModelAtSpeed | None, np.ndarray | None]
 
-_FIRST = 4  # modes of the first basis of "auto"
-_ACCURATE = 8  # modes for which its functions are chosen by default, at least
-_MOST = 40  # most modes of the last refinement
-_OF_FREQUENCIES = 0.01  # error of frequencies over that of a response, which a resonance magnifies
-_DEFAULT = 1.001 * DEFAULT_TARGET  # target up to which models are the default ones: no last digit decides
-_FINER = 1e-3  # of the target, where the response has not met its tolerance
-_MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
-_ROUNDING = 1e-12  # rounding error, over the largest value
+# Least number of modes in a basis of "auto", and of those for which functions are chosen at a loose target.
+_FIRST = 4
+_ACCURATE = 8  # number of modes for which functions are chosen at first at the default target
+_MOST = 40  # number of modes beyond which a model is not refined further
+# Ratio of the error allowed to frequencies to that of a response, which resonance magnifies.
+_OF_FREQUENCIES = 0.01
+# Target accuracy up to which the default models are used, with a margin for the last digit.
+_DEFAULT = 1.001 * DEFAULT_TARGET
+# Ratio of the next target accuracy of the functions to the last one, at which the response missed its
+# tolerance.
+_FINER = 1e-3
+_MASSLESS = 1e-12  # smallest nonzero eigenvalue of the mass, relative to the largest
+_ROUNDING = 1e-12  # rounding error of a value relative to the largest value
 
 
 @dataclass(frozen=True)
 class Refined:
-    """A value with its error, of the model with enough modes.
+    """A value with its error, and the linear model with enough modes that gave it.
 
     Parameters
     ----------
     model : ModelAtSpeed
         The model.
     larger : ModelAtSpeed or None
-        The one with more modes, or all functions; None if the model has them all, or there is none.
+        Model with more modes, or all functions; None if `model` has all, or there is none.
     value, error : ndarray
         The value and its estimated error, of one shape.
     truncation : float
         Largest error by the modes left out.
     discretization : ndarray
-        The part of the error that is of the discretization.
+        Part of the error due to the discretization.
     method, compared_with : str
-        The model, and those that the error was estimated by.
+        Names of the model, and of those that its error was estimated by.
     """
 
     model: ModelAtSpeed
@@ -154,7 +159,7 @@ def evaluate_accurately(
     evaluate: Evaluation,
     most: int,
 ) -> Refined:
-    """Evaluate with all functions where they are few, else with as many modes as the tolerance needs.
+    """Evaluate with all functions where these are few, else with as many modes as the tolerance needs.
 
     Parameters
     ----------
@@ -166,9 +171,9 @@ def evaluate_accurately(
         Number of modes; "auto": all functions up to `most`, else the fewest modes with which the error meets
         the tolerance; None: all functions.
     tolerance : float
-        Error aimed at by "auto", relative to the largest value.
+        Target of the error for "auto", relative to the largest value.
     evaluate : callable
-        The value by a model.
+        Function that computes the value from a model.
     most : int
         Number of functions up to which all are kept.
     """
@@ -202,7 +207,7 @@ def evaluate_accurately(
 def _model_up_to(
     scene: Scene, speed: float, top: float, discretization: DiscretizationChoice, target: float
 ) -> ModelAtSpeed:
-    """The model with functions for modes up to an angular frequency [rad/s], to a target, within limits."""
+    """Build a model whose functions resolve modes up to an angular frequency [rad/s], within limits."""
     tolerance = target if target > _DEFAULT else None
 
     def of_modes(modes: int) -> tuple[int, ModelAtSpeed]:
@@ -217,12 +222,15 @@ def _model_up_to(
 
 
 def evaluate_also(refined: Refined, evaluate: Evaluation) -> Refined:
-    """Another value by the models of one that is refined, with its error."""
+    """Evaluate another quantity by the models that refined a value, with its error."""
     return _with_error(refined.model, evaluate(refined.model), refined.larger, evaluate)
 
 
 def _all_of(model: ModelAtSpeed, most: int) -> ModelAtSpeed | None:
-    """The model with all functions, unless they are many or some have no mass of their own."""
+    """Build the model with all its functions, without reduction to modes.
+
+    Return None if there are more than `most`, or some have no mass.
+    """
     whole = replace(model, modes=None)
     if whole.equations.size > most:
         return None
@@ -230,7 +238,7 @@ def _all_of(model: ModelAtSpeed, most: int) -> ModelAtSpeed | None:
 
 
 def _count_with_mass(M: np.ndarray) -> int:
-    """How many modes a mass matrix has: coordinates without mass, as of shear alone, add none."""
+    """Count the modes of a mass matrix; massless coordinates, as of pure shear, add none."""
     values = np.linalg.eigvalsh(M)
     return int((values > _MASSLESS * values[-1]).sum())
 
@@ -251,7 +259,7 @@ def _add_modes(
         return doubled(larger, finer)
 
     def settles(found: _Doubled) -> bool:
-        """Whether more modes change the value by at most a share of the largest."""
+        """Whether more modes change the value by at most a fraction of the largest value."""
         _, value, _, finer = found
         share = tolerance / LINEAR_MODES.factor
         return finer is not None and bool(np.abs(finer - value).max() <= share * np.abs(finer).max())
@@ -261,7 +269,7 @@ def _add_modes(
 
 
 def _larger(model: ModelAtSpeed, discretization: DiscretizationChoice) -> ModelAtSpeed | None:
-    """The model with twice as many modes; None if the discretization has too few."""
+    """Build the model with twice as many modes; None if the discretization has too few functions."""
     assert model.modes is not None
     modes, coarser = 2 * model.modes, model.model.coarser.equations
     masses = (coarser.steady().part(coarser.places(names)).M for names in coarser.coupled)
@@ -282,7 +290,7 @@ def _with_error(
     evaluate: Evaluation,
     finer: np.ndarray | None = None,
 ) -> Refined:
-    """The value, with its distance from that of more modes and of a coarser discretization."""
+    """Estimate the error of a value from models with more modes and of a coarser discretization."""
     coarse = ModelAtSpeed(model.model.coarser, model.speed, model.modes)
     rounding = _ROUNDING * np.abs(
         value

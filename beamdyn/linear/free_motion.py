@@ -1,4 +1,4 @@
-"""Free motion of linear equations, M q'' + C q' + K q = 0, alike in whatever units they are written.
+"""Free motion of linear equations, M q'' + C q' + K q = 0, independent of the units of coordinates.
 
 Coordinates u are chosen in which K + z^2 M is the unit matrix and M = diag(r^2), and the states are u and
 w = r u'.  Then all that remains is times, and for the poles s the eigenvalues of T are 1 / (s - z), where
@@ -21,23 +21,25 @@ import scipy.linalg
 from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 
 _EPS = float(np.finfo(float).eps)
-_MASSLESS = 16 * _EPS  # r^2 over the largest, that is 0 within rounding
-_STILL = 1e-6  # pole over the shift, that is 0 within rounding: two that meet there are known to its root
-_INFINITE = 1e-12  # inverse pole over the largest, that is 0 within rounding
-_NEARLY_FREE = 1e-6  # squared frequency over that of an elastic mode, below which the stiffness is shifted
-_ELASTIC = 2  # modes that may be free of stiffness, a turn in each plane: the next one is elastic
+_MASSLESS = 16 * _EPS  # ratio of r^2 to the largest that is 0 within rounding
+# Ratio of a pole to the shift below which the pole counts as 0: rounding moves double poles by its square
+# root.
+_STILL = 1e-6
+_INFINITE = 1e-12  # ratio of an inverse pole to the largest that is 0 within rounding
+_NEARLY_FREE = 1e-6  # squared frequency relative to an elastic mode's, below which the stiffness is shifted
+_ELASTIC = 2  # modes that may be without stiffness, one rotation in each plane: the next one is elastic
 
 
 @dataclass(frozen=True)
 class BalancedCoordinates:
-    """Coordinates u, q = basis u, in which K + shift^2 M is the unit matrix and M = diag(roots^2).
+    """Coordinates u with q = basis u, in which K + shift^2 M is the unit matrix and M = diag(roots^2).
 
     Parameters
     ----------
     basis : ndarray, shape (n, n)
         Coordinates q per unit of each u.
     roots : ndarray, shape (n,)
-        Roots of the mass [s], descending; 0 of what has no mass within rounding.
+        Square roots of the mass [s], descending; 0 for coordinates without mass within rounding.
     shift : float
         Shift of the poles [1/s].
     """
@@ -48,7 +50,7 @@ class BalancedCoordinates:
 
     @property
     def squared(self) -> np.ndarray:
-        """Squared frequencies without damping [1/s2], of what has mass: those of least size first."""
+        """Squared undamped frequencies [1/s2] of coordinates with mass, in order of magnitude."""
         with_mass = self.roots[self.roots > 0]
         found = with_mass**-2.0 - self.shift**2
         return found[np.argsort(np.abs(found))]
@@ -56,21 +58,21 @@ class BalancedCoordinates:
 
 @dataclass(frozen=True)
 class FreeMotion:
-    """Free motions: a load f moves the coordinates by q(s) = sum_k shapes_k shares_k(f) / (1 - s t_k).
+    """Free motions, by which a load f causes q(s) = sum_k shapes_k shares_k(f) / (1 - s t_k).
 
     Parameters
     ----------
     inverse_poles : ndarray of complex, shape (m,)
-        t_k = 1 / p_k [s], in descending order of magnitude, of a pair that of Im p > 0 first; infinite of a
-        free turn, 0 of what has no mass.
+        Inverse poles t_k = 1 / p_k [s], descending in magnitude, Im p > 0 first in pairs; infinite for a
+        free rotation, 0 for massless coordinates.
     shapes : ndarray of complex, shape (n, m)
         Coordinates q of each free motion.
     states : ndarray of complex, shape (2 n, m)
         Each free motion in balanced coordinates, u and then w.
     coordinates : BalancedCoordinates
-        These.
+        The balanced coordinates u.
     damping : ndarray, shape (n, n)
-        C in these [s].
+        Damping matrix C in the balanced coordinates [s].
     """
 
     inverse_poles: np.ndarray
@@ -81,25 +83,25 @@ class FreeMotion:
 
     @property
     def poles(self) -> np.ndarray:
-        """The p_k [1/s] (m,), in ascending order of magnitude; infinite ones of what has no mass."""
+        """Poles [1/s] (m,), ascending in magnitude; infinite for massless coordinates."""
         massless = np.full(np.count_nonzero(self.inverse_poles == 0), np.inf)
         return np.concatenate([self.finite_poles, massless])
 
     @property
     def finite_poles(self) -> np.ndarray:
-        """Poles of the coordinates that have mass."""
+        """Poles [1/s] of the coordinates that have mass."""
         inverse = self.inverse_poles[self.inverse_poles != 0]
         free = np.isinf(inverse)
         return np.where(free, 0.0, 1 / np.where(free, 1.0, inverse))
 
     @property
     def rounding(self) -> float:
-        """Size of the rounding errors of the inverse poles [s]."""
+        """Rounding error of the inverse poles [s]."""
         size = np.abs(self.inverse_poles)
         return len(self.shapes) * _EPS * float(size.max(where=np.isfinite(size), initial=0.0))
 
     def shares(self, loads: np.ndarray) -> np.ndarray:
-        """Shares (m, k) of the free motions in the answers to loads (n, k)."""
+        """Compute the shares (m, k) of the free motions in the responses to loads (n, k)."""
         z, r = self.coordinates.shift, self.coordinates.roots[:, None]
         u = np.linalg.solve(np.eye(len(r)) + z * self.damping, self.coordinates.basis.T @ loads)
         return _in_terms_of(self.states, np.vstack([u, z * r * u])) * (1 - z * self.inverse_poles)[:, None]
@@ -128,7 +130,7 @@ def free_motion(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> FreeMotion:
 
 
 def balance(M: np.ndarray, K: np.ndarray) -> BalancedCoordinates:
-    """Choose coordinates for free motion; with a shift where the stiffness is not safely positive."""
+    """Choose balanced coordinates; with a shift where the stiffness is not safely positive definite."""
     try:
         found = _diagonal(M, K, 0.0)
     except np.linalg.LinAlgError:
@@ -142,7 +144,7 @@ def balance(M: np.ndarray, K: np.ndarray) -> BalancedCoordinates:
 
 
 def _diagonal(M: np.ndarray, K: np.ndarray, shift: float) -> BalancedCoordinates:
-    """Coordinates for one shift; a LinAlgError if the shifted stiffness is not positive definite."""
+    """Compute balanced coordinates for a shift; LinAlgError if the stiffness is not positive definite."""
     L = np.linalg.cholesky(K + shift**2 * M)
     mass = solve_lower(L, solve_lower(L, M).T)
     squared_roots, turned = np.linalg.eigh((mass + mass.T) / 2)
@@ -152,7 +154,7 @@ def _diagonal(M: np.ndarray, K: np.ndarray, shift: float) -> BalancedCoordinates
 
 
 def _safe_shift(M: np.ndarray, K: np.ndarray) -> float:
-    """A shift that makes the stiffness safely positive definite, of the size of the highest frequencies."""
+    """Choose a shift, of the highest frequencies' size, that makes the stiffness safely positive definite."""
     mass, stiffness = np.diag(M), np.abs(np.diag(K))
     massive = mass > _MASSLESS * mass.max()
     shift = np.sqrt(np.max(stiffness[massive] / mass[massive]) or 1.0)
@@ -170,7 +172,7 @@ def _is_definite(A: np.ndarray) -> bool:
 
 
 def _in_terms_of(vectors: np.ndarray, states: np.ndarray) -> np.ndarray:
-    """States (m, k) by eigenvectors; the nearest ones where motions without mass leave these dependent."""
+    """Express states (m, k) by eigenvectors, in the least-squares sense if these are dependent."""
     try:
         return np.linalg.solve(vectors, states)
     except np.linalg.LinAlgError:

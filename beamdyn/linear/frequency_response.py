@@ -1,18 +1,17 @@
-"""Response over frequency at a steady speed: deflection, acceleration, moment or strain by one excitation."""
+"""Frequency response at a steady speed: deflection, acceleration, moment or strain by one excitation."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import BeyondModel, ascending, refuse
 from beamdyn.common.plots.plots import plot_frequency_response
 from beamdyn.common.results.one_line import error_at_most, number, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import announced_of_plain_beam
 from beamdyn.linear.convergence import Refined, check_linear, evaluate_accurately, with_forces
@@ -26,22 +25,19 @@ from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 _TURN = 2 * np.pi
-_HIGHEST = 1e12  # frequency [Hz], with which atoms vibrate
-_DIRECT = 300  # functions up to which all are kept: some milliseconds a frequency
+_HIGHEST = 1e12  # highest accepted frequency [Hz], with which atoms vibrate
+_DIRECT = 300  # number of functions up to which all are kept: some milliseconds per frequency
 
 
 @dataclass(frozen=True)
 class FrequencyResponse(JudgedByRepeating):
-    """Response to a harmonic excitation at a steady speed, over frequency.
+    """Frequency response of a beam to a harmonic excitation at a steady speed.
 
     An input Re(u exp(i 2 pi f t)) gives the sum of Re(H_h u exp(i 2 pi (f + h n) t)) over the harmonics h of
-    the rotation, of n turns per second: one, h = 0, unless the excitation has a fixed direction.
+    the rotation, with n turns per second; h = 0 is the only one unless the excitation has a fixed direction.
 
-    `error` is that of the numbers; `model_error` and `left_out`, computed when asked for, are what the
+    `error` is numerical; `model_error` and `left_out`, computed when asked for, are what the
     physics left out would change in the largest response, peaks included.
 
     Parameters
@@ -51,14 +47,14 @@ class FrequencyResponse(JudgedByRepeating):
     frequencies : ndarray, shape (F,)
         Frequencies f of the excitation [Hz].
     response : ndarray of complex, shape (F, k)
-        H at each frequency for each harmonic [unit of the output per unit of the input].
+        Frequency response H at each frequency for each harmonic [unit of the output per unit of the input].
     harmonics : ndarray of int, shape (k,)
         The harmonics h: 0, or -1 and 1.
     error : ndarray, shape (F, k)
         Estimated error of the response [same unit]: its distance from that of more modes and of a coarser
         discretization, each with a margin.
     peaks : beamdyn.linear.resonance_peaks.ResonancePeaks
-        Peaks between the lowest and the highest frequency, also between those given: `frequency`, `size`,
+        Peaks between the lowest and the highest frequency, also between grid points: `frequency`, `size`,
         half-power `bandwidth`, and their errors.
     input, output : str
         The excitation and what is observed, with units.
@@ -91,7 +87,10 @@ class FrequencyResponse(JudgedByRepeating):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """The largest response, its frequency and its error in one line; see `Result.headline`."""
+        """Yield the largest response, its frequency and its error for a one-line summary.
+
+        See `Result.headline`.
+        """
         at, size = self.peak
         names = [text.partition(" [")[0] for text in (self.output, self.input)]
         yield f"{number(size, self.unit)} at {number(at, 'Hz')} and {self.say_speed(self.speed)}"
@@ -99,12 +98,12 @@ class FrequencyResponse(JudgedByRepeating):
 
     @property
     def response_frequencies(self) -> np.ndarray:
-        """Frequencies at which the beam answers [Hz], shape (F, k); negative ones turn backwards."""
+        """Frequencies of the response [Hz], shape (F, k); negative ones turn backwards."""
         return self.frequencies[:, None] + self.harmonics * self.speed / _TURN
 
     @property
     def peak(self) -> tuple[float, float]:
-        """Frequency of the excitation [Hz] and magnitude of the largest response, peaks included."""
+        """Excitation frequency [Hz] and magnitude of the largest response, including peaks."""
         found = [(size.max(), f[size.argmax()]) for f, size in map(self._curve, range(len(self.harmonics)))]
         size, at = max(found)
         return float(at), float(size)
@@ -112,11 +111,11 @@ class FrequencyResponse(JudgedByRepeating):
     judged_value = "the largest response"
 
     def judged(self, found: FrequencyResponse) -> np.ndarray:
-        """The largest response, peaks included, of which the model error is stated: shape ()."""
+        """Select the largest response, including peaks, whose model error is stated: shape ()."""
         return np.array(found.peak[1])
 
     def _curve(self, column: int) -> tuple[np.ndarray, np.ndarray]:
-        """Frequencies of the excitation, given and at the peaks of a harmonic, and magnitudes there."""
+        """Return excitation frequencies, including peaks of a harmonic, and the magnitudes there."""
         own = (self.peaks.harmonic == self.harmonics[column]) & np.isfinite(self.peaks.size)
         f = np.concatenate([self.frequencies, self.peaks.frequency[own]])
         size = np.concatenate([np.abs(self.response[:, column]), self.peaks.size[own]])
@@ -124,7 +123,7 @@ class FrequencyResponse(JudgedByRepeating):
         return f[order], size[order]
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the magnitude over the frequency of the excitation, with its peaks, both logarithmic."""
+        """Draw the magnitude over the excitation frequency, with its peaks, on logarithmic axes."""
         labels = [{0: "", -1: "answer at f - n", 1: "answer at f + n"}[h] for h in self.harmonics.tolist()]
         value = f"{self.output.partition(' [')[0]} [{self.unit}]"
         curves = [self._curve(k) for k in range(len(labels))]
@@ -145,9 +144,9 @@ def frequency_response(
 ) -> FrequencyResponse:
     """Compute the response to a harmonic excitation at a steady speed, over frequency.
 
-    Small motions of the straight beam in the modes at the speed, with the static deflection of what these
-    leave out.  The parametric term is left out: an acceleration along the beam varies its stiffness, which
-    answers at other frequencies, too; `random_response` states its size.
+    The straight beam moves little, in the modes at the speed and with the static deflection of all others.
+    The parametric term is not included: an acceleration along the beam varies its stiffness, which causes
+    responses at other frequencies, too; `random_response` states its size.
 
     Parameters
     ----------
@@ -169,7 +168,7 @@ def frequency_response(
         discretization up to 300 of them, else the fewest modes with which the truncation error meets the
         tolerance; None keeps all functions.
     tolerance : float
-        Error aimed at by "auto", relative to the largest response.
+        Target of the error for "auto", relative to the largest response.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
 
@@ -227,7 +226,7 @@ def frequency_response(
         output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,
         unit=f"{seen.unit or '1'} per {drive.unit}",
         warnings=(*_warnings(scene, tolerance, modes, refined),),
-        provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
+        provenance=Provenance.since(start, refined.method, refined.compared_with),
         scene=scene,
     )
 

@@ -1,4 +1,4 @@
-"""Where a beam is excited and what of it is observed, at a steady speed."""
+"""Inputs and outputs of linear models: where a beam is excited, and what is observed of it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ BaseDirection = Literal["bending", "across", "n1", "n2", "n3"]
 _FIXED: tuple[str, ...] = ("n1", "n2", "n3")
 _ROTATING: dict[str, Quantity] = {"bending": "root_transverse", "across": "root_across"}
 _ACCELERATIONS: tuple[Quantity, ...] = ("root_axial", "root_transverse", "root_across")
-_NEGLIGIBLE = 1e-15  # component of a unit acceleration that rounding makes of 0
+_NEGLIGIBLE = 1e-15  # component of a unit acceleration that is 0 within rounding
 
 Accelerations: TypeAlias = "dict[Quantity, complex]"  # accelerations of the root, per unit of the input
 
@@ -61,13 +61,13 @@ class BaseMotion:
 
     @property
     def label(self) -> str:
-        """For tables and pictures."""
+        """Name of the excitation in tables and pictures."""
         return f"base acceleration, {self.direction}"
 
     def accelerations(self, mount: Mount, speed: float) -> dict[int, Accelerations]:
-        """Accelerations of the root in its own axes per unit of the input, by harmonic of the rotation.
+        """Compute accelerations of the root per unit of the input, in its axes, by harmonic of rotation.
 
-        A harmonic h is at the frequency of the input plus h times the speed; the angle of rotation is 0 at
+        Harmonic h has the frequency of the input plus h times the speed; the angle of rotation is 0 at
         time 0.
         """
         if self.direction not in _FIXED:
@@ -82,12 +82,12 @@ class BaseMotion:
         }
 
     def force(self, beam: Beam) -> tuple[float, int] | None:
-        """None: it is no force."""
+        """Return None, because base motion is not a force on the beam."""
         return None
 
 
 def _of_unit(mount: Mount, angle: float, direction: str) -> Accelerations:
-    """Accelerations of the root by a unit acceleration of the carrier in a fixed direction, at an angle."""
+    """Compute the root's accelerations by a unit acceleration in a fixed direction, at an angle."""
     unit, zero = np.zeros(3), np.zeros(())
     unit[_FIXED.index(direction)] = 1.0
     root = root_motion(mount, MotionSample(np.array(angle), zero, zero, unit))
@@ -100,7 +100,7 @@ def _without_zeros(values: Accelerations) -> Accelerations:
 
 @dataclass(frozen=True)
 class PointForce:
-    """Force on a point of the beam [N], which turns with it.
+    """Force on a point of the beam [N], in a direction that turns with the beam.
 
     Parameters
     ----------
@@ -136,15 +136,15 @@ class PointForce:
 
     @property
     def label(self) -> str:
-        """For tables and pictures."""
+        """Name of the excitation in tables and pictures."""
         return f"force {place_in_words(self.position, self.direction)}"
 
     def accelerations(self, mount: Mount, speed: float) -> dict[int, Accelerations]:
-        """The root does not move."""
+        """Return no accelerations, because a force does not move the root."""
         return {0: {}}
 
     def force(self, beam: Beam) -> tuple[float, int]:
-        """Position x/L and direction, 0 or 1, of a unit force."""
+        """Return position x/L and direction, 0 or 1, of the force."""
         return fraction_of(self.position, beam), direction_of(self.direction)
 
 
@@ -158,12 +158,12 @@ _EXCITATIONS: dict[str, Excitation] = {
 
 
 def as_excitation(name: str, given: Any) -> Excitation:
-    """An excitation, which a word may stand for.
+    """Convert a word such as "tip force" to an excitation; an excitation is returned as it is.
 
     Raises
     ------
     InvalidValue
-        If it is neither, with the words.
+        If the argument is neither; the message lists the words.
     """
     if isinstance(given, str) and given in _EXCITATIONS:
         return _EXCITATIONS[given]
@@ -175,13 +175,13 @@ def as_excitation(name: str, given: Any) -> Excitation:
 
 
 def place_in_words(position: float | None, direction: str) -> str:
-    """A point of the beam and a direction, such as "at 0.03 m, across"."""
+    """Word a point of the beam and a direction, such as "at 0.03 m, across"."""
     place = "at the tip" if position is None else f"at {position:.6g} m"
     return f"{place}, {direction}" if direction == ACROSS else place
 
 
 def fraction_of(position: float | None, beam: Beam) -> float:
-    """Fraction x/L of a position; an InvalidValue beyond the tip."""
+    """Convert a position [m] to the fraction x/L; an InvalidValue if it is beyond the tip."""
     if position is None:
         return 1.0
     bound = "it must be at most {limit}, the length"
@@ -191,7 +191,7 @@ def fraction_of(position: float | None, beam: Beam) -> float:
     return min(position / beam.length, 1.0)
 
 
-# What is observed of a beam at steady speed -------------------------------------------------------
+# Outputs of a beam at steady speed ----------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -231,11 +231,11 @@ class DeflectionAt:
 
     @property
     def label(self) -> str:
-        """For tables and pictures."""
+        """Name of the observation in tables and pictures."""
         return f"{self._word} {place_in_words(self.position, self.direction)}"
 
     def place(self, beam: Beam) -> tuple[float, int]:
-        """Position x/L, and direction 0 or 1."""
+        """Return position x/L and direction, 0 or 1, of the deflection."""
         return fraction_of(self.position, beam), direction_of(self.direction)
 
 
@@ -243,9 +243,9 @@ class DeflectionAt:
 class AccelerationAt(DeflectionAt):
     """Acceleration of a point of the beam in space [m/s2], along a direction that turns with the carrier.
 
-    It contains that of the root, and what rotation adds to a deflection; the constant acceleration towards
-    the axis of rotation is left out, so that it is what an accelerometer without constant part measures.
-    Over the acceleration of the base it is the transmissibility.
+    The acceleration of the root is included, and what rotation adds to a deflection.  The constant
+    acceleration towards the axis of rotation is left out, as by accelerometers that measure no constant part.
+    Divided by the acceleration of the base, this is the transmissibility.
 
     Parameters
     ----------
@@ -294,7 +294,7 @@ class StrainAtRoot:
 
     @staticmethod
     def per_moment(scene: Scene) -> float:
-        """Strain per bending moment [1/(N m)]; a ValueError where the beam has no outer fibre."""
+        """Compute the strain per bending moment [1/(N m)]; a ValueError if the beam has no outer fibre."""
         if scene.beam.outer_fibre is None:
             raise InvalidValue("output", "root strain", "the strain needs beam.outer_fibre", GIVE_IT)
         return strain_per_moment(scene)
@@ -315,7 +315,7 @@ class HarvestedVoltage:
     label: ClassVar[str] = "voltage"
 
     def rows(self, electrodes: Electrodes, length: float) -> LayerRows:
-        """Rows of the output; a ValueError of a short circuit."""
+        """Return the rows of the voltage; a ValueError for a short circuit, which has none."""
         if not electrodes.resistance:
             raise InvalidValue("output", "voltage", "a short circuit has none", "give harvester.resistance")
         return LayerRows(electrodes.is_loaded, 0, -1 / electrodes.capacitance(length))
@@ -336,7 +336,7 @@ class HarvestedCurrent:
     label: ClassVar[str] = "current"
 
     def rows(self, electrodes: Electrodes, length: float) -> LayerRows:
-        """Rows of the output; a ValueError of an open circuit."""
+        """Return the rows of the current; a ValueError for an open circuit, which has none."""
         if math.isinf(electrodes.resistance):
             remedy = "give a finite harvester.resistance"
             raise InvalidValue("output", "current", "an open circuit has none", remedy)
@@ -371,7 +371,7 @@ class LayerStrain:
             set_fields(self, position=not_negative("position", self.position, "m"))
 
     def place(self, electrodes: Electrodes, length: float) -> float:
-        """Position x/L within the layers; a ValueError beside them."""
+        """Return the position x/L of the strain; a ValueError if no layer is there."""
         (first, last), given = electrodes.span, self.position
         if given is None:
             return electrodes.inside(0.0)
@@ -384,7 +384,7 @@ class LayerStrain:
 
 @dataclass(frozen=True)
 class LayerRows:
-    """Voltage or current of layers: of the circuit's coordinate, or per theta^T q (order 0) or q' (1)."""
+    """Voltage or current of layers, per circuit coordinate, or per coupling theta^T q and its rate."""
 
     of_circuit: bool
     order: int
@@ -407,12 +407,12 @@ _OBSERVATIONS: dict[str, Observation] = {
 
 
 def as_observation(name: str, given: Any) -> Observation:
-    """An observation, which a word may stand for.
+    """Convert a word such as "tip" to an observation; an observation is returned as it is.
 
     Raises
     ------
     InvalidValue
-        If it is neither, with the words.
+        If the argument is neither; the message lists the words.
     """
     if isinstance(given, str) and given in _OBSERVATIONS:
         return _OBSERVATIONS[given]

@@ -1,4 +1,4 @@
-"""Matrices of the equations of motion at a steady speed, with what each row and coordinate means."""
+"""Matrices of the equations of motion at a steady speed, with the meaning of each row and coordinate."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, real_array, refuse, several
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance
@@ -30,15 +29,17 @@ from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 
-_NODAL = 1e-9  # difference from 1 that a nodal value may have
-MOST_JUDGED = 5  # modes, of which the lowest loses its stability first, and is changed by effects left out
+# Largest rounding error of a function's values at nodes, which are 1 at one node and 0 at all others.
+_NODAL = 1e-9
+# Number of modes judged: the lowest loses stability first, and is changed most by effects left out.
+MOST_JUDGED = 5
 
 
 @dataclass(frozen=True)
 class Matrices(StatesModelError):
     """Equations of motion at a steady speed about the straight beam, M q'' + (C + G) q' + K q = f + B u.
 
-    Rotating axes, a fixed centre of the carrier, and no gravity.  `error` is that of the numbers;
+    Axes rotate, the centre of the carrier is fixed, and there is no gravity.  `error` is numerical;
     `model_error` (m,) and `left_out`, computed when asked for, are what the physics left out would change in
     the lowest natural frequencies.
 
@@ -47,28 +48,28 @@ class Matrices(StatesModelError):
     speed : float
         Speed [rad/s].
     mass : ndarray, shape (n, n)
-        M, symmetric [unit of the row / (unit of the coordinate / s2)].
+        Mass matrix M, symmetric [unit of the row / (unit of the coordinate / s2)].
     damping : ndarray, shape (n, n)
-        C, symmetric [unit of the row / (unit of the coordinate / s)].
+        Damping matrix C, symmetric [unit of the row / (unit of the coordinate / s)].
     gyroscopic : ndarray, shape (n, n)
-        G at this speed, skew [as C].
+        Gyroscopic matrix G at this speed, skew-symmetric [unit of C].
     stiffness : ndarray, shape (n, n)
-        K at this speed: elastic, with centrifugal stiffening and spin softening
+        Stiffness matrix K at this speed: elastic, with centrifugal stiffening and spin softening
         [unit of the row / unit of the coordinate].
     stiffness_by_axial_acceleration : ndarray, shape (n, n)
-        What K loses for each m/s2 by which the root accelerates along the beam, beyond the steady rotation:
+        Loss of K for each m/s2 by which the root accelerates along the beam, beyond the steady rotation:
         the parametric term of translation and gravity [unit of K / (m/s2)].
     static_load : ndarray, shape (n,)
-        f, the load by the steady rotation [units of the rows].
+        Load f by the steady rotation [units of the rows].
     input_matrix : ndarray, shape (n, k)
-        B: load by a unit of each input [unit of the row / unit of the input].
+        Input matrix B: load by a unit of each input [unit of the row / unit of the input].
     inputs : tuple of str
         The inputs u, with units.
     coordinates, rows : tuple of str
         Meaning of each coordinate q and each equation, with units.
     error : ndarray, shape (2 n,)
         Estimated relative error of each of the `poles`, in their order: by the modes left out and by the
-        discretization; nan of an infinite pole, inf of one that is not resolved to 1 %.
+        discretization; nan for an infinite pole, inf for one that is not resolved to 1 %.
     warnings : tuple of str
         Limits of the validity of the matrices.
     provenance : Provenance
@@ -100,7 +101,10 @@ class Matrices(StatesModelError):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Size, speed, inputs and error of the lowest pole in one line; see `Result.headline`."""
+        """Yield size, speed, inputs and error of the lowest pole for a one-line summary.
+
+        See `Result.headline`.
+        """
         yield f"{len(self.mass)} x {len(self.mass)} at {self.say_speed(self.speed)}"
         yield counted(len(self.inputs), "input")
         yield f"lowest pole: {error_at_most(self.error[:1])}"
@@ -116,7 +120,7 @@ class Matrices(StatesModelError):
         Returns
         -------
         ndarray of complex, shape (2 n,)
-            Poles [1/s] in ascending order of their magnitude.  Those of coordinates without mass, as of shear
+            Poles [1/s] in ascending order of their magnitude.  Poles of coordinates without mass, as of shear
             without rotary inertia, are infinite.
 
         Examples
@@ -133,13 +137,13 @@ class Matrices(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the lowest natural frequencies by effects left out, of five at most: shape (m,)."""
+        """Changes of up to five lowest natural frequencies by effects left out of the model: shape (m,)."""
         return left_out_of_frequencies(self.scene, self.speed, min(len(self.mass), MOST_JUDGED))
 
     def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
-        """Deflection [m] at positions x [m] by a unit of each coordinate: shape (len(x), n).
+        """Evaluate the deflection [m] at positions x [m] by a unit of each coordinate: (len(x), n).
 
-        The direction is 0 for that of the bending angle, 1 for that across.
+        Direction 0 is that of the bending angle, 1 the one across.
 
         Raises
         ------
@@ -163,7 +167,7 @@ def matrices(
     inputs: Sequence[Excitation | str] | None = None,
     tolerance: float | None = None,
 ) -> Matrices:
-    """Give the matrices of the equations of motion at a steady speed.
+    """Compute the matrices of the equations of motion at a steady speed.
 
     Parameters
     ----------
@@ -226,16 +230,16 @@ def matrices(
         rows=tuple(f"generalized force of {name.rpartition(' [')[0]}" for name in coordinates),
         error=pole_errors(model),
         warnings=(*warn_of_model(model),),
-        provenance=Provenance(__version__, f"{model.discretization}, {kept}", "", perf_counter() - start),
+        provenance=Provenance.since(start, f"{model.discretization}, {kept}"),
         equations=equations,
         scene=scene,
     )
 
 
 def warn_of_model(model: ModelAtSpeed) -> Iterator[Statement]:
-    """Yield what limits the validity of the equations at the speed, in the words of natural modes there."""
+    """Yield warnings about the validity of the equations at the speed, worded as for natural modes."""
     yield from warn_of_left_out(model.scene)
-    # How many of the lowest modes grow.
+    # Number of the lowest modes that grow.
     solver = model.model.solver
     found = solver.solve(np.array([model.speed]), min(model.modes or MOST_JUDGED, solver.size))
     growing = int((np.real(found.eigenvalue) > 0).sum())
@@ -246,7 +250,7 @@ def warn_of_model(model: ModelAtSpeed) -> Iterator[Statement]:
 
 
 def listed(name: str, given: Any) -> tuple[Any, ...]:
-    """The members of a sequence, of which there is one at least."""
+    """Return the members of a sequence as a tuple; refuse an empty one."""
     members = several(name, given, object)
     if not members:
         raise InvalidValue(name, given, "it is empty", "give one at least, or leave it out")
@@ -254,7 +258,7 @@ def listed(name: str, given: Any) -> tuple[Any, ...]:
 
 
 def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
-    """The excitations of a request, or the usual ones of a scene."""
+    """List the requested excitations, or by default the usual ones of a scene."""
     if given is not None:
         return [as_excitation(f"inputs[{k}]", each) for k, each in enumerate(listed("inputs", given))]
     usual: list[Excitation] = [BaseMotion(), PointForce()]
@@ -262,7 +266,7 @@ def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
 
 
 def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
-    """Load of an excitation that is none of the rotating ones, which a model of constant matrices has not."""
+    """Compute the load of an excitation; refuse rotating ones, for which matrices are not constant."""
     drives = model.drives(excitation)
     bound = "as the beam turns, it acts at its frequency plus and minus the speed, not by a constant matrix"
     remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response has it'
@@ -286,7 +290,8 @@ def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator
     """Name the coordinates of a field: deflections and slopes at nodes, or else coefficients."""
     deflection = model.equations.deflections.get(field_name)
     nodes = getattr(model.discretization.spaces(model.scene.modelled_beam), "nodes", None)
-    nodes = nodes if isinstance(nodes, np.ndarray) else None  # others than finite elements have nodes, too
+    # Other discretizations may use "nodes" for something else.
+    nodes = nodes if isinstance(nodes, np.ndarray) else None
     nodal: list[np.ndarray] = []
     if nodes is not None and deflection is not None:
         nodal = [deflection.space.evaluate(nodes, order) for order in (0, 1)]
@@ -300,5 +305,5 @@ def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator
 
 
 def _is_nodal(values: np.ndarray) -> bool:
-    """Whether a function is 1 at one node and 0 at the others."""
+    """Whether a function is 1 at one node and 0 at all others."""
     return abs(values.max() - 1) < _NODAL and np.sum(np.abs(values) > _NODAL) == 1

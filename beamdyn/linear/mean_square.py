@@ -45,20 +45,22 @@ from beamdyn.linear.spectra import PowerSpectrum, SpectrumPiece
 from beamdyn.scene.scene import Scene
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-_NEAR = 1.5  # distance of a pole from a piece, over its length, below which it is integrated apart
-_UNDAMPED = 1e-12  # decay rate of a pole over its size, that is rounding
+# Distance of a pole from a piece of the spectrum, over the piece's length, below which the pole is integrated
+# separately.
+_NEAR = 1.5
+_UNDAMPED = 1e-12  # ratio of a pole's decay rate to its size below which the decay counts as rounding
 
 
 @dataclass(frozen=True)
 class PartialFractions:
-    """A transfer function H(s) = d + sum r_k / (s - p_k).
+    """A transfer function as partial fractions, H(s) = d + sum r_k / (s - p_k).
 
     Parameters
     ----------
     direct : complex
-        d.
+        Direct term d.
     residues, poles : ndarray of complex, shape (m,)
-        r_k, and p_k [1/s], in the left half-plane.
+        Residues r_k, and poles p_k [1/s] in the left half-plane.
     """
 
     direct: complex
@@ -66,37 +68,40 @@ class PartialFractions:
     poles: np.ndarray
 
     def __call__(self, s: np.ndarray) -> np.ndarray:
-        """Evaluate at s [1/s]."""
+        """Evaluate the transfer function at complex frequencies s [1/s]."""
         return self.direct + (self.residues / (np.asarray(s)[..., None] - self.poles)).sum(axis=-1)
 
     @property
     def of_square(self) -> np.ndarray:
-        """Coefficients c_k (m,) of |H|^2."""
+        """Coefficients (m,) of the poles in the partial fractions of the transfer function's squared size."""
         between = -self.poles[:, None] - np.conj(self.poles)
         return self.residues * (np.conj(self.direct) + (np.conj(self.residues) / between).sum(axis=1))
 
     def through_filter(self, delay: float) -> PartialFractions:
-        """Partial fractions of the function divided by 1 + s delay."""
+        """Return the partial fractions of the function divided by the filter 1 + s delay."""
         pole = -1 / delay
         passed = self.residues / (1 + self.poles * delay)
         residue = complex(self(np.array(pole)) / delay)
         return PartialFractions(0.0, np.append(passed, residue), np.append(self.poles, pole))
 
     def mean_square(self, spectrum: PowerSpectrum, shift: float = 0.0) -> float:
-        """Integral over f of a one-sided density times |H|^2 at f plus a shift [Hz]."""
+        """Integrate a one-sided density at f times |H|^2 at f plus a shift [Hz], H the transfer function."""
         integrals = pole_integrals(spectrum, self.poles / (2j * np.pi) - shift)
         of_poles = (self.of_square / (2j * np.pi)) @ integrals.by_pole
         return abs(self.direct) ** 2 * integrals.whole + 2 * float(np.real(of_poles))
 
     def mean_square_of_white(self, density: float) -> float:
-        """Mean square by white noise of a one-sided density at all frequencies, without d."""
+        """Compute the mean square for a constant one-sided density at all frequencies.
+
+        It leaves out the direct term, which would make it infinite.
+        """
         proper = PartialFractions(0.0, self.residues, self.poles)
         return density / 2 * float(np.real(proper.of_square.sum()))
 
 
 @dataclass(frozen=True)
 class PoleIntegrals:
-    """Integrals over f of g(f) S(f), with a density S and a weight g.
+    """Integrals over frequency of a density S times a weight g, with and without simple poles.
 
     Parameters
     ----------
@@ -122,9 +127,9 @@ def pole_integrals(
     mu : ndarray of complex, shape (m,)
         Poles [Hz], none of them real.
     shift : float
-        How far the response is from the input [Hz].
+        Frequency of the response minus that of the input [Hz].
     order : int
-        0 for mean squares of the response, 2 for those of its rate.
+        0 for mean squares of the response, 2 for mean squares of its rate.
     """
 
     def weighted(piece: SpectrumPiece, f: np.ndarray) -> np.ndarray:
@@ -145,7 +150,7 @@ def pole_integrals(
 
 
 def check_damped(scene: Scene) -> None:
-    """Refuse a scene without any damping, of which the mean square grows without limit."""
+    """Refuse a scene without any damping, as its mean square grows without limit."""
     if not scene.is_damped:
         raise _undamped(scene)
 
@@ -156,12 +161,12 @@ def _undamped(scene: Scene) -> InvalidValue:
 
 
 def damped_motion(model: ModelAtSpeed) -> FreeMotion:
-    """Free motion of a model of which every mode decays.
+    """Compute the free motion of a model in which every mode decays.
 
     Raises
     ------
     InvalidValue
-        If a mode is not damped: its mean square is not finite.
+        If a mode is not damped, as its mean square is not finite.
     """
     inverse = model.free_motion.inverse_poles
     if (np.real(inverse) > -_UNDAMPED * np.abs(inverse)).any():
@@ -170,7 +175,7 @@ def damped_motion(model: ModelAtSpeed) -> FreeMotion:
 
 
 def residues(free: FreeMotion, load: np.ndarray) -> np.ndarray:
-    """Residues (n, m) at the finite poles of the coordinates' answer to a load (n,)."""
+    """Compute the residues (n, m) of the response to a load (n,) at the finite poles."""
     poles = free.finite_poles
     finite = slice(0, len(poles))
     return -poles * free.shapes[:, finite] * free.shares(load[:, None])[finite, 0]
@@ -179,14 +184,14 @@ def residues(free: FreeMotion, load: np.ndarray) -> np.ndarray:
 def partial_fractions(
     model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation
 ) -> PartialFractions:
-    """Expand the transfer function of one drive.
+    """Expand the transfer function of one drive in partial fractions.
 
-    What an acceleration gains by the modes left out, s^2 times their static deflection, is not in it.
+    The contribution of modes left out to an acceleration, s^2 times their static deflection, is not included.
 
     Raises
     ------
     InvalidValue
-        If a mode is not damped: its mean square is not finite.
+        If a mode is not damped, as its mean square is not finite.
     """
     free, own = damped_motion(model), model.mechanical
     q, poles = residues(free, drive.load), free.finite_poles
@@ -202,19 +207,19 @@ def partial_fractions(
 # Size of the parametric term that linear models leave out -----------------------------------------
 
 
-_LARGE = 0.01  # relative change that is worth a warning
+_LARGE = 0.01  # relative change of the response by a neglected variation, above which a warning is given
 
 
 @dataclass(frozen=True)
 class ParametricTerm:
-    """Size of the parametric term.
+    """Size of the parametric term that linear models leave out: stiffness varied by axial acceleration.
 
     Parameters
     ----------
     stiffness_variation : float
         Root mean square of the random variation of the squared lowest frequency, relative to it.
     by_gravity : float
-        Amplitude of its variation by gravity as the beam turns, likewise relative.
+        Relative amplitude of the variation of the squared lowest frequency by gravity as the beam turns.
     rms_change : float
         Estimated relative change of the root mean square of the lowest mode by the random variation; inf
         where it would grow without limit.
@@ -236,7 +241,7 @@ class ParametricTerm:
     rms_change: float
 
     def warnings(self) -> Iterator[str]:
-        """Yield a warning for each that is not small."""
+        """Yield a warning for each variation that is not small."""
         if self.rms_change > _LARGE:
             size = "without limit" if math.isinf(self.rms_change) else f"by some {self.rms_change:.0%}"
             yield f"the parametric term that is left out would raise the root mean square {size}"
@@ -257,9 +262,9 @@ def parametric_term(
     model : ModelAtSpeed
         The linear model.
     excitation : BaseMotion or PointForce
-        The input.
+        The excitation of the beam.
     spectrum : PowerSpectrum or float
-        Its one-sided density; a number is that of white noise.
+        One-sided density of the input; a number is that of white noise.
     """
     K_GA = model.equations.matrices[0].get("root_axial")
     if K_GA is None:
@@ -288,7 +293,7 @@ def parametric_term(
 
 
 def _excess(model: ModelAtSpeed, squared: float, shape: np.ndarray, density: float) -> float:
-    """The number x of the lowest mode: 0 where nothing varies."""
+    """Compute x of the lowest mode, whose variance grows by 1/(1 - x): 0 where nothing varies."""
     if not density:
         return 0.0
     omega = math.sqrt(squared)

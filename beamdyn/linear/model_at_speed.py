@@ -1,4 +1,4 @@
-"""The linear equations of a scene at one steady speed, in modes at that speed and with what they leave out.
+"""The linear equations of a scene at one steady speed, in modes at that speed and their residual flexibility.
 
 The coordinates are those of the lowest modes at the speed, without damping and gyroscopic coupling, or of all
 functions of the discretization.  What modes leave out follows a slow excitation without delay: its static
@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from beamdyn.accuracy.refinement import LINEAR_MESHES
+from beamdyn.accuracy.refinement import LINEAR_MESHES, THREE_DISCRETIZATIONS, error_of_finest
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.words import Named, Setting, Words
@@ -48,7 +48,7 @@ _LAYERS = Words(Named("Harvester.on puts them on", "a table [harvester] puts the
 
 @dataclass(frozen=True)
 class HarmonicDrive:
-    """Load and feedthrough of an excitation at one harmonic of the rotation, per unit of the input.
+    """Load of an excitation at one harmonic of the rotation, with its feedthrough, per unit of the input.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class HarmonicDrive:
 
 @dataclass(frozen=True)
 class Row:
-    """An output as a linear function of coordinates, velocities, accelerations, and of one drive.
+    """An output as a linear function of coordinates, velocities and accelerations.
 
     Parameters
     ----------
@@ -103,61 +103,61 @@ class ModelAtSpeed(FieldsOnly):
 
     @property
     def scene(self) -> Scene:
-        """The scene."""
+        """The scene of the model."""
         return self.model.scene
 
     @property
     def discretization(self) -> Discretization:
-        """The discretization."""
+        """The discretization of the beam."""
         return self.model.discretization
 
     @cached_property
     def equations(self) -> Equations:
-        """Equations in the kept coordinates, a harvester's circuit by its charge among them."""
+        """Equations in the kept coordinates, including the charge of a harvester's circuit."""
         return self._mechanical.with_charge()
 
     @cached_property
     def _mechanical(self) -> Equations:
-        """Equations in the kept coordinates, without a circuit."""
+        """Equations in the kept coordinates, without the circuit of a harvester."""
         if self.modes is None:
             return self.model.equations
         return reduce_to_modes(self.model.equations, ModalBasis(self.modes, (self.speed,)))
 
     @cached_property
     def pencil(self) -> SteadyPencil:
-        """Matrices of the kept coordinates, as polynomials of the speed."""
+        """Matrices in the kept coordinates, as polynomials of the speed."""
         return self.equations.steady()
 
     @property
     def M(self) -> np.ndarray:
-        """Mass, shape (n, n)."""
+        """Mass matrix at this speed, shape (n, n)."""
         return self.pencil.M
 
     @cached_property
     def C(self) -> np.ndarray:
-        """Damping and gyroscopic matrix together, shape (n, n)."""
+        """Sum of damping and gyroscopic matrices at this speed, shape (n, n)."""
         return self.pencil.C + self.speed * self.pencil.G
 
     @cached_property
     def K(self) -> np.ndarray:
-        """Stiffness, shape (n, n)."""
+        """Stiffness matrix at this speed, shape (n, n)."""
         return self.pencil.K0 + self.speed**2 * self.pencil.K2
 
     @cached_property
     def shapes(self) -> np.ndarray:
-        """Coordinates of all functions (N,) per unit of each kept one: shape (N, n)."""
+        """Basis of the kept coordinates in those of all functions, shape (N, n)."""
         full, kept = self.model.equations, self.equations
         shapes = np.zeros((full.size, kept.size))
         for name, shape in kept.shapes.items():
             shapes[full.blocks[name], kept.blocks[shape.block]] = shape.matrix
         if kept.voltage is not None and (circuit := self._mechanical.circuit) is not None:
-            for name, bent in circuit.bent.items():  # as the modes left out follow the voltage
+            for name, bent in circuit.bent.items():  # the modes left out follow the voltage
                 shapes[full.blocks[name]] += np.outer(bent, kept.voltage.row)
         return shapes
 
     @cached_property
     def free_motion(self) -> FreeMotion:
-        """Poles and shapes of free motion."""
+        """Poles and shapes of the model's free motion."""
         return free_motion(self.M, self.C, self.K)
 
     @cached_property
@@ -170,13 +170,13 @@ class ModelAtSpeed(FieldsOnly):
 
     @property
     def mechanical(self) -> slice:
-        """The coordinates that have mass: all but the charge of a circuit, which is the last."""
+        """Slice of the coordinates with mass: all but the charge of a circuit, which is the last."""
         return slice(0, self._mechanical.size)
 
     # Inputs -----------------------------------------------------------------------------------------
 
     def drives(self, excitation: Excitation) -> dict[int, HarmonicDrive]:
-        """Loads of an excitation, by harmonic of the rotation."""
+        """Compute the loads of an excitation, by harmonic of the rotation."""
         accelerations = excitation.accelerations(self.scene.mount, self.speed)
         return {h: self._drive(given, excitation) for h, given in accelerations.items()}
 
@@ -196,7 +196,7 @@ class ModelAtSpeed(FieldsOnly):
         return HarmonicDrive(self.shapes.T @ load, self._residual(load), accelerations, force)
 
     def _residual(self, load: np.ndarray) -> np.ndarray:
-        """Static deflection of all functions under a load, minus that of the kept coordinates."""
+        """Compute the static deflection of all functions under a load, minus that of the kept coordinates."""
         if self.modes is None:
             return np.zeros_like(load)
         of_all = np.linalg.solve(self._full_stiffness, load)
@@ -216,7 +216,7 @@ class ModelAtSpeed(FieldsOnly):
     # Outputs ----------------------------------------------------------------------------------------
 
     def row(self, observation: Observation) -> Row:
-        """An output by the kept coordinates."""
+        """Express an output in the kept coordinates."""
         zero = np.zeros(self.equations.size)
         if isinstance(observation, OfLayers):
             _, order, of_kept = self._of_layers(observation)
@@ -230,9 +230,9 @@ class ModelAtSpeed(FieldsOnly):
         return Row(factor * position, factor * velocity, zero)
 
     def residual(self, observation: Observation, drive: HarmonicDrive) -> np.ndarray:
-        """Share of an output due to static deflection beyond the kept coordinates: shape (3,).
+        """Compute an output by static deflection beyond the kept coordinates: shape (3,).
 
-        Per unit of the input, and of its first and second time derivative.
+        The values are per unit of the input, and of its first and second time derivative.
         """
         if isinstance(observation, OfLayers):
             row, order, _ = self._of_layers(observation)
@@ -252,9 +252,9 @@ class ModelAtSpeed(FieldsOnly):
         return np.array([self._per_moment(observation) * (total - by_kept), 0.0, 0.0])
 
     def _of_layers(self, observation: OfLayers) -> tuple[np.ndarray, int, np.ndarray]:
-        """An output of layers by all functions (N,), the time derivative of these, and by the kept ones (n,).
+        """Express an output of layers in all functions (N,), with its order in time, and in kept ones (n,).
 
-        Where the circuit has a coordinate, the first is what deflections beyond the kept ones add.
+        Where the circuit has a coordinate, the first row has only deflections beyond the kept coordinates.
         """
         beam, full = self.scene.beam, self.model.equations
         if (electrodes := beam.electrodes) is None:
@@ -267,7 +267,8 @@ class ModelAtSpeed(FieldsOnly):
             row[full.blocks[BENDS]] = strain_of(beam, bends, place)[:, 0]
             return row, 0, row @ self.shapes
         found, voltage = observation.rows(electrodes, beam.length), self.equations.voltage
-        row[full.blocks[BENDS]] = found.factor * coupling_of(beam, bends)
+        for name, theta in coupling_of(beam, full.deflections, full.sections).items():
+            row[full.blocks[name]] = found.factor * theta
         if voltage is None:
             return row, found.order, row @ self.shapes
         per_volt = 1 / electrodes.resistance if isinstance(observation, HarvestedCurrent) else 1.0
@@ -285,10 +286,11 @@ class ModelAtSpeed(FieldsOnly):
         return Row(position, sum((t * w for t, w in zip(turn, each, strict=False)), zero), each[direction])
 
     def _carried(self, direction: int) -> tuple[np.ndarray, np.ndarray]:
-        """Acceleration along a direction by unit deflections, and velocities, in both: each of shape (2,).
+        """Compute the acceleration in a direction by unit deflections (2,) and velocities (2,) in each.
 
-        Carrier: -omega^2 (d_i d_j + S^2 n_i n_j) of the deflection, and 2 omega S of the velocity in the
-        other direction, with S the sine of the precone.
+        Rotation adds -omega^2 (d_i d_j + S^2 n_i n_j) of the deflection, and 2 omega S of the velocity in the
+        other direction, with S the sine of the precone, and d and n the components of the two directions in
+        the plane of rotation and normal to it.
         """
         (d, n), (_, sine) = plane_components(self.scene), exact_cos_sin(self.scene.mount.precone)
         pull = -(self.speed**2) * (d[direction] * np.array(d) + sine**2 * n[direction] * np.array(n))
@@ -304,7 +306,7 @@ class ModelAtSpeed(FieldsOnly):
         return observation.per_moment(self.scene) if isinstance(observation, StrainAtRoot) else 1.0
 
     def _at_speed(self, by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray) -> np.ndarray:
-        """Sum of rows by the quantities of the root's motion at the speed."""
+        """Sum rows for the quantities of the root's motion, each times its value at the speed."""
         root, total = self._root, zero
         for quantity, row in by_quantity.items():
             total = total + float(getattr(root, quantity)) * row
@@ -318,34 +320,45 @@ class ModelAtSpeed(FieldsOnly):
 # Errors of the poles of a linear model ------------------------------------------------------------
 
 
-_UNRESOLVED = 0.01  # relative error beyond which the partner of a pole may be that of another mode
-_ROUNDING = 4 * float(np.finfo(float).eps)  # rounding error of the matrices, relative
+_UNRESOLVED = 0.01  # relative error of a pole beyond which it may be paired with the pole of another mode
+# Relative distance of the coarser poles below which they converge, and least ratio of two distances that is
+# believed: several fields, segments or elements do not converge as steadily as one.
+_STEADY, _LEAST_RATIO = 0.01, 0.2
+_ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the matrices
 
 
 def pole_errors(model: ModelAtSpeed) -> np.ndarray:
-    """Estimated relative errors (2 n,) of the poles of a model, in the order of `FreeMotion.poles`.
+    """Estimate the relative errors (2 n,) of the poles of a model, in the order of `FreeMotion.poles`.
 
-    What the modes left out change by damping and gyroscopic terms is the distance from its partner among
-    the poles of all functions; these are compared with those of a coarser discretization.  An infinite pole,
-    of a coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved: inf.
+    The error by modes left out, through damping and gyroscopic terms, is a pole's distance from its partner
+    among the poles of all functions; these are compared with those of two coarser discretizations.  An
+    infinite pole, of a coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved, and so
+    are those of larger magnitude than such a one above a resolved one: inf.
     """
-    kept, whole = model.free_motion, ModelAtSpeed(model.model, model.speed, None)
-    coarse = ModelAtSpeed(model.model.coarser, model.speed, None)
-    poles, of_all = kept.finite_poles, whole.free_motion.finite_poles
-    truncation, nearest = _distance(poles, of_all)
-    discretized, _ = _distance(nearest, coarse.free_motion.finite_poles)
-    resolved = model.model.exceeds_coarser
-    rounding = (kept.rounding + whole.free_motion.rounding) * np.abs(poles)
+    kept, fine, coarse = model.free_motion, model.model, model.model.coarser
+    whole, *coarser = (
+        ModelAtSpeed(each, model.speed, None).free_motion for each in (fine, coarse, coarse.coarser)
+    )
+    poles = kept.finite_poles
+    truncation, nearest = _distance(poles, whole.finite_poles)
+    apart, partners = _distance(nearest, coarser[0].finite_poles)
+    before, _ = _distance(partners, coarser[1].finite_poles)
+    before = np.where(before < _STEADY * np.abs(poles), np.minimum(before, apart / _LEAST_RATIO), np.nan)
+    rounding = (kept.rounding + whole.rounding) * np.abs(poles)
     with np.errstate(divide="ignore", invalid="ignore"):
-        error = (truncation + LINEAR_MESHES.factor * discretized) / np.abs(poles)
+        error = (truncation + error_of_finest(THREE_DISCRETIZATIONS, apart, before)) / np.abs(poles)
+        resolved = (truncation + LINEAR_MESHES.factor * apart) / np.abs(poles) < _UNRESOLVED
     error += rounding + _ROUNDING + LINEAR_MESHES.factor * model.discretization.rounding
+    resolved &= (error < _UNRESOLVED) & fine.exceeds_coarser
+    # Poles ascend: one above the first that is unresolved may be paired with that of another mode.
+    ended = np.maximum.accumulate(~resolved & np.maximum.accumulate(resolved))
     found = np.full(len(kept.poles), np.nan)
-    found[: len(poles)] = np.where((error < _UNRESOLVED) & resolved, error, np.inf)
+    found[: len(poles)] = np.where(resolved & ~ended, error, np.inf)
     return found
 
 
 def _distance(poles: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distance of each pole from a partner of its own among others, and that; inf where these are too few."""
+    """Find a partner among others for each pole: distance (inf where others are too few), and partner."""
     apart = np.abs(poles[:, None] - others)
     scale = np.maximum(np.abs(poles), _ROUNDING * np.abs(poles).max(initial=0.0))[:, None]
     rows, partners = linear_sum_assignment(apart / np.where(scale == 0, 1.0, scale))

@@ -1,4 +1,4 @@
-"""Response to a random input at a steady speed: power spectral density and root mean square."""
+"""Random response at a steady speed: power spectral density and root mean square."""
 
 from __future__ import annotations
 
@@ -6,18 +6,23 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, ascending, refuse
 from beamdyn.common.plots.plots import plot_frequency_response
 from beamdyn.common.results.one_line import error_at_most, number, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import announced_of_plain_beam
 from beamdyn.linear import inputs_outputs, mean_square, spectra
-from beamdyn.linear.convergence import check_linear, evaluate_accurately, evaluate_also, with_forces
+from beamdyn.linear.convergence import (
+    Refined,
+    check_linear,
+    evaluate_accurately,
+    evaluate_also,
+    with_forces,
+)
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.linear.transfer import check_stable
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
@@ -26,21 +31,19 @@ from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 _TURN = 2 * np.pi
-_POINTS = 500  # frequencies of the result by white noise, beside those about resonances
-_DECADES = 3  # below the highest frequency, at which they begin
-_DIRECT = 0  # functions up to which all are kept: their poles are too far apart, and lose digits
-_SEVERAL = 3.0  # standard deviations that a deflection rarely passes
+_POINTS = 500  # number of frequencies of the result by white noise, in addition to those about resonances
+_DECADES = 3  # decades below the highest frequency at which the frequencies begin
+# Number of functions up to which all are kept: none, as their poles are far apart and lose digits.
+_DIRECT = 0
+_SEVERAL = 3.0  # number of standard deviations that a deflection rarely exceeds
 
 
 @dataclass(frozen=True)
 class RandomResponse(JudgedByRepeating):
-    """Response to a random input at a steady speed.
+    """Response of a beam to a random input at a steady speed.
 
-    Where the excitation has a fixed direction, the statistics vary within a turn, and these are their means
+    Where the excitation has a fixed direction, the statistics vary within a turn, and the values are means
     over a turn: the density of the input appears shifted by the speed, upwards and downwards.
 
     `model_error` and `left_out`, computed when asked for, are what the physics left out would change in
@@ -51,19 +54,19 @@ class RandomResponse(JudgedByRepeating):
     speed : float
         Speed [rad/s].
     rms : float
-        Root mean square of the response, all frequencies included [unit of the output].
+        Root mean square of the response over all frequencies [unit of the output].
     rms_error : float
         Estimated error of `rms`, by the modes left out and the discretization [same unit].
     frequencies : ndarray, shape (F,)
         Frequencies of the response [Hz].
     psd : ndarray, shape (F,)
-        One-sided power spectral density of the response at these [its unit squared per Hz].
+        One-sided power spectral density of the response at `frequencies` [unit of the output squared per Hz].
     psd_error : ndarray, shape (F,)
         Estimated error of `psd` [same unit].
     input_rms : float
-        Root mean square of the input [its unit]; inf for white noise.
+        Root mean square of the input [unit of the input]; inf for white noise.
     parametric : ParametricTerm
-        Size of the term left out, by which accelerations along the beam vary its stiffness.
+        Size of the parametric term, which is left out: accelerations along the beam vary its stiffness.
     input, output : str
         The excitation and what is observed, with units.
     unit : str
@@ -97,7 +100,7 @@ class RandomResponse(JudgedByRepeating):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """The output's rms and its error in one line; see `Result.headline`."""
+        """Yield the output's rms and its error for a one-line summary; see `Result.headline`."""
         yield f"{self.output.partition(' [')[0]} at {self.say_speed(self.speed)}"
         yield f"rms {number(self.rms, self.unit)}"
         yield from (error_at_most(self.rms_error, self.unit), warned(self.warnings))
@@ -105,11 +108,11 @@ class RandomResponse(JudgedByRepeating):
     judged_value = "the root mean square"
 
     def judged(self, found: RandomResponse) -> np.ndarray:
-        """The root mean square, of which the model error is stated: shape ()."""
+        """Select the root mean square, whose model error is stated: shape ()."""
         return np.array(found.rms)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the density over frequency, both logarithmic."""
+        """Draw the spectral density over frequency, on logarithmic axes."""
         unit = f"({self.unit})$^2$/Hz" if self.unit else "1/Hz"
         label = f"{self.output.partition(' [')[0]}, PSD [{unit}]"
         return plot_frequency_response([(self.frequencies, self.psd)], label, [""], ax)
@@ -145,16 +148,16 @@ def random_response(
     input : BaseMotion, PointForce or str, optional
         As for `frequency_response`; that of a road is "n2".
     output : DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
-        As for `frequency_response`, those of a harvester among them.
+        As for `frequency_response`, including those of a harvester.
     frequencies : sequence of float, optional
-        Frequencies at which the density of the response is computed [Hz], ascending from 0 or more; by
-        default those of the input, and so dense about resonances that straight lines between the densities
+        Frequencies at which the density of the response is computed [Hz], ascending from 0 or more.  By
+        default those of the input, and others about resonances, so dense that straight lines between them
         have nearly the mean square as their area.
     modes : int or "auto"
         Number of modes at the speed of each set of coupled fields; "auto": the fewest with which the
         truncation error meets the tolerance.
     tolerance : float
-        Error aimed at by "auto", relative to the root mean square.
+        Target of the error for "auto", relative to the root mean square.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
 
@@ -166,8 +169,8 @@ def random_response(
     ------
     ValueError
         If an argument is out of its range, a density is negative, a mode is not damped, the speed is past
-        the critical speed, or a road is given without a wheel, or with white noise an acceleration or a
-        moment, whose mean square is not finite.
+        the critical speed, or a road is given without a wheel, or with white noise an output
+        whose mean square is not finite: all but deflections and the voltage of a harvester.
 
     References
     ----------
@@ -186,16 +189,7 @@ def random_response(
     seen = inputs_outputs.as_observation("output", output)
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
     drive, spectrum = spectra.random_input(scene, speed, psd, input)
-    mean_square.check_damped(scene)
-    if not isinstance(spectrum, spectra.PowerSpectrum) and type(seen) is not inputs_outputs.DeflectionAt:
-        bound = "by white noise its mean square is not finite, or takes all modes"
-        raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
-    top, loaded = spectra.highest_frequency(spectrum), with_forces(scene, [drive])
-    refined = evaluate_accurately(
-        loaded, speed, _TURN * top + abs(speed), modes, tolerance, discretization,
-        lambda model: np.array([math.sqrt(_mean_square(_expand(model, drive, seen), spectrum, speed))]),
-        _DIRECT,
-    )  # fmt: skip
+    refined = root_mean_squares(scene, speed, drive, spectrum, [seen], modes, tolerance, discretization)
     model, rms = refined.model, float(refined.value[0])
     if frequencies is None:
         f = _frequencies(spectrum, model, drive)
@@ -221,27 +215,70 @@ def random_response(
             *warn_of_rotation(model.model, speed),
             *spectra.warn_of_band(spectrum, drive, model),
         ),
-        provenance=Provenance(__version__, refined.method, refined.compared_with, perf_counter() - start),
+        provenance=Provenance.since(start, refined.method, refined.compared_with),
         scene=scene,
     )
 
 
-# The response -------------------------------------------------------------------------------------
+# Computation of the response ----------------------------------------------------------------------
+
+
+def root_mean_squares(
+    scene: Scene,
+    speed: float,
+    drive: inputs_outputs.Excitation,
+    spectrum: spectra.PowerSpectrum | float,
+    outputs: Sequence[inputs_outputs.Observation],
+    modes: int | str,
+    tolerance: float,
+    discretization: DiscretizationChoice,
+) -> Refined:
+    """Compute root mean squares (k,) of k outputs for one random input, with their errors.
+
+    Parameters
+    ----------
+    scene, speed, modes, tolerance, discretization
+        As for `random_response`, checked.
+    drive, spectrum
+        The input and its density, as `spectra.random_input` gives them.
+    outputs : sequence of DeflectionAt, HarvestedVoltage or another
+        The quantities whose root mean squares are wanted.
+
+    Raises
+    ------
+    InvalidValue
+        If a mode is not damped, or with white noise an output is neither a deflection nor a voltage.
+    """
+    mean_square.check_damped(scene)
+    finite = (inputs_outputs.DeflectionAt, inputs_outputs.HarvestedVoltage)
+    for seen in outputs:
+        if not isinstance(spectrum, spectra.PowerSpectrum) and type(seen) not in finite:
+            bound = "by white noise its mean square is not finite, or takes all modes"
+            raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
+    top = _TURN * spectra.highest_frequency(spectrum) + abs(speed)
+
+    def of_all(model: ModelAtSpeed) -> np.ndarray:
+        squares = (_mean_square(_expand(model, drive, seen), spectrum, speed) for seen in outputs)
+        return np.sqrt([*squares])
+
+    loaded = with_forces(scene, [drive])
+    return evaluate_accurately(loaded, speed, top, modes, tolerance, discretization, of_all, _DIRECT)
 
 
 def _frequencies(
     spectrum: spectra.PowerSpectrum | float, model: ModelAtSpeed, drive: inputs_outputs.Excitation
 ) -> np.ndarray:
-    """Frequencies of the response [Hz], such that straight lines between its densities have their area.
+    """Choose frequencies of the response [Hz] at which straight lines between densities have its area.
 
-    Those to white noise end at ten times the lowest resonance.
+    For white noise they end at ten times the lowest resonance.
     """
     poles = mean_square.damped_motion(model).finite_poles
     if isinstance(spectrum, spectra.PowerSpectrum):
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return spectra.frequencies_of_response(spectrum, poles, shifts)
     resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
-    lowest = resonances if len(resonances) else np.abs(poles) / _TURN  # without resonances all are overdamped
+    # Without resonances all modes are overdamped.
+    lowest = resonances if len(resonances) else np.abs(poles) / _TURN
     top = 10 * float(lowest.min())
     bottom, about = top / 10**_DECADES, spectra.about_resonances(poles)
     between = about[(about > bottom) & (about < top)]
@@ -258,7 +295,7 @@ def _expand(
 def _mean_square(
     transfers: dict[int, mean_square.PartialFractions], spectrum: spectra.PowerSpectrum | float, speed: float
 ) -> float:
-    """Mean square over time and a turn: the sum of those of the harmonics, which are apart in frequency."""
+    """Compute the mean square over time and a turn: the sum over harmonics, which are uncorrelated."""
     if isinstance(spectrum, spectra.PowerSpectrum):
         return sum(H.mean_square(spectrum, h * speed / _TURN) for h, H in transfers.items())
     return sum(H.mean_square_of_white(spectrum) for H in transfers.values())
@@ -270,7 +307,7 @@ def _density(
     speed: float,
     f: np.ndarray,
 ) -> np.ndarray:
-    """One-sided density of the response at f [Hz]: the input at f - h n, of either sign, gives that at f."""
+    """Compute the one-sided density of the response at f [Hz], from the input at f - h n of either sign."""
     total = np.zeros(len(f))
     for h, H in transfers.items():
         size = np.abs(H(2j * np.pi * f)) ** 2

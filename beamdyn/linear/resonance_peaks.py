@@ -1,7 +1,7 @@
-"""Peaks of a response over frequency between any frequencies: where, how high and how wide they are.
+"""Resonance peaks of a frequency response, found between grid points: frequency, height and width.
 
-The magnitude of a transfer function that is a sum over poles turns where the derivative of its square is 0.
-That is sampled in steps of a fraction of the distance to the nearest pole, and each change of its sign is
+A transfer function's magnitude, from a sum over poles, is extreme where the derivative of its square is 0.
+The derivative is sampled in steps of a fraction of the distance to the nearest pole, and each sign change is
 bisected: every maximum and every minimum, whether or not it lies at a natural frequency.  From a peak to the
 minima beside it the magnitude falls steadily, so that there is one half-power frequency on either side, or
 none.
@@ -23,17 +23,20 @@ from beamdyn.linear.transfer import ModalSum, modal_sums, respond
 
 _TURN = 2 * np.pi
 _DENSE = 0.1  # step of samples over the distance to the nearest pole
-_HALVINGS = 60  # halvings of an interval, to rounding
-_UNDAMPED = 1e-10  # damping ratio that is 0 within rounding
-_ROUNDING = 1e-9  # relative, within which the numbers of a peak are found
-_SHARE = 0.1  # of the tolerance, to which the numbers of a peak are found
-_LEVEL = 1e-10  # relative, by which a peak stands above the minima beside it, or it is rounding
-_NOISE = 0.5  # relative distance of the sum from the equations' solution, where the response is rounding
-_STEP = 1e-6  # relative distance from an undamped natural frequency at which its pole is looked for
+_HALVINGS = 60  # number of halvings of an interval, which reach rounding
+_UNDAMPED = 1e-10  # largest damping ratio that is 0 within rounding
+_ROUNDING = 1e-9  # relative accuracy to which the numbers of a peak are found
+_SHARE = 0.1  # fraction of the tolerance to which the numbers of a peak are found
+# Height of a peak above the minima beside it, over its magnitude, below which it counts as rounding.
+_LEVEL = 1e-10
+# Relative difference between the sum over modes and the solution of the equations, above which the response
+# is only rounding error.
+_NOISE = 0.5
+_STEP = 1e-6  # relative distance from an undamped natural frequency at which its pole is sought
 
 
 class Peak(NamedTuple):
-    """One peak: frequency and bandwidth [Hz], magnitude, harmonic of the rotation, relative rounding."""
+    """One resonance peak: frequency and bandwidth [Hz], magnitude, harmonic of the rotation, rounding."""
 
     frequency: float
     size: float
@@ -46,23 +49,23 @@ class Peak(NamedTuple):
 class ResonancePeaks:
     """Peaks of a response between its lowest and its highest frequency, by ascending frequency.
 
-    All local maxima of the magnitude of each harmonic: a mode that answers in the flank of a higher neighbour
-    without a maximum of its own is none.  Two minima closer to each other than a tenth of their distance to
-    the nearest pole may pass for one, and what lies between them for no peak.
+    The peaks are all local maxima of each harmonic's magnitude: a mode in the flank of a higher neighbour
+    without a maximum of its own has none.  Two minima closer to each other than a tenth of their distance to
+    the nearest pole may be taken for one, and a peak between them be missed.
 
     Parameters
     ----------
     frequency : ndarray, shape (p,)
         Frequencies of the excitation at which the response is largest [Hz].
     size : ndarray, shape (p,)
-        Magnitudes of the response there; inf without damping.
+        Magnitudes of the response at these frequencies; inf without damping.
     bandwidth : ndarray, shape (p,)
-        Widths between the frequencies on either side at which the magnitude is its 1/sqrt(2) [Hz]: half the
+        Half-power bandwidths [Hz], from one side to the other where the magnitude is its 1/sqrt(2): half the
         power; nan where it rises again before it has fallen so far on one side or both, towards a close
         neighbour, or does not fall so far from 0 to twice the highest frequency: such a peak has no
         half-power bandwidth of its own.
     harmonic : ndarray of int, shape (p,)
-        Harmonics of the rotation that answer.
+        Harmonics of the rotation in the response.
     frequency_error, size_error, bandwidth_error : ndarray, shape (p,)
         Estimated errors, by the distance from the nearest peak of a coarser discretization and, where modes
         are left out, of more modes; inf where these have none, or no bandwidth, and nan of a magnitude that
@@ -96,13 +99,13 @@ def find_peaks(
     model : ModelAtSpeed
         The model.
     larger : ModelAtSpeed or None
-        One with more modes; None if there is none, or the model keeps all functions.
+        Model with more modes; None if there is none, or `model` keeps all functions.
     drive, seen : Excitation, Observation
         Input and output.
     band : tuple of float
         Lowest and highest frequency [Hz].
     tolerance : float
-        Error aimed at, relative to the magnitude and to the width of a peak; to rounding if not given.
+        Target of the error, relative to the magnitude and to the width of a peak; rounding if not given.
     """
     share = max(_SHARE * tolerance, _ROUNDING)
     top = 2 * band[1] + abs(model.speed) / _TURN  # flanks reach out of the band
@@ -122,10 +125,11 @@ def find_peaks(
 
 
 def _error(peak: Peak, compared: list[tuple[float, list[Peak]]], share: float) -> np.ndarray:
-    """Errors (3,) of frequency, magnitude and bandwidth, by the nearest peaks of other models."""
+    """Estimate errors (3,) of frequency, magnitude and bandwidth from the nearest peaks of other models."""
     own = np.array(peak[:3])
     with np.errstate(invalid="ignore"):  # a magnitude may be inf
-        width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)  # scale of what rounding moves it by
+        # Rounding of the frequency is relative to the bandwidth, or to the frequency where none is known.
+        width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)
         sizes = np.array([width, peak.size, peak.bandwidth])
         error = _ROUNDING * own + (peak.rounding + np.array([share, share**2, share])) * sizes
         for margin, others in compared:
@@ -138,11 +142,11 @@ def _error(peak: Peak, compared: list[tuple[float, list[Peak]]], share: float) -
 def _peaks(
     model: ModelAtSpeed, drive: Excitation, seen: Observation, top: float, share: float
 ) -> Iterator[Peak]:
-    """All peaks at frequencies of the excitation from 0 to a highest one [Hz], to a share of their width."""
+    """Yield all peaks from 0 to a highest excitation frequency [Hz], to a fraction of their width."""
     drives = model.drives(drive)
     for h, total in modal_sums(model, drives, seen).items():
         magnitude = HarmonicMagnitude(model, drives[h], seen, total, h)
-        # Natural frequencies without damping, at which the response is infinite.
+        # Natural frequencies without damping, where the response is infinite.
         at = magnitude.undamped & (magnitude.places > 0) & (magnitude.places < top)
         for pole, place in zip(magnitude.poles[at], magnitude.places[at].tolist(), strict=True):
             step = _STEP * abs(pole) / _TURN
@@ -154,16 +158,16 @@ def _peaks(
 
 @dataclass(frozen=True)
 class HarmonicMagnitude:
-    """Magnitude of the response at one harmonic of the rotation over the frequency of the excitation [Hz].
+    """Magnitude of the response at one harmonic of the rotation, over excitation frequency [Hz].
 
     Parameters
     ----------
     model, drive, seen : ModelAtSpeed, HarmonicDrive, Observation
         Model, input and output.
     total : ModalSum
-        Their transfer function.
+        Transfer function of model, input and output.
     harmonic : int
-        The harmonic.
+        Harmonic of the rotation.
     """
 
     model: ModelAtSpeed
@@ -174,46 +178,46 @@ class HarmonicMagnitude:
 
     @property
     def shift(self) -> float:
-        """How far the response is from the excitation [Hz]."""
+        """Response frequency minus excitation frequency [Hz]."""
         return self.harmonic * self.model.speed / _TURN
 
     @cached_property
     def poles(self) -> np.ndarray:
-        """Those that peaks may belong to [1/s]: a response that turns backwards has a negative frequency."""
+        """Poles [1/s] that may cause peaks; for other harmonics than 0 also those of negative frequency."""
         poles = self.total.poles
         return poles if self.harmonic else poles[np.imag(poles) >= 0]
 
     @cached_property
     def places(self) -> np.ndarray:
-        """Frequencies of the excitation at the poles [Hz]."""
+        """Excitation frequencies at the poles [Hz]."""
         return np.imag(self.poles) / _TURN - self.shift
 
     @cached_property
     def undamped(self) -> np.ndarray:
-        """Which of the poles have no damping within rounding."""
+        """Whether each of the poles has no damping within rounding."""
         return -np.real(self.poles) <= _UNDAMPED * np.abs(self.poles)
 
     def size(self, f: np.ndarray) -> np.ndarray:
-        """Magnitudes at frequencies (F,)."""
+        """Compute the magnitudes at excitation frequencies f (F,) [Hz]."""
         return np.abs(self.total(self._s(f))[0])
 
     def rises(self, f: np.ndarray) -> np.ndarray:
-        """Whether the magnitude rises with the frequency at frequencies (F,)."""
+        """Whether the magnitude increases with frequency at f (F,) [Hz]."""
         value, slope = self.total(self._s(f))
         return np.real(np.conj(value) * 1j * slope) > 0
 
     def solved(self, f: np.ndarray) -> np.ndarray:
-        """Complex values at frequencies (F,) by the equations themselves."""
+        """Compute the complex response at f (F,) [Hz] from the equations, not from the sum over poles."""
         return respond(self.model, self.drive, self.seen, self._s(f))
 
     def rounding(self, f: np.ndarray) -> np.ndarray:
-        """Relative distance of the sum over poles from the equations' solution at frequencies (F,)."""
+        """Compute the relative distance of the sum over poles from the equations' solution at f (F,)."""
         value = self.solved(f)
         distance = np.abs(self.total(self._s(f))[0] - value)
         return np.divide(distance, np.abs(value), out=np.full(len(f), np.inf), where=value != 0)
 
     def samples(self, top: float) -> np.ndarray:
-        """Frequencies from 0 to a highest one, in steps of a fraction of the distance to the nearest pole."""
+        """Sample frequencies from 0 to `top` [Hz], in steps proportional to the nearest pole's distance."""
         order = np.argsort(self.places)
         places = self.places[order]
         halves = np.maximum(-np.real(self.poles), _UNDAMPED * np.abs(self.poles))[order] / _TURN
@@ -230,7 +234,7 @@ class HarmonicMagnitude:
 
 
 def _damped_peaks(magnitude: HarmonicMagnitude, top: float, share: float) -> Iterator[Peak]:
-    """Maxima of a finite magnitude, with the minima beside them."""
+    """Yield the maxima of a finite magnitude as peaks, with their half-power bandwidths."""
     f = magnitude.samples(top)
     rises = magnitude.rises(f)
     turns = np.flatnonzero(rises[1:] != rises[:-1])
@@ -246,7 +250,7 @@ def _damped_peaks(magnitude: HarmonicMagnitude, top: float, share: float) -> Ite
     tops, sides = at[k], np.array([limits[k], limits[k + 2]])
     size, beside = magnitude.size(tops), magnitude.size(sides.ravel()).reshape(2, -1)
     rounding = magnitude.rounding(tops)
-    # Widths between half-power frequencies [Hz] (p,); nan where a minimum beside a peak is not so low.
+    # Half-power widths [Hz] (p,); nan where a minimum beside a peak is not low enough.
     level = np.tile(size / np.sqrt(2), 2)
     twice = np.tile(tops, 2)
     ends = _bisect(lambda f: magnitude.size(f) > level, twice, sides.ravel(), twice, share).reshape(2, -1)
@@ -263,7 +267,7 @@ def _bisect(
     origin: np.ndarray,
     share: float,
 ) -> np.ndarray:
-    """Where what holds at the start of each interval (p,) ceases to, to a share of the way from an origin."""
+    """Bisect intervals (p,) for the end of a condition that holds at their start, to a relative accuracy."""
     for _ in range(_HALVINGS):
         if (np.abs(end - start) <= share * np.abs(end - origin)).all():
             break

@@ -1,10 +1,8 @@
-"""Power spectral densities of inputs: tables, and roads by ISO 8608.
+"""Power spectral densities of random inputs: tables, and roads by ISO 8608.
 
-Random inputs at a steady speed: what acts, and with which density.
-
-Frequencies of the density of a random response: straight lines between its values have its area.
-
-They are dense where the density of the input is steep, and about each resonance, down to its bandwidth.  An
+The module also finds the excitation and density of a random input at a steady speed, and frequencies at which
+to list the density of a random response, so that straight lines between its values have its area.  These
+frequencies are dense where the input's density is steep, and about each resonance, down to its bandwidth.  An
 input that does not turn with the beam appears shifted by the speed.
 """
 
@@ -37,7 +35,8 @@ from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 from beamdyn.scene.scene import Scene
 
 BetweenPoints = Literal["linear", "log"]
-_WIDEST = 1.5  # ratio of the ends of a piece of a power law, on which polynomials of some degree are exact
+# Largest ratio of the ends of a power law's piece on which polynomials of some degree are exact.
+_WIDEST = 1.5
 
 REFERENCE = 0.1  # spatial frequency n0 of ISO 8608 [1/m]
 # Geometric means of the displacement PSD at n0 [m3]: ISO 8608:2016, table C.1.
@@ -46,14 +45,14 @@ ISO_CLASSES = {name: 16e-6 * 4.0**k for k, name in enumerate("ABCDEFGH")}
 
 @dataclass(frozen=True)
 class SpectrumPiece:
-    """A part of a spectrum on which it is one analytic function of frequency.
+    """Part of a spectrum on which the density is one analytic function of frequency.
 
     Parameters
     ----------
     start, end : float
-        Its ends [Hz].
+        Ends of the part [Hz].
     constant, slope : float
-        Numbers of a straight line, `constant` + `slope` f; the slope is 0 for a power law.
+        Coefficients of a straight line, `constant` + `slope` f; the slope is 0 for a power law.
     power : float
         Exponent of a power law, `constant` (f / `start`)^`power`; 0 for a straight line.
     """
@@ -65,13 +64,13 @@ class SpectrumPiece:
     power: float = 0.0
 
     def __call__(self, f: np.ndarray) -> np.ndarray:
-        """Evaluate at real or complex frequencies [Hz]."""
+        """Evaluate the density at real or complex frequencies [Hz]."""
         if self.power:
             return self.constant * (f / self.start) ** self.power
         return self.constant + self.slope * f
 
     def divided(self) -> Iterator[SpectrumPiece]:
-        """Yield parts on which a power law is nearly a polynomial."""
+        """Yield smaller parts on which a power law is nearly a polynomial."""
         if not self.power:
             yield self
             return
@@ -89,7 +88,7 @@ class PowerSpectrum:
     frequencies : sequence of float
         Frequencies [Hz], ascending from 0 or more; the density is 0 outside.
     values : sequence of float
-        Density at these [unit of the input squared per Hz], 0 or more.
+        Density at the frequencies [unit of the input squared per Hz], 0 or more.
     interpolation : "log" or "linear"
         Straight lines between points on logarithmic axes, as standards draw them, or on linear ones.
 
@@ -131,7 +130,7 @@ class PowerSpectrum:
         set_fields(self, frequencies=tuple(f.tolist()), values=tuple(S.tolist()))
 
     def pieces(self) -> Iterator[SpectrumPiece]:
-        """Yield the parts between the points."""
+        """Yield the parts of the spectrum between its points."""
         f, S = self.frequencies, self.values
         for a, b, low, high in zip(f[:-1], f[1:], S[:-1], S[1:], strict=True):
             if self.interpolation == "log":
@@ -142,7 +141,7 @@ class PowerSpectrum:
                 yield SpectrumPiece(a, b, low - slope * a, slope)
 
     def at(self, frequencies: np.ndarray) -> np.ndarray:
-        """Density at frequencies [Hz], 0 outside those given and for negative ones."""
+        """Evaluate the density at frequencies [Hz]: 0 outside the given range and for negative ones."""
         f, points, values = np.asarray(frequencies, dtype=float), self.frequencies, self.values
         inside = (f >= points[0]) & (f <= points[-1])
         if self.interpolation == "linear":
@@ -152,7 +151,7 @@ class PowerSpectrum:
 
     @property
     def rms(self) -> float:
-        """Root mean square of the input [its unit]."""
+        """Root mean square of the input [unit of the input]."""
         nodes, weights = np.polynomial.legendre.leggauss(16)
         parts = [part for piece in self.pieces() for part in piece.divided()]
         each = (
@@ -164,12 +163,12 @@ class PowerSpectrum:
 
 @dataclass(frozen=True)
 class RoadRoughness:
-    """A random road by ISO 8608: the height's density over spatial frequency, G(n0) (n/n0)^-w.
+    """A random road by ISO 8608, with the height's density G(n0) (n/n0)^-w over spatial frequency n.
 
     Parameters
     ----------
     roughness : float or str
-        G(n0) at n0 = 0.1 1/m [m3], or a class from "A" (very good, 16e-6 m3) to "H", each four times as
+        Density G(n0) at n0 = 0.1 1/m [m3], or a class from "A" (very good, 16e-6 m3) to "H", each 4 times as
         rough as the one before.
     waviness : float
         Exponent w, nondimensional.
@@ -210,13 +209,19 @@ class RoadRoughness:
 
     @property
     def density(self) -> float:
-        """G(n0) [m3]."""
+        """Density G(n0) of the road at the reference wavenumber n0 [m3]."""
         return ISO_CLASSES[self.roughness] if isinstance(self.roughness, str) else self.roughness
 
-    def acceleration(self, velocity: float) -> PowerSpectrum:
-        """Density of the vertical acceleration [(m/s2)2/Hz] of what follows the road at a velocity [m/s].
+    @property
+    def words(self) -> str:
+        """The road in words: its class or density, and where it ends."""
+        name = f"class {self.roughness}" if isinstance(self.roughness, str) else f"{self.roughness:g} m3"
+        return f"{name}, up to {self.highest:g} 1/m"
 
-        At the frequency f = n v it is (2 pi f)^4 G(n) / v.
+    def acceleration(self, velocity: float) -> PowerSpectrum:
+        """Compute the density of vertical acceleration [(m/s2)2/Hz] of a wheel on the road.
+
+        At the frequency f = n v, with the velocity v [m/s], the density is (2 pi f)^4 G(n) / v.
         """
         v = positive("velocity", abs(velocity), "m/s", "at rest a road does not shake")
         n = np.array([self.lowest, self.highest])
@@ -224,7 +229,7 @@ class RoadRoughness:
         return PowerSpectrum((n * v).tolist(), ((2 * np.pi * n * v) ** 4 * height).tolist())
 
 
-# Random inputs at a steady speed ------------------------------------------------------------------
+# Random inputs at a steady speed: excitation and density ---------------------------------------------
 
 
 _TURN = 2 * np.pi
@@ -233,12 +238,12 @@ _TURN = 2 * np.pi
 def random_input(
     scene: Scene, speed: float, psd: PowerSpectrum | RoadRoughness | float, given: Excitation | str | None
 ) -> tuple[Excitation, PowerSpectrum | float]:
-    """The excitation and its density; a road becomes the vertical acceleration of the wheel.
+    """Find the excitation and its density; a road becomes the vertical acceleration of the wheel.
 
     Raises
     ------
     InvalidValue
-        If a road is given another input, no wheel, or no speed; or the density is none.
+        If a road is given with another input, without a wheel or a speed, or `psd` is no density.
     """
     if isinstance(psd, RoadRoughness):
         if given not in (None, "n2", BaseMotion("n2")):
@@ -258,14 +263,14 @@ def random_input(
 
 
 def highest_frequency(spectrum: PowerSpectrum | float) -> float:
-    """Highest frequency of the input [Hz]; 0 for white noise."""
+    """Return the highest frequency of the input [Hz]; 0 for white noise."""
     return spectrum.frequencies[-1] if isinstance(spectrum, PowerSpectrum) else 0.0
 
 
 def warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: ModelAtSpeed) -> Iterator[str]:
     """Yield a warning if the input lacks a frequency that excites the first resonance.
 
-    An input that does not turn with the beam excites it at its own frequency plus and minus that of rotation.
+    An input of fixed direction excites the beam at its own frequency plus and minus that of rotation.
     """
     resonances = np.abs(np.imag(model.free_motion.finite_poles)) / _TURN
     if not isinstance(spectrum, PowerSpectrum) or not resonances.any():
@@ -286,19 +291,24 @@ def warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: Mode
 # Frequencies of the density of a random response --------------------------------------------------
 
 
-_STEP = 0.02  # relative distance of frequencies of the input
-_STEEPEST = 0.1  # logarithm of the ratio of densities of the input at two of them
-_DECADES = 3  # decades that a piece which begins at 0 is listed downwards
-_CLOSE = 0.2  # distance of two frequencies near a resonance, over that from it or its bandwidth
-_REACH = 30.0  # half bandwidths about a resonance that are dense, beside its frequency
-_BESIDE = 1e-6  # relative distance of a frequency outside of an input to its end, where the density falls
-_SAME = 1e-13  # relative distance of two frequencies that are one
+_STEP = 0.02  # relative step between listed frequencies of the input
+# Largest logarithm of the ratio of the input's densities at two neighbouring listed frequencies.
+_STEEPEST = 0.1
+_DECADES = 3  # number of decades listed downwards of a piece that begins at 0
+_CLOSE = 0.2  # step near a resonance, over the distance from it or over its bandwidth
+# Range about a resonance in which listed frequencies are dense, in half bandwidths, in addition to its
+# frequency.
+_REACH = 30.0
+# Relative distance from the end of an input's range to a listed frequency outside it, where the density falls
+# to 0.
+_BESIDE = 1e-6
+_SAME = 1e-13  # relative distance below which two frequencies are the same
 
 
 def frequencies_of_response(
     spectrum: PowerSpectrum, poles: np.ndarray, shifts: Sequence[float]
 ) -> np.ndarray:
-    """Frequencies at which an input has a response [Hz], ascending.
+    """List frequencies at which an input causes a response [Hz], ascending.
 
     Parameters
     ----------
@@ -307,7 +317,7 @@ def frequencies_of_response(
     poles : ndarray of complex
         Poles of the response [1/s], all of them damped.
     shifts : sequence of float
-        How far the response is from the input [Hz].
+        Response frequency minus input frequency [Hz].
 
     Returns
     -------
@@ -322,7 +332,7 @@ def frequencies_of_response(
 
 
 def _frequencies_of(piece: SpectrumPiece) -> np.ndarray:
-    """Frequencies of a part of the input [Hz], at equal ratios."""
+    """List frequencies of one part of the input [Hz], at equal ratios."""
     start = piece.start or piece.end / 10**_DECADES
     steps = math.log(piece.end / start) * max(1 / _STEP, abs(piece.power) / _STEEPEST)
     between = np.geomspace(start, piece.end, math.ceil(steps) + 1)[1:-1]
@@ -330,25 +340,25 @@ def _frequencies_of(piece: SpectrumPiece) -> np.ndarray:
 
 
 def _shifted(f: np.ndarray, shifts: Sequence[float]) -> np.ndarray:
-    """Frequencies of the response to those of the input, of either sign [Hz]."""
+    """Compute response frequencies from input frequencies [Hz] of either sign by shifts [Hz]."""
     return np.concatenate([np.abs(shift + each) for shift in shifts for each in (f, -f)])
 
 
 def about_resonances(poles: np.ndarray) -> np.ndarray:
-    """Frequencies dense about those of poles, from 0 on [Hz], in no order."""
+    """List frequencies dense about the resonances of poles, from 0 on [Hz], in no order."""
     each = [_about(float(pole.imag), -float(pole.real)) for pole in poles / _TURN if pole.imag >= 0]
     f = np.concatenate([*each, np.empty(0)])
     return f[f >= 0]
 
 
 def _about(centre: float, half_width: float) -> np.ndarray:
-    """Frequencies about one: at a distance the steps are in proportion to it."""
+    """List frequencies about a centre in steps proportional to the distance from it."""
     reach = np.arcsinh(_REACH + centre / half_width)
     side = half_width * np.sinh(np.linspace(0.0, reach, math.ceil(reach / _CLOSE) + 1))
     return np.concatenate([centre - side[:0:-1], centre + side])
 
 
 def one_of_each(f: np.ndarray) -> np.ndarray:
-    """The frequencies, ascending, without those that differ by rounding."""
+    """Sort the frequencies, and leave out those that differ from others by rounding."""
     f = np.unique(f)
     return f[np.diff(f, prepend=-1.0) > _SAME * f]

@@ -1,4 +1,4 @@
-"""Small motions at a steady speed in state-space form, for control and simulation by scipy.signal."""
+"""State-space form of small motions at a steady speed, for control and simulation by scipy.signal."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from beamdyn.modes.repeated import left_out_of_frequencies
 from beamdyn.scene.scene import Scene
 
 _MODES = 6  # number of modes by default
-_MASSLESS = 1e-12  # smallest eigenvalue of the mass, over the largest, that is told from 0
+_MASSLESS = 1e-12  # smallest nonzero eigenvalue of the mass, relative to the largest
 
 
 class StateSpaceWithErrors(StateSpace, lti):  # pyright: ignore[reportIncompatibleMethodOverride]
-    """A `scipy.signal.StateSpace` that states its errors; systems that scipy makes of it do not.
+    """A `scipy.signal.StateSpace` that states its errors; systems that scipy derives from it do not.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class StateSpaceWithErrors(StateSpace, lti):  # pyright: ignore[reportIncompatib
     speed : float
         Speed [rad/s].
     error : ndarray, shape (2 n,)
-        Estimated relative error of each pole, in ascending order of magnitude, as that of `Matrices`.
+        Estimated relative error of each pole, in ascending order of magnitude: see `Matrices`.
 
     Examples
     --------
@@ -50,18 +50,18 @@ class StateSpaceWithErrors(StateSpace, lti):  # pyright: ignore[reportIncompatib
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the lowest natural frequencies by effects left out, as those of `Matrices`."""
+        """Changes of the lowest natural frequencies by effects left out of the model: see `Matrices`."""
         modes = min(len(self.A) // 2, MOST_JUDGED)
         return left_out_of_frequencies(self.scene, self.speed, modes)
 
     @property
     def left_out(self) -> Mapping[str, np.ndarray]:
-        """Relative change of the lowest natural frequencies by each effect that the model leaves out."""
+        """Relative change of the lowest natural frequencies by each effect left out of the model."""
         return self.left_out_effects.changes
 
     @property
     def model_error(self) -> np.ndarray:
-        """Size of the sum of all changes in `left_out`; nan where one of them is not known."""
+        """Magnitude of the sum of all changes in `left_out`; nan where one of the changes is not known."""
         return self.left_out_effects.total
 
 
@@ -74,12 +74,12 @@ def state_space(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> StateSpaceWithErrors:
-    """Give the small motions at a steady speed as x' = A x + B u, y = C x + D u.
+    """Compute the small motions at a steady speed as x' = A x + B u, y = C x + D u.
 
-    The states x are the coordinates of `matrices` with the same arguments, then their rates.  D holds what
-    the modes left out follow without delay, their residual flexibility, so that the response to a constant
+    The states x are the coordinates of `matrices` with the same arguments, then their rates.  D contains
+    the residual flexibility, by which modes left out follow without delay, so that the response to a constant
     input is that of the whole discretization: Craig and Kurdila, Fundamentals of Structural Dynamics (2006),
-    section 11.4.  The static deflection by the rotation itself is not in it.
+    section 11.4.  The static deflection by the rotation itself is not included.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def state_space(
     inputs : sequence of BaseMotion, PointForce or str, optional
         As for `matrices`.
     outputs : sequence of DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
-        As for `frequency_response`, those of a harvester among them.
+        As for `frequency_response`, including those of a harvester.
     modes : int or None
         Number of modes at this speed of each set of coupled fields; None keeps all functions.
     discretization : {"ritz", "fem"} or Discretization
@@ -102,7 +102,7 @@ def state_space(
     -------
     scipy.signal.StateSpace
         With `error`, shape (2 n,), the estimated relative error of each pole in ascending order of magnitude;
-        `model_error` and `left_out` are those of `matrices`.  A system that is made of it has none.
+        `model_error` and `left_out` are those of `matrices`.  A system derived from it has none of these.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def state_space(
     loads = np.column_stack([drive.load for drive in drives])
     rates, n = _rates(model, loads), model.equations.size
     of_state, of_load = rates.acceleration
-    m = of_state.shape[1] - n  # velocities among the states
+    m = of_state.shape[1] - n  # number of velocities among the states
     A, B = (np.vstack([velocity, acceleration]) for velocity, acceleration in zip(*rates, strict=True))
     rows = [model.row(each) for each in observed]
     C = np.array([np.concatenate([r.position, r.velocity[:m]]) + r.acceleration[:m] @ of_state for r in rows])
@@ -144,7 +144,7 @@ def state_space(
 
 
 def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> None:
-    """Refuse the strain of a material that damps: it follows the moment with a delay, a further state."""
+    """Refuse the strain of a material with damping: its delay behind the moment needs a further state."""
     factor = scene.damping.stiffness_factor
     if factor and any(isinstance(each, StrainAtRoot) for each in observed):
         bound = "the strain of a material that damps is not a function of the moment alone"
@@ -152,14 +152,14 @@ def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> Non
 
 
 class _Rates(NamedTuple):
-    """Rates of the coordinates, and of those that have mass the accelerations, each by states and inputs."""
+    """Rates of the coordinates, and accelerations of those with mass, each in terms of states and inputs."""
 
     velocity: tuple[np.ndarray, np.ndarray]
     acceleration: tuple[np.ndarray, np.ndarray]
 
 
 def _rates(model: ModelAtSpeed, loads: np.ndarray) -> _Rates:
-    """Rates under loads (n, k) per unit of each input; the charge of a circuit, the last, has but a rate."""
+    """Compute rates under loads (n, k) per unit input; a circuit's charge, the last, has only a rate."""
     n = model.equations.size
     m = model.mechanical.stop
     M = _with_mass(model, model.M[:m, :m])
@@ -172,7 +172,7 @@ def _rates(model: ModelAtSpeed, loads: np.ndarray) -> _Rates:
 
 
 def _with_mass(model: ModelAtSpeed, M: np.ndarray) -> np.ndarray:
-    """The mass; refused if a coordinate has none, as bending and shear without rotary inertia."""
+    """Return the mass matrix, or refuse coordinates without mass, as shear without rotary inertia has."""
     values = np.linalg.eigvalsh(M)
     if values[0] < _MASSLESS * values[-1]:
         bound = "some functions have no mass of their own, and no rates as states"

@@ -1,6 +1,6 @@
-"""Transfer functions of a linear model at a steady speed, and whether its free motion decays.
+"""Transfer functions of a linear model at a steady speed, and a check that its free motion decays.
 
-A transfer function as a sum over the free motions of a model, fast at many frequencies.
+For many frequencies, a transfer function is a sum over the free motions of a model, which is fast.
 
 Each free motion adds one term over 1 - s t_k, with its inverse pole t_k = 1/p_k: see
 `beamdyn.linear.free_motion`.  The lowest poles belong to the largest t_k, which are the accurate ones;
@@ -18,23 +18,23 @@ from beamdyn.common.inputs.checks import BeyondModel
 from beamdyn.linear.inputs_outputs import Excitation, Observation, StrainAtRoot
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 
-_TERMS_AT_ONCE = 1_000_000  # terms that are held at once
+_TERMS_AT_ONCE = 1_000_000  # number of terms that are held at once
 
 
 @dataclass(frozen=True)
 class ModalSum:
-    """H(s) = (sum_k (w_k0 + w_k1 s + w_k2 s^2) / (1 - s t_k) + d_0 + d_1 s + d_2 s^2) / (1 + s delay).
+    """Transfer function (sum_k (w_k0 + w_k1 s + w_k2 s^2)/(1 - s t_k) + d_0 + d_1 s + d_2 s^2)/(1 + s delay).
 
     Parameters
     ----------
     inverse_poles : ndarray of complex, shape (m,)
-        t_k [s].
+        Inverse poles t_k [s].
     weights : ndarray of complex, shape (m, 3)
-        w_kj.
+        Weights w_kj of the terms.
     direct : ndarray of complex, shape (3,)
-        d_j.
+        Coefficients d_j of the direct part.
     delay : float
-        Delay of the strain in a material that damps [s].
+        Delay of the strain in a material with damping [s].
     """
 
     inverse_poles: np.ndarray
@@ -44,11 +44,11 @@ class ModalSum:
 
     @property
     def poles(self) -> np.ndarray:
-        """The finite p_k [1/s]."""
+        """Finite poles [1/s] of the transfer function."""
         return 1 / self.inverse_poles[self.inverse_poles != 0]
 
     def __call__(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Value and derivative by s at complex frequencies s [1/s] (F,): each of shape (F,)."""
+        """Evaluate the function and its derivative by s at complex frequencies s [1/s] (F,): (F,) each."""
         step = max(1, _TERMS_AT_ONCE // len(self.inverse_poles))
         values, slopes = [], []
         for part in np.split(s, range(step, len(s), step)):
@@ -64,7 +64,7 @@ class ModalSum:
 def modal_sums(
     model: ModelAtSpeed, drives: Mapping[int, HarmonicDrive], observation: Observation
 ) -> dict[int, ModalSum]:
-    """Expand the transfer function of each drive, by harmonic of the rotation."""
+    """Expand the transfer function of each drive as a sum over poles, by harmonic of the rotation."""
     free = model.free_motion
     shares = free.shares(np.column_stack([drive.load for drive in drives.values()]))
     row = model.row(observation)
@@ -76,24 +76,25 @@ def modal_sums(
     }
 
 
-# By the equations, and whether motion decays ------------------------------------------------------
+# Solution by the equations, and stability ----------------------------------------------------------
 
 
-_GROWING = 1e-6  # growth rate over the size of a pole, beyond rounding
-_STILL = 1e-6  # size of a pole over that of an elastic mode, that is 0: its square is so within rounding
-_PLANES = 2  # planes in each of which the beam may turn freely, with two poles at 0
-_AT_ONCE = 2_000_000  # entries of the matrices that are solved at once
+_GROWING = 1e-6  # ratio of growth rate to the size of a pole that exceeds rounding
+# Ratio of a pole to an elastic mode's, below which the pole counts as 0: its square is 0 within rounding.
+_STILL = 1e-6
+_PLANES = 2  # number of planes in which the beam may turn freely, with two poles at 0 each
+_AT_ONCE = 2_000_000  # number of matrix entries that are solved at once
 
 
 def transfer(
     model: ModelAtSpeed, excitation: Excitation, observation: Observation, frequencies: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Transfer function at frequencies of the excitation [Hz] (F,), for each harmonic of the rotation.
+    """Compute the transfer function at excitation frequencies [Hz] (F,), for each harmonic of rotation.
 
     Returns
     -------
     harmonics : ndarray of int, shape (k,)
-        The harmonics h.
+        Harmonics h of the rotation.
     response : ndarray of complex, shape (F, k)
         Response at the frequency f + h n, with n turns per second; inf where the equations are singular.
     """
@@ -106,20 +107,20 @@ def transfer(
 
 
 def respond(model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation, s: np.ndarray) -> np.ndarray:
-    """Transfer function of one drive at complex frequencies s [1/s] (F,): shape (F,)."""
+    """Compute the transfer function of one drive at complex frequencies s [1/s] (F,): shape (F,)."""
     row, extra = model.row(observation), model.residual(observation, drive)
     size = model.equations.size
     step = max(1, _AT_ONCE // size**2)
     q = np.concatenate([_solve(model, drive.load, s[k : k + step]) for k in range(0, len(s), step)])
     by_kept = q @ row.position + s * (q @ row.velocity) + s**2 * (q @ row.acceleration)
     total = by_kept + extra[0] + s * extra[1] + s**2 * extra[2]
-    if isinstance(observation, StrainAtRoot):  # the moment of a material that damps is E I (k + beta k')
+    if isinstance(observation, StrainAtRoot):  # the moment of a material with damping is E I (k + beta k')
         total = total / (1 + s * model.scene.damping.stiffness_factor)
     return total
 
 
 def _solve(model: ModelAtSpeed, load: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Coordinates (F, n) per unit of the input; inf where the equations are singular."""
+    """Solve for coordinates (F, n) per unit of the input; inf where the equations are singular."""
     A = s[:, None, None] ** 2 * model.M + s[:, None, None] * model.C + model.K
     try:
         return np.linalg.solve(A, np.broadcast_to(load, (len(s), len(load)))[..., None])[..., 0]
@@ -135,7 +136,7 @@ def check_stable(model: ModelAtSpeed) -> None:
     Raises
     ------
     BeyondModel
-        With the speed.
+        If free motion does not decay; the message names the speed.
     """
     free, speed = model.free_motion, model.speed
     inverse, mechanical = free.inverse_poles, model.inverse_mechanical_poles

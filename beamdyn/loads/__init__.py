@@ -1,1 +1,1 @@
-"""Loads, strains and stresses along the span: at rest and at speed, in a transient, in steady response."""
+"""Loads, strains and stresses along the span: static, in a transient, in steady and random response."""

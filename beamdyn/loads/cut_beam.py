@@ -1,4 +1,4 @@
-"""Virtual displacements of a beam that is cut at stations.
+"""Virtual displacements of a beam that is cut at stations, by which its internal loads are found.
 
 The principle of virtual work gives the force or moment with which the part outboard of a cut acts on the part
 inboard, if the part outboard moves as a rigid body while the rest stays: along the beam, across it, or by a
@@ -21,12 +21,12 @@ from beamdyn.equations.discretization import Cells, RootConditions, SampledSpace
 from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.profile import Profile
 
-_TOUCHING = 1e-12  # distance over the length at which a mass stands at a station
+_TOUCHING = 1e-12  # distance over the length below which a mass is at a station
 
 
 @dataclass(frozen=True)
 class CutQuadrature:
-    """Gauss rule on the cells between element ends, breakpoints and stations, then the stations themselves.
+    """Gauss rule on cells between element ends, breakpoints and stations, followed by the stations.
 
     Parameters
     ----------
@@ -41,25 +41,25 @@ class CutQuadrature:
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points on [0, 1] of the rule, then those of the stations, shape (k + S,)."""
+        """Points of the rule on [0, 1], followed by the stations, shape (k + S,)."""
         return np.concatenate([gauss_points_on(self._ends, self.cells.points).ravel(), self.stations.xi])
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Weights of the rule, then 1 for each station, where only delta functions differ from 0."""
+        """Weights of the rule, then 1 for each station, where only delta functions are not 0."""
         _, w = gauss_rule(self.cells.points)
         inside = (np.diff(self._ends)[:, None] / 2 * w).ravel()
         return np.concatenate([inside, np.ones(len(self.stations.xi))])
 
     @property
     def _ends(self) -> np.ndarray:
-        """Ends of the cells, the stations among them."""
+        """Ends x/L of the cells, including the stations."""
         return np.unique(np.concatenate([self.cells.ends, self.stations.xi]))
 
 
 @dataclass(frozen=True)
 class CutSpace(SampledSpace):
-    """Trial functions of a space, then rotations about each cut, if the space has slopes, then translations.
+    """Trial functions of a space, followed by rotations (if it has slopes) and translations at each cut.
 
     Parameters
     ----------
@@ -85,22 +85,22 @@ class CutSpace(SampledSpace):
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points of the rule, and the stations."""
+        """Points x/L of the rule, followed by the stations."""
         return self.quadrature.points
 
     @cached_property
     def rule(self) -> np.ndarray:
-        """Weights of the rule, and 1 at the stations."""
+        """Weights of the rule, followed by 1 for each station."""
         return self.quadrature.weights
 
     @property
     def coarse(self) -> None:
-        """None: nothing is solved in this space."""
+        """Indices of functions of a coarser discretization: None, because nothing is solved in this space."""
         return None
 
     @cached_property
     def samples(self) -> list[np.ndarray]:
-        """Values and derivatives at the points; at the stations of the displacements only delta functions."""
+        """Values and derivatives of all functions at the points; at stations, only delta functions count."""
         count, values = len(self.quadrature.stations.xi), []
         for order in range(self.derivatives + 1):
             sampled = self.evaluate(self.points, order)
@@ -111,7 +111,7 @@ class CutSpace(SampledSpace):
         return values
 
     def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at the tip."""
+        """Evaluate the `order`-th derivatives of the functions at the tip: shape (n,)."""
         return self.evaluate(np.ones(1), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
@@ -126,11 +126,11 @@ class CutSpace(SampledSpace):
         return np.concatenate([*parts, moved if order == 0 else flat])
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrate the weight times the `order`-th derivatives of functions i and j."""
+        """Integrate a weight times the `order`-th derivatives of functions i and j: shape (n, n)."""
         return self.product(self, weight, (order, order))
 
     def product(self, columns: CutSpace, weight: Profile, orders: tuple[int, int]) -> np.ndarray:
-        """Integrate the weight times derivatives of functions i of this space and j of another."""
+        """Integrate a weight times derivatives of functions of this space and of another: shape (n, m)."""
         rule = self.weights(weight)
         if orders == (2, 2):
             rule[-len(self.quadrature.stations.xi) :] = 0.0
@@ -160,7 +160,7 @@ class CutSpaces:
     _built: dict[RootConditions, CutSpace] = field(default_factory=dict, repr=False)
 
     def functions(self, conditions: RootConditions) -> CutSpace:
-        """Trial functions that satisfy conditions at the root, and the virtual displacements."""
+        """Build trial functions that satisfy conditions at the root, with the virtual displacements."""
         if conditions not in self._built:
             space = None if conditions.stiffness == self.without else self.spaces.functions(conditions)
             built = CutSpace(space, conditions.derivatives, self.quadrature, self.length)
@@ -170,20 +170,20 @@ class CutSpaces:
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate the weight times derivatives of functions i of `rows` and j of `columns`."""
+        """Integrate a weight times derivatives of functions i of `rows` and j of `columns`: shape (n, m)."""
         return self.functions(rows).product(self.functions(columns), weight, orders)
 
     @property
     def across(self) -> int:
-        """Number of functions across the width of a plate beyond the mean."""
+        """Number of functions across the width of a plate, without the constant one."""
         return self.spaces.across
 
     @property
     def fewer_across(self) -> int:
-        """Number of those of the coarser discretization."""
+        """Number of functions across the width of a plate in the coarser discretization."""
         return self.spaces.fewer_across
 
     def shares_functions(self, other: CutSpaces) -> bool:
-        """Whether the functions of the beam and the cuts are the same."""
+        """Whether other spaces have the same functions of the beam, and the same cuts."""
         same = np.array_equal(self.quadrature.points, other.quadrature.points)
         return same and self.spaces.shares_functions(other.spaces)

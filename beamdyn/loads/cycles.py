@@ -1,4 +1,4 @@
-"""Cycles of a load during a transient, by rainflow counting (ASTM E1049)."""
+"""Load cycles of a transient, by rainflow counting (ASTM E1049)."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import count, kind, positive
 from beamdyn.common.plots.curves import plot_exceedance
 from beamdyn.common.results.one_line import error_at_most, number, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.loads.stations import UNITS
@@ -22,15 +22,12 @@ from beamdyn.modes.model_error.left_out_changes import SolvedValues
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-TURNING_POINTS = 1e-6  # error of the values at turning points that are found, over the largest range
+TURNING_POINTS = 1e-6  # error of values at turning points, over the largest range
 
 
 @dataclass(frozen=True)
 class LoadCycles(JudgedByRepeating):
-    """Cycles of a quantity at one station, by rainflow counting.
+    """Load cycles of a quantity at one station, by rainflow counting.
 
     `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
     largest range.
@@ -40,13 +37,13 @@ class LoadCycles(JudgedByRepeating):
     quantity : str
         "force", "moment", "curvature", "strain" or "stress".
     component : int
-        Index of its component.
+        Index of the quantity's component.
     x : float
         Position along the beam [m].
     ranges : ndarray, shape (n,)
         Ranges of the cycles, from valley to peak [unit of the quantity].
     means : ndarray, shape (n,)
-        Their means [unit of the quantity].
+        Means of the cycles [unit of the quantity].
     counts : ndarray, shape (n,)
         Numbers of cycles: 1 for a whole one, 0.5 for half a one.
     start, end : float
@@ -54,7 +51,7 @@ class LoadCycles(JudgedByRepeating):
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How it was computed.
+        Program version and computing time.
     error : float
         Estimated error of each range: twice that of the values at turning points [unit of the quantity].
 
@@ -80,10 +77,13 @@ class LoadCycles(JudgedByRepeating):
     scene: Scene = field(repr=False)
     error: float = field(default=math.nan, metadata=ADDED_LATER)
 
-    loads: ClassVar[TransientLoads | None] = None  # of a result that was not loaded from a file
+    loads: ClassVar[TransientLoads | None] = None  # loads of a result that was not loaded from a file
 
     def headline(self) -> Iterator[str]:
-        """Number of cycles, their place and largest range in one line; see `Result.headline`."""
+        """Yield number of cycles, their place and largest range for a one-line summary.
+
+        See `Result.headline`.
+        """
         yield f"{number(self.counts.sum())} of {self.quantity} at {self.say_length(self.x)}"
         yield f"largest range {number(self.ranges.max(initial=0.0), UNITS[self.quantity])}"
         yield error_at_most(self.error, UNITS[self.quantity])
@@ -92,26 +92,26 @@ class LoadCycles(JudgedByRepeating):
     judged_value = "the largest range"
 
     def judged(self, found: LoadCycles) -> np.ndarray:
-        """The largest range, of which the model error is stated: shape ()."""
+        """Select the largest range, whose model error is stated: shape ()."""
         return np.array(found.ranges.max(initial=0.0))
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Largest range with an effect: by another run, or as its largest deflection changes."""
+        """Find the largest range with an effect: from another run, or from the change of deflection."""
         known = None if self.loads is None else self.loads.as_deflection(self.judged(self), name)
         return known or super().solve(scene, name)
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Largest range with large deflection, as the largest deflection of the run changes."""
+        """Estimate the largest range with large deflection, from the change of the run's deflection."""
         assert self.loads is not None, "the result was made by count_cycles"
         return self.loads.bent_values(straight, reason)
 
     @property
     def bending_speed(self) -> float:
-        """Largest speed of the run [rad/s]."""
+        """Largest speed of the run [rad/s], at which large deflection is judged."""
         return 0.0 if self.loads is None else self.loads.bending_speed
 
     def equivalent_range(self, exponent: float, cycles: float = 1.0) -> float:
-        """Range of so many equal cycles that do the damage of these, by Miner's rule.
+        """Compute the range of a number of equal cycles with the same damage, by Miner's rule.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class LoadCycles(JudgedByRepeating):
         Returns
         -------
         float
-            (sum of counts range^m / cycles)^(1/m) [unit of the quantity].
+            Range (sum of counts range^m / cycles)^(1/m) [unit of the quantity].
         """
         m, number = positive("exponent", exponent), positive("cycles", cycles)
         largest = float(self.ranges.max(initial=0.0))
@@ -132,9 +132,9 @@ class LoadCycles(JudgedByRepeating):
         return largest * float((self.counts * (self.ranges / largest) ** m).sum() / number) ** (1 / m)
 
     def equivalents(self, exponents: Sequence[float], cycles: float) -> tuple[EquivalentRange, ...]:
-        """Ranges of equal cycles for several exponents, with their errors.
+        """Compute equivalent ranges for several exponents, with their errors.
 
-        Each range counted is off by `error` at most; Minkowski's inequality adds them up.
+        Each counted range has an error of at most `error`; Minkowski's inequality combines them.
         """
         found = []
         for m in exponents:
@@ -145,7 +145,7 @@ class LoadCycles(JudgedByRepeating):
         return tuple(found)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw how many cycles exceed each range."""
+        """Draw the number of cycles that exceed each range."""
         unit = UNITS[self.quantity] or "-"
         return plot_exceedance(self.ranges, self.counts, f"range of {self.quantity} [{unit}]", ax)
 
@@ -207,7 +207,7 @@ def count_cycles(
     place = count("station", station, 0, len(loads.x) - 1)
     first, last = window_in(loads.run, start, end)
     try:
-        from rainflow import extract_cycles  # an extra
+        from rainflow import extract_cycles  # imported here, because it is an optional dependency
     except ImportError:
         raise ImportError("count_cycles needs rainflow: pip install 'beamdyn[fatigue]'") from None
     index = loads.path.outputs.places[quantity].start + chosen
@@ -225,7 +225,7 @@ def count_cycles(
         start=first,
         end=last,
         warnings=loads.warnings,
-        provenance=Provenance(__version__, "rainflow counting (ASTM E1049)", "", perf_counter() - begin),
+        provenance=Provenance.since(begin, "rainflow counting (ASTM E1049)"),
         scene=loads.scene,
         error=2 * (of_values + of_turning_points),
     )

@@ -1,4 +1,4 @@
-"""Loads at stations on the path of a transient: at any time, their largest magnitudes, and their errors."""
+"""Loads at stations along the path of a transient: at any time, their largest magnitudes, and errors."""
 
 from __future__ import annotations
 
@@ -17,17 +17,18 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import TimeError, estimate_time_error, vibration_frequencies
 from beamdyn.transient.trajectory import Trajectory
 
-_COMPARED = 4000  # times at which two runs are compared; at most twice as many
-_BATCH = 500  # times at once
-_REFINEMENTS, _FINE = 3, 17  # refinements of a maximum, each on a grid so many times as fine
-_OF_TURNING_POINTS = 2  # refinements of a turning point: values within 1e-6, as parts of the largest range
+_COMPARED = 4000  # number of times at which two runs are compared; at most twice as many are used
+_BATCH = 500  # number of times evaluated at once
+_REFINEMENTS, _FINE = 3, 17  # number of refinements of a maximum, and points of the grid of each
+_OF_TURNING_POINTS = 2  # number of refinements of a turning point: values within 1e-6 of the largest range
 _BETWEEN_SAMPLES = 4  # times per sample of the run at which turning points are sought
-_BEFORE_JUMP = 1e-9  # over a segment: loads may jump at its end
+# Distance before the end of a segment, over its length, at which loads are evaluated: they may jump there.
+_BEFORE_JUMP = 1e-9
 
 
 @dataclass(frozen=True)
 class LoadPath(FieldsOnly):
-    """Outputs at stations as functions of the time of a run.
+    """Outputs at stations along the span as functions of the time of a run.
 
     Parameters
     ----------
@@ -36,7 +37,7 @@ class LoadPath(FieldsOnly):
     stations : SpanStations
         The stations, S of them.
     given : StationOutputs, optional
-        The K outputs at each; None if only forces and moments are wanted.
+        The K outputs at each station; None if only forces and moments are wanted.
     """
 
     run: Transient
@@ -45,13 +46,13 @@ class LoadPath(FieldsOnly):
 
     @property
     def outputs(self) -> StationOutputs:
-        """The outputs of each station."""
+        """Outputs at each station as functions of the loads."""
         assert self.given is not None
         return self.given
 
     @cached_property
     def rows(self) -> LoadRows:
-        """The outputs as linear functions of the state of the run."""
+        """Outputs at the stations as linear functions of the state of the run."""
         return self.loads.through(self.outputs.matrix)
 
     @cached_property
@@ -62,22 +63,22 @@ class LoadPath(FieldsOnly):
 
     @property
     def _system(self) -> ModalSystem:
-        """Equations of the run."""
+        """Equations of motion of the run."""
         assert isinstance(self.run.system, ModalSystem)
         return self.run.system
 
     def at(self, t: np.ndarray) -> np.ndarray:
-        """Outputs at times t [s] (T,): shape (T, S, K)."""
+        """Evaluate the outputs at times t [s] (T,): shape (T, S, K)."""
         return self.rows.at(self._system.root(t), *self.run.path.at(t))
 
     def loads_at(self, t: np.ndarray) -> np.ndarray:
-        """Forces and moments at times t [s] (T,): shape (T, S, 1 + 2 d)."""
+        """Evaluate forces and moments at times t [s] (T,): shape (T, S, 1 + 2 d)."""
         return self.loads.at(self._system.root(t), *self.run.path.at(t))
 
     # Turning points and largest magnitudes --------------------------------------------------------
 
     def turning_values(self, station: int, output: int, start: float, end: float) -> np.ndarray:
-        """Values of one output of one station at its turning points from start to end [s], and at these."""
+        """Find one output's values at its turning points from start to end [s], and at both ends."""
         single = self.rows.chosen(np.array([station]), np.array([output]))
         samples, parts = self.run.path.samples[0], np.linspace(0, 1, _BETWEEN_SAMPLES, endpoint=False)
         between = (samples[:-1, None] + np.diff(samples)[:, None] * parts).ravel()
@@ -87,9 +88,10 @@ class LoadPath(FieldsOnly):
         t = t[(t >= start) & (t <= end)]
         values = np.concatenate([self._each_at(single, some[None])[0] for some in _batches(t)])
         signs = np.sign(np.diff(values))
-        rising = np.flatnonzero(signs)  # not on a plateau, of which the first sample is the turning point
+        rising = np.flatnonzero(signs)  # on a plateau, only the first sample is the turning point
         turns = 1 + rising[:-1][signs[rising[:-1]] != signs[rising[1:]]]
-        found = [values[:2], values[-1:]]  # the second: counters take no history of two values
+        # The second value is added because counters need more than two values.
+        found = [values[:2], values[-1:]]
         for k in _batches(turns):
             sign = signs[k - 1, None]
             near = t[k, None], t[k - 1, None], t[k + 1, None]
@@ -98,7 +100,7 @@ class LoadPath(FieldsOnly):
         return np.concatenate(found)
 
     def peaks(self, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
-        """Values of largest magnitude from start to end [s], and their times [s]: shapes (S, K)."""
+        """Find the values of largest magnitude from start to end [s], and their times [s]: (S, K) each."""
         t = self.run.path.samples[0]
         longest_gap = float(np.diff(t).max())
         t = np.concatenate([[start], t[(t > start) & (t < end)], [end]])
@@ -124,7 +126,7 @@ class LoadPath(FieldsOnly):
         last: np.ndarray,
         refinements: int,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Values of largest size from `first` to `last`, about times t [s], and their times: (O, 1)."""
+        """Refine the largest values from `first` to `last` about times t [s]: values, and times, (O, 1)."""
         found, half_width = np.empty(0), np.maximum(last - t, t - first)
         for _ in range(refinements):
             near = np.clip(t + half_width * np.linspace(-1, 1, 2 * _FINE + 1), first, last)
@@ -135,7 +137,7 @@ class LoadPath(FieldsOnly):
         return found, t
 
     def _each_at(self, single: LoadRows, t: np.ndarray) -> np.ndarray:
-        """Single outputs (O, 1) at times of their own, t (O, T): shape (O, T)."""
+        """Evaluate single outputs (O, 1), each at times of its own t (O, T): shape (O, T)."""
         root = self._system.root(t)
         states = (each.reshape(*t.shape, -1) for each in self.run.path.at(t.ravel()))
         total = np.zeros(t.shape)
@@ -150,7 +152,7 @@ class LoadPath(FieldsOnly):
 
     @cached_property
     def error(self) -> np.ndarray:
-        """Estimated errors (S, K) over the whole run: of the modes left out, and of time integration."""
+        """Estimated errors (S, K) over the whole run, by the modes left out and by time integration."""
         run, refined = self.run, self.run.refined
         if refined is None:
             return np.full(self.rows.shape, np.inf)
@@ -167,9 +169,9 @@ class LoadPath(FieldsOnly):
         return of_modes + through(self.outputs, self._time_errors())
 
     def _time_errors(self) -> np.ndarray:
-        """Time-integration errors of the loads (S, 1 + 2 d).
+        """Estimate the time-integration errors of the loads, shape (S, 1 + 2 d).
 
-        They are nan where the error of the tip is not known, and 0 where the beam stays in equilibrium.
+        The errors are nan where the error of the tip is not known, and 0 where the beam stays in equilibrium.
         """
         rows, system, path = self.loads, self._system, self.run.path
         if self.run.time_error == 0 or not isinstance(path, Trajectory):
@@ -182,7 +184,8 @@ class LoadPath(FieldsOnly):
             error = estimate_time_error(system, path.segments, np.diag(largest))
             contributions = np.empty(system.size)
             contributions[rank] = error.modes
-            shares = sizes[:, k] / np.where(largest > 0, largest, 1.0)  # share of each station
+            # Fraction of the largest load at each station.
+            shares = sizes[:, k] / np.where(largest > 0, largest, 1.0)
             totals = shares @ contributions + shares.max(axis=1) * error.interpolation
             errors[:, k] = [TimeError(np.array([total]), 0.0, error.unresolved).total for total in totals]
         return errors
@@ -191,8 +194,12 @@ class LoadPath(FieldsOnly):
 def largest_per_coordinate(
     rows: LoadRows, system: ModalSystem, path: Trajectory, frequencies: np.ndarray
 ) -> np.ndarray:
-    """Largest load over the run per unit amplitude of each coordinate: shape (S, K, n)."""
-    root = system.root(path.samples[0])  # several in each step: steps are short where a shock acts
+    """Bound each load (stations S, outputs K) over the run per unit amplitude of each of n coordinates.
+
+    Each coordinate vibrates at its frequency [rad/s]; shape (S, K, n), sums of the largest contributions.
+    """
+    # There are several samples in each step, and steps are short where a shock acts.
+    root = system.root(path.samples[0])
     total = np.zeros((*rows.shape, system.size))
     for by_quantity, factor in ((rows.position, 1.0), (rows.velocity, frequencies)):
         for quantity, row in by_quantity.items():
@@ -201,5 +208,5 @@ def largest_per_coordinate(
 
 
 def _batches(t: np.ndarray) -> Iterator[np.ndarray]:
-    """Yield values in batches that are evaluated at once."""
+    """Split times into batches that are evaluated at once."""
     return (t[k : k + _BATCH] for k in range(0, len(t), _BATCH))

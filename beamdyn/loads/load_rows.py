@@ -1,4 +1,4 @@
-"""Loads at stations as linear functions of the state, by virtual work on a beam that is cut there.
+"""Loads at stations as linear functions of the state, from virtual work on a beam that is cut there.
 
 With a rigid displacement w of the part outboard of a cut (`beamdyn.loads.cut_beam`), the load R that does
 work on it is
@@ -36,12 +36,15 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import weight_degree
 
 STRAIGHT = "loads along the span of a beam with large deflection are not computed"
-_OF_TAPERED = "loads along the span are known with it where the width is constant"
+_LEAVE_OUT = "leave it out; root moments have it"
+_OF_TAPERED = (
+    "loads along the span are known with it where the width is constant, without piezoelectric layers"
+)
 
 ByQuantity: TypeAlias = "dict[Quantity, np.ndarray]"
 
 _FIELD_OF_DIRECTION = "bending", "second bending"
-# Fields that move no centre of mass along or across the beam, where it is on the axis.
+# Fields that do not move mass centres on the axis along or across the beam.
 _WITHOUT_RESULTANT = "torsion", "camber"
 _DAMPING = {field.damping_name for field in FIELDS}
 
@@ -51,7 +54,7 @@ class LoadRows:
     """Loads at S stations, of K components each, as linear functions of the state.
 
     The components are the axial force, the shear force in each modelled direction, and the bending moment in
-    each; after `through`, others.
+    each; the method `through` converts them to other quantities.
 
     Parameters
     ----------
@@ -72,7 +75,7 @@ class LoadRows:
         return next(iter(self.load.values())).shape  # pyright: ignore[reportReturnType]
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Loads at T times, with coordinates q and velocities v (T, n): shape (T, S, K)."""
+        """Evaluate the loads at T times, with coordinates q and velocities v (T, n): shape (T, S, K)."""
         total = np.zeros((len(q), *self.shape))
         for quantity, values in self.load.items():
             total += getattr(root, quantity)[:, None, None] * values
@@ -82,7 +85,7 @@ class LoadRows:
         return total
 
     def each(self, change: Callable[[np.ndarray], np.ndarray]) -> LoadRows:
-        """The rows after a change of every array."""
+        """Apply a function to every array of the rows."""
 
         def changed(part: ByQuantity) -> ByQuantity:
             return {name: change(row) for name, row in part.items()}
@@ -91,19 +94,19 @@ class LoadRows:
 
     @property
     def parts(self) -> tuple[ByQuantity, ByQuantity, ByQuantity, ByQuantity]:
-        """Loads by nothing but the root's motion, by position, velocity and acceleration."""
+        """Loads by the root's motion alone, by position, by velocity and by acceleration."""
         return self.load, self.position, self.velocity, self.acceleration
 
     def chosen(self, station: np.ndarray, component: np.ndarray) -> LoadRows:
-        """Rows of O single loads as those of O stations with one component."""
+        """Select O single loads, as rows of O stations with one component each."""
         return self.each(lambda row: row[station, component][:, None])
 
     def through(self, matrix: np.ndarray) -> LoadRows:
-        """Rows of P quantities that are linear in the loads of their station: matrix (S, P, K)."""
+        """Convert the loads of each station linearly to P other quantities by a matrix (S, P, K)."""
         return self.each(lambda row: np.einsum("spk,sk...->sp...", matrix, row))
 
     def in_motion(self, equations: Equations) -> LoadRows:
-        """Rows without accelerations, which the equations of motion give."""
+        """Eliminate the accelerations from the rows by the equations of motion."""
         terms = tuple(term for term in equations.terms if term.name not in _DAMPING)
         undamped = replace(equations, terms=terms)
         K, G, M = undamped.matrices
@@ -120,9 +123,9 @@ class LoadRows:
 
 
 def per_force(mass: np.ndarray, by_acceleration: np.ndarray) -> np.ndarray:
-    """Rows (S, K, n) by the forces on the coordinates, of rows by their accelerations.
+    """Convert rows (S, K, n) by accelerations to rows by the forces on the coordinates.
 
-    The charge of a circuit has no mass, and no part in them.
+    The charge of a circuit has no mass, and its rows are 0.
     """
     massive, rows = mass.any(axis=0), by_acceleration.reshape(-1, len(mass))
     if massive.all():
@@ -133,7 +136,7 @@ def per_force(mass: np.ndarray, by_acceleration: np.ndarray) -> np.ndarray:
 
 
 def _subtract(first: ByQuantity, second: ByQuantity) -> ByQuantity:
-    """Differences of rows, of which those that are missing are 0."""
+    """Subtract rows by quantity; missing rows count as 0."""
     names: dict[Quantity, None] = dict.fromkeys([*first, *second])
     return {name: np.asarray(first.get(name, 0.0) - second.get(name, 0.0)) for name in names}
 
@@ -144,14 +147,14 @@ def _subtract(first: ByQuantity, second: ByQuantity) -> ByQuantity:
 def span_rows(
     scene: Scene, discretization: Discretization, equations: Equations, stations: SpanStations
 ) -> LoadRows:
-    """Loads at stations by the coordinates of given equations.
+    """Assemble the loads at stations in the coordinates of given equations.
 
     Parameters
     ----------
     scene : Scene
         The scene, of a straight beam.
     discretization : Discretization
-        Its discretization.
+        Discretization of the scene's equations.
     equations : Equations
         Equations of the scene in this discretization, as they are or reduced.
     stations : SpanStations
@@ -163,7 +166,7 @@ def span_rows(
         With 1 + 2 d components, d being the number of planes: the axial force [N], tension positive; the
         shear forces [N] in each direction across the deflected axis; the bending moments [N m], positive if
         they bend towards positive deflection.  Forces are those of the part outboard on the part inboard.
-        Where sections camber, the last is the part of the moment that their curvature across has [N m].
+        Where sections camber, the last is the part of the moment due to their curvature across [N m].
     """
     _refuse_uncovered(scene)
     beam = scene.modelled_beam
@@ -171,12 +174,13 @@ def span_rows(
     quadrature = CutQuadrature(stations, Cells(cells.ends, cells.points + weight_degree(beam) // 2 + 1))
     without = "" if scene.physics.stretch else "axial_stiffness"
     spaces = CutSpaces(discretization.spaces(beam), quadrature, beam.length, without)
-    stretched = Stretch().complete(scene.undamped)  # its equation has the axial force
+    stretched = Stretch().complete(scene.undamped)  # the equation of the stretch gives the axial force
     unmoved = () if beam.has_offsets else _WITHOUT_RESULTANT
     modelled = (f for f in FIELDS if f.is_modelled(stretched) and f.name not in unmoved)
     assembled = {f.name: f.assemble(stretched, spaces) for f in modelled}
     directions = _FIELD_OF_DIRECTION[: equations.planes]
-    moves = [(field, False) for field in (Stretch.name, *directions)]  # along the beam, and across it
+    # Displacements along the beam, and across it.
+    moves = [(field, False) for field in (Stretch.name, *directions)]
     parts = []
     for field, turns in (*moves, *((field, True) for field in directions)):
         space, cuts = assembled[field].space, len(stations.xi)
@@ -190,7 +194,10 @@ def span_rows(
 
 
 def _camber(scene: Scene, equations: Equations, stations: SpanStations) -> LoadRows:
-    """Moment of camber [N m] at S stations, nu E I/(1 - nu^2) times the curvature across: rows without K."""
+    """Build rows of the moment [N m] at S stations by which sections that camber bend the beam.
+
+    It is nu E I/(1 - nu^2) times the curvature across, with Poisson's ratio nu.
+    """
     section, at = scene.beam.section, stations.beside
     assert section is not None
     held = scene.beam.bending_stiffness * section.camber_stiffening * section.camber_ratio
@@ -201,7 +208,7 @@ def _camber(scene: Scene, equations: Equations, stations: SpanStations) -> LoadR
 def _rows_of(
     assembled: Mapping[str, FieldEquations], equations: Equations, field: str, moved: slice
 ) -> LoadRows:
-    """Work of all loads and terms on the displacements of one field: rows of S stations, without K."""
+    """Build rows of the work of all loads and terms on one field's displacements at S stations."""
     count = moved.stop - moved.start
     load: ByQuantity = {}
     by_order: tuple[ByQuantity, ...] = ({}, {}, {})
@@ -217,7 +224,7 @@ def _rows_of(
 
 
 def _stack(parts: Sequence[ByQuantity]) -> ByQuantity:
-    """Stack the rows of K components along a new second axis, with zeros where one has none."""
+    """Stack rows by quantity along a new second axis of K components; missing ones are 0."""
     like: ByQuantity = {name: row for part in parts for name, row in part.items()}
     return {
         name: np.stack([part.get(name, np.zeros_like(row)) for part in parts], axis=1)
@@ -228,7 +235,7 @@ def _stack(parts: Sequence[ByQuantity]) -> ByQuantity:
 def _across_deflected_axis(
     rows: LoadRows, equations: Equations, stations: SpanStations, length: float
 ) -> LoadRows:
-    """Take from the forces in fixed directions what the axial force contributes by the slope of the axis."""
+    """Subtract the axial force's contribution by the slope of the axis from forces in fixed directions."""
     position = dict(rows.position)
     for quantity, load in rows.load.items():
         tension = load[:, 0]
@@ -243,22 +250,30 @@ def _across_deflected_axis(
 
 
 def barred_of_loads(scene: Scene) -> dict[str, str]:
-    """Names of effects with which loads along the span are not known, and why."""
+    """Return the names of effects with which loads along the span are not known, and why."""
+    uncovered = {CAMBER.name: _OF_TAPERED} if _lacks_camber(scene) else {}
+    return {LARGE_DEFLECTION.name: STRAIGHT} | uncovered
+
+
+def _lacks_camber(scene: Scene) -> bool:
+    """Whether loads are not known with camber: of a tapered width, or of a section with layers."""
     section = scene.beam.section
-    tapered = section is not None and section.width.degree
-    return {LARGE_DEFLECTION.name: STRAIGHT} | ({CAMBER.name: _OF_TAPERED} if tapered else {})
+    return scene.beam.electrodes is not None or bool(section is not None and section.width.degree)
+
+
+def refuse_uncovered_camber(scene: Scene) -> None:
+    """Refuse camber with which loads along the span are not known."""
+    if scene.physics.camber and _lacks_camber(scene):
+        instead = 'it was chosen by "auto": give the physics without it'
+        remedy = _LEAVE_OUT if scene.physics_choice is None else instead
+        raise InvalidValue("physics.camber", True, _OF_TAPERED, remedy)
 
 
 def _refuse_uncovered(scene: Scene) -> None:
-    """Refuse forces along the span beyond inertia: of springs, and of damping that is not by modes."""
-    bound, remedy = "loads along the span are known without it", "leave it out; root moments have it"
-    if scene.physics.camber and scene.beam.section is not None and scene.beam.section.width.degree:
-        instead = 'it was chosen by "auto": give the physics without it'
-        raise InvalidValue(
-            "physics.camber", True, _OF_TAPERED, remedy if scene.physics_choice is None else instead
-        )
+    """Refuse springs along the span and damping that is not modal, whose forces are not in the rows."""
+    bound = "loads along the span are known without it"
     if scene.beam.point_springs:
-        raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
+        raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, _LEAVE_OUT)
     for name in ("mass_factor", "stiffness_factor", "tip_damper"):
         if value := getattr(scene.damping, name):
-            raise InvalidValue(f"damping.{name}", value, bound, remedy)
+            raise InvalidValue(f"damping.{name}", value, bound, _LEAVE_OUT)

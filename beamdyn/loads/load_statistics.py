@@ -1,4 +1,4 @@
-"""Statistics of loads along the span under a random input: mean squares, rates and the largest expected.
+"""Statistics of loads along the span under a random input: mean squares, rates and expected extremes.
 
 A stationary Gaussian process with the mean squares s^2 of its values and r^2 of their rates passes its mean
 upwards nu = r / (2 pi s) times a second (Rice).  Of N = 2 nu T passages in the duration T, of both signs and
@@ -45,10 +45,12 @@ from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene
 
 _TURN = 2 * np.pi
-_EPSILON = 2.0**-48  # rounding of a term, some units of the last digit
-_FIRST_MODES = 4  # modes of a model that tells the sizes of the outputs
-_OF_RATES = 1e3  # tolerance of rates over that of the others: peak factors follow their logarithm
-_LEAST = math.e  # crossings that the formula is evaluated with, at least
+_EPSILON = 2.0**-48  # rounding error of a term, some units of the last digit
+_FIRST_MODES = 4  # number of modes of a model that only tells the sizes of the outputs
+# Ratio of the tolerance of rates of change to that of other statistics: peak factors depend on their
+# logarithm.
+_OF_RATES = 1e3
+_LEAST = math.e  # smallest number of crossings for which the formula is evaluated
 
 
 @dataclass(frozen=True)
@@ -58,13 +60,13 @@ class LoadFractions:
     Parameters
     ----------
     shift : float
-        Frequency of the response less that of the input [Hz].
+        Frequency of the response minus that of the input [Hz].
     direct : ndarray of complex, shape (S, K)
-        d of K outputs at S stations.
+        Direct terms d of K outputs at S stations.
     residues : ndarray of complex, shape (S, K, m)
-        r_k.
+        Residues r_k of the outputs.
     poles : ndarray of complex, shape (m,)
-        p_k [1/s], in the left half-plane.
+        Poles p_k [1/s], in the left half-plane.
     """
 
     shift: float
@@ -73,21 +75,21 @@ class LoadFractions:
     poles: np.ndarray
 
     def at(self, s: np.ndarray) -> np.ndarray:
-        """Evaluate at s [1/s] (F,): shape (S, K, F)."""
+        """Evaluate the transfer functions at complex frequencies s [1/s] (F,): shape (S, K, F)."""
         return self.direct[..., None] + self.residues @ (1 / (s - self.poles[:, None]))
 
     def mean_square(self, spectrum: PowerSpectrum, order: int = 0) -> np.ndarray:
-        """Mean square (S, K) of the outputs, or with the order 2 of their rates."""
+        """Compute the mean square (S, K) of the outputs, or of their rates (order 2)."""
         by_pole, constant = self._parts(spectrum, order)
         return constant + 2 * np.real(by_pole).sum(axis=-1)
 
     def rounding(self, spectrum: PowerSpectrum, order: int = 0) -> np.ndarray:
-        """Rounding error of `mean_square` (S, K), whose parts may cancel."""
+        """Compute the rounding error of `mean_square` (S, K), whose parts may cancel."""
         by_pole, constant = self._parts(spectrum, order)
         return _EPSILON * (constant + 2 * np.abs(by_pole).sum(axis=-1))
 
     def _parts(self, spectrum: PowerSpectrum, order: int) -> tuple[np.ndarray, np.ndarray]:
-        """Terms of the mean square by pole (S, K, m), whose real parts count twice, and its constant term."""
+        """Compute the mean square's terms by pole (S, K, m), with real parts to be doubled, and constant."""
         between = 1 / (-self.poles - np.conj(self.poles)[:, None])
         conjugate = np.conj(self.direct)[..., None] + np.conj(self.residues) @ between
         integrals = pole_integrals(spectrum, self._mu, self.shift, order)
@@ -95,7 +97,10 @@ class LoadFractions:
         return by_pole, np.abs(self.direct) ** 2 * integrals.whole
 
     def together_with(self, other: LoadFractions, spectrum: PowerSpectrum) -> np.ndarray:
-        """Integral of H conj(H') S over the frequency of the input, with H' of `other`: shape (S, K)."""
+        """Integrate the input's density times H conj(H'): shape (S, K).
+
+        H are these transfer functions, H' those of `other`.
+        """
         mu, conjugate = self._mu, np.conj(other._mu)
         r, d = self.residues / (2j * np.pi), self.direct
         other_r, other_d = np.conj(other.residues / (2j * np.pi)), np.conj(other.direct)
@@ -107,22 +112,22 @@ class LoadFractions:
 
     @property
     def _mu(self) -> np.ndarray:
-        """Poles over the frequency of the input [Hz], shape (m,)."""
+        """Poles as functions of the input's frequency [Hz], shape (m,)."""
         return self.poles / (2j * np.pi) - self.shift
 
 
 @dataclass(frozen=True)
 class LinearLoads:
-    """Loads at stations of a linear model: transfer functions from an excitation, and steady loads.
+    """Loads at stations in a linear model: transfer functions from an excitation, and steady loads.
 
     Parameters
     ----------
     model : ModelAtSpeed
-        The model.
+        Linear model at a steady speed.
     stations : SpanStations
         The stations, S of them.
     outputs : StationOutputs
-        The K outputs at each.
+        The K outputs at each station.
     """
 
     model: ModelAtSpeed
@@ -130,7 +135,7 @@ class LinearLoads:
     outputs: StationOutputs
 
     def fractions(self, excitation: Excitation) -> tuple[LoadFractions, ...]:
-        """Transfer functions from an excitation, one for each harmonic of the rotation.
+        """Compute the transfer functions from an excitation, one for each harmonic of the rotation.
 
         Raises
         ------
@@ -148,7 +153,7 @@ class LinearLoads:
         return (*found,)
 
     def _direct(self, drive: HarmonicDrive) -> np.ndarray:
-        """Outputs (S, K) of a unit input itself, with the accelerations that it causes."""
+        """Compute the direct outputs (S, K) of a unit input, including the accelerations it causes."""
         rows, by_force = self._rows
         total = _sum(drive.accelerations, rows.load, np.zeros(rows.shape))
         if drive.force is None:
@@ -156,18 +161,19 @@ class LinearLoads:
         (at, direction), planes = drive.force, self.model.equations.planes
         xi, inboard = self.stations.xi, self.stations.inboard
         outboard = (xi < at) | (inboard & (xi == at))
-        loads = np.zeros((len(xi), self.outputs.matrix.shape[2]))  # by a unit force on the outboard parts
+        # Loads by a unit force on the outboard parts.
+        loads = np.zeros((len(xi), self.outputs.matrix.shape[2]))
         loads[:, 1 + direction] = outboard
         loads[:, 1 + planes + direction] = outboard * (at - xi) * self.model.scene.beam.length
         return total + by_force @ drive.load + np.einsum("spk,sk->sp", self.outputs.matrix, loads)
 
     def steady(self) -> tuple[np.ndarray, np.ndarray]:
-        """Outputs of steady rotation, and amplitudes of their variation by gravity within a turn.
+        """Compute the outputs of steady rotation, and amplitudes of their variation by gravity in a turn.
 
         Returns
         -------
         constant, amplitude : ndarray, shape (S, K)
-            At rest gravity counts in the constant outputs, as at the angle of rotation 0.
+            Outputs (S, K); at rest, gravity is in the constant ones, as at the angle of rotation 0.
         """
         (rows, _), model, vectors = self._rows, self.model, self.model.equations.vectors
         position, velocity = self._at_speed
@@ -189,7 +195,7 @@ class LinearLoads:
 
     @cached_property
     def _rows(self) -> tuple[LoadRows, np.ndarray]:
-        """Rows without accelerations, and the outputs (S, K, n) of a unit force on each coordinate."""
+        """Rows without accelerations, and the outputs (S, K, n) by a unit force on each coordinate."""
         model, n = self.model, self.model.equations.size
         rows = span_rows(model.scene, model.discretization, model.equations, self.stations)
         acceleration = rows.acceleration.get("unity", np.zeros((*rows.shape, n)))
@@ -198,14 +204,14 @@ class LinearLoads:
 
     @cached_property
     def _at_speed(self) -> tuple[np.ndarray, np.ndarray]:
-        """Outputs (S, K, n) by coordinates and velocities, in steady rotation."""
+        """Outputs (S, K, n) per coordinate, and per velocity, in steady rotation."""
         rows, _ = self._rows
         zero = np.zeros((*rows.shape, self.model.equations.size))
         position, velocity = (_sum(self._values(row), row, zero) for row in (rows.position, rows.velocity))
         return position, velocity
 
     def _values(self, by_quantity: Mapping[Quantity, np.ndarray]) -> dict[Quantity, np.ndarray]:
-        """Values in steady rotation of the quantities of the root's motion that count."""
+        """Evaluate the given quantities of the root's motion in steady rotation."""
         root = root_motion(self.model.scene.mount, MotionSample.steady(self.model.speed))
         return {name: getattr(root, name) for name in by_quantity}
 
@@ -213,12 +219,12 @@ class LinearLoads:
 def _sum(
     values: Mapping[Quantity, Any], by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray
 ) -> np.ndarray:
-    """Sum of arrays times the values of the quantities of the root's motion."""
+    """Sum arrays times the values of the quantities of the root's motion."""
     return sum((value * by_quantity[name] for name, value in values.items() if name in by_quantity), zero)
 
 
 def largest_in_turn(fractions: Sequence[LoadFractions], spectrum: PowerSpectrum) -> np.ndarray:
-    """Mean square (S, K) at the angle of rotation at which it is largest."""
+    """Compute the mean square (S, K) at the angle of rotation at which it is largest."""
     total = sum(each.mean_square(spectrum) for each in fractions)
     if len(fractions) == 1:
         return np.asarray(total)
@@ -226,25 +232,25 @@ def largest_in_turn(fractions: Sequence[LoadFractions], spectrum: PowerSpectrum)
     return total + 2 * np.abs(forward.together_with(backward, spectrum))
 
 
-# Statistics ----------------------------------------------------------------------------------------
+# Results of the statistics --------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class RandomStatistics:
-    """Statistics of K outputs at S stations; the components of all quantities stand one after the other.
+    """Statistics of K outputs at S stations; the components of all quantities follow one another.
 
     Parameters
     ----------
     mean : ndarray, shape (S, K)
         Constant part, by the steady rotation [unit of the output].
     gravity : ndarray, shape (S, K)
-        Amplitude of what gravity makes of it within a turn [same unit].
+        Amplitude of the variation by gravity within a turn [same unit].
     rms : ndarray, shape (S, K)
         Root mean square of the random part, over time and over a turn [same unit].
     rms_in_turn : ndarray, shape (S, K)
-        That at the angle of rotation at which it is largest [same unit].
+        Root mean square at the angle of rotation at which it is largest [same unit].
     rate_rms : ndarray, shape (S, K)
-        Root mean square of its rate [same unit / s].
+        Root mean square of the rate of the random part [same unit / s].
 
     References
     ----------
@@ -267,30 +273,30 @@ class RandomStatistics:
 
     @property
     def crossings(self) -> np.ndarray:
-        """How often a second the random part passes 0 upwards [1/s], shape (S, K); 0 where there is none."""
+        """Rate of upward zero crossings of the random part [1/s], shape (S, K); 0 where there is none."""
         moving = self.rms > 0
         return np.where(moving, self.rate_rms, 0.0) / (_TURN * np.where(moving, self.rms, 1.0))
 
     def largest(self, factor: Callable[[np.ndarray], np.ndarray], duration: float) -> np.ndarray:
-        """Largest magnitude (S, K), with a peak factor by the number of crossings of both signs."""
+        """Compute the largest magnitude (S, K) with a peak factor, a function of the number of crossings."""
         count = np.maximum(2 * self.crossings * duration, _LEAST)
         return np.abs(self.mean) + self.gravity + factor(count) * self.rms_in_turn
 
 
 def expected_factor(count: np.ndarray) -> np.ndarray:
-    """Mean of the largest of so many crossings, over the root mean square."""
+    """Compute the mean of the largest of a number of crossings, over the root mean square."""
     root = np.sqrt(2 * np.log(count))
     return root + np.euler_gamma / root
 
 
 def safe_factor(count: np.ndarray, probability: float) -> np.ndarray:
-    """Quantile of the largest of so many crossings, with a probability, over the root mean square."""
+    """Compute a quantile of the largest of a number of crossings, over the root mean square."""
     return np.sqrt(2 * np.log(np.maximum(count / -math.log(probability), 1.0)))
 
 
 @dataclass(frozen=True)
 class InputAndOutputs:
-    """A random input, and the outputs along the span whose statistics are asked for."""
+    """A random input, and the outputs along the span whose statistics are requested."""
 
     drive: Excitation
     spectrum: PowerSpectrum
@@ -298,17 +304,18 @@ class InputAndOutputs:
     outputs: StationOutputs
 
     def fractions(self, model: ModelAtSpeed) -> tuple[LoadFractions, ...]:
-        """Transfer functions from the input to the outputs, one for each harmonic of the rotation."""
+        """Compute transfer functions from the input to the outputs, one for each harmonic of rotation."""
         return LinearLoads(model, self.stations, self.outputs).fractions(self.drive)
 
     def statistics(self, model: ModelAtSpeed) -> np.ndarray:
-        """The fields of `RandomStatistics`, in their order: shape (5, S, K)."""
+        """Compute the fields of `RandomStatistics`, in their order: shape (5, S, K)."""
         check_stable(model)
         fractions, spectrum = self.fractions(model), self.spectrum
         mean, gravity = LinearLoads(model, self.stations, self.outputs).steady()
         squares = [sum(each.mean_square(spectrum, order) for each in fractions) for order in (0, 2)]
         most = largest_in_turn(fractions, spectrum)
-        rms, rate, in_turn = (np.sqrt(np.maximum(square, 0.0)) for square in (*squares, most))  # of rounding
+        # Squares may be negative by rounding.
+        rms, rate, in_turn = (np.sqrt(np.maximum(square, 0.0)) for square in (*squares, most))
         return np.stack([mean, gravity, rms, in_turn, rate])
 
     def refine(
@@ -319,9 +326,10 @@ class InputAndOutputs:
         tolerance: float,
         discretization: DiscretizationChoice,
     ) -> Refined:
-        """`statistics` and their errors, nan where there is none, with as many modes as they need."""
+        """Compute `statistics` and errors (nan if unknown) with as many modes as they need."""
         few = self.statistics(model_of_few_modes(loaded, speed, _FIRST_MODES, discretization))
-        size = np.nan_to_num(np.abs(few)).max(axis=1, keepdims=True)  # along the span: (5, 1, K)
+        # Largest value along the span, shape (5, 1, K).
+        size = np.nan_to_num(np.abs(few)).max(axis=1, keepdims=True)
         size = np.where(size > 0, size, 1.0) * np.array([1, 1, 1, 1, _OF_RATES])[:, None, None]
 
         def relative(model: ModelAtSpeed) -> np.ndarray:
@@ -338,7 +346,7 @@ class InputAndOutputs:
 def _rounding(
     fractions: Sequence[LoadFractions], found: RandomStatistics, spectrum: PowerSpectrum
 ) -> np.ndarray:
-    """Rounding errors of the fields of `RandomStatistics`, in their order: shape (5, S, K)."""
+    """Estimate the rounding errors of the fields of `RandomStatistics`: shape (5, S, K)."""
     value, rate = (sum(each.rounding(spectrum, order) for each in fractions) for order in (0, 2))
     pairs = (found.rms, value), (found.rms_in_turn, 2 * value), (found.rate_rms, rate)
     none = np.zeros_like(found.mean)
@@ -346,7 +354,7 @@ def _rounding(
 
 
 def error_of_largest(found: RandomStatistics, error: RandomStatistics, duration: float) -> np.ndarray:
-    """Errors (S, K) of the largest expected: how far it rises with the errors of all statistics."""
+    """Estimate errors (S, K) of the expected largest from the errors of all statistics."""
     total = found.rms + error.rms
     with np.errstate(invalid="ignore"):
         less = np.where(np.isfinite(total) & (total > 0), found.rms**2 / np.where(total > 0, total, 1.0), 0.0)

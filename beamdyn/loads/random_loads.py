@@ -1,16 +1,17 @@
-"""Loads along the span under a random input, such as a rough road: mean squares and largest expected."""
+"""Loads along the span under a random input, such as a rough road: mean squares and expected extremes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, ascending, positive, refuse, within
 from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.results.one_line import counted, error_at_most, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.statements import announced_of_plain_beam
 from beamdyn.linear.convergence import check_linear, with_forces
 from beamdyn.linear.inputs_outputs import DeflectionAt, Excitation
@@ -35,24 +36,21 @@ from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 _TURN = 2 * np.pi
 _HOUR = 3600.0
-_FEW = 10.0  # crossings in the duration, below which the largest is no matter of statistics
-_DIGITS = 3  # digits of the largest that are expected: statistics have no more
-_UNSURE = 0.05  # error over the largest, above which no digit of it may be sure
-_SEVERAL = 3.0  # standard deviations that a deflection rarely passes
+_FEW = 10.0  # number of crossings in the duration below which statistics do not describe the largest
+_DIGITS = 3  # number of digits of the expected largest, as statistics have no more
+_UNSURE = 0.05  # error over the largest above which no digit of the largest may be certain
+_SEVERAL = 3.0  # number of standard deviations that a deflection rarely exceeds
 
 
 @dataclass(frozen=True)
 class RandomLoads(SpanLoads):
-    """Loads along the span under a random input at one speed: the largest magnitudes expected in a duration.
+    """Loads along the span under a random input at one speed: largest magnitudes expected in a duration.
 
-    The fields are those of `SpanLoads`, with one case, the speed.  The largest magnitudes are sums: of the
+    The fields are those of `SpanLoads`, with the speed as the only case.  Largest magnitudes are sums of the
     constant part, the amplitude by gravity, and the root mean square of the random part, at the angle of
-    rotation at which that is largest, times a peak factor.  They are estimates for a Gaussian input.
+    rotation at which that is largest, times a peak factor: estimates for a Gaussian input.
 
     Parameters
     ----------
@@ -63,7 +61,7 @@ class RandomLoads(SpanLoads):
     statistics, statistics_error : RandomStatistics
         Statistics of all components, and their estimated errors; see `rms`, `mean` and others by quantity.
     parametric : ParametricTerm
-        Size of the term left out, by which accelerations along the beam vary its stiffness.
+        Size of the parametric term, which is left out: accelerations along the beam vary its stiffness.
     input : str
         The input, with its unit.
 
@@ -88,7 +86,10 @@ class RandomLoads(SpanLoads):
     case: ClassVar[LoadCase] = LoadCase("speed", "rad/s", "speed")
 
     def headline(self) -> Iterator[str]:
-        """Largest moment and strain to be expected, with errors, in one line; see `Result.headline`."""
+        """Yield largest expected moment and strain, with errors, for a one-line summary.
+
+        See `Result.headline`.
+        """
         yield f"{counted(len(self.x), 'station')} at {self.say_speed(self.speed)}"
         for name in ("moment", "strain"):
             if np.isfinite(self.values(name)).any():
@@ -99,40 +100,40 @@ class RandomLoads(SpanLoads):
         yield warned(self.warnings)
 
     def rms(self, quantity: str = "strain") -> np.ndarray:
-        """Root mean square of the random part of a quantity, over time and over a turn: shape (S, k)."""
+        """Return a quantity's root mean square of the random part, over time and a turn: shape (S, k)."""
         return self._of(quantity, self.statistics.rms)
 
     def rms_error(self, quantity: str = "strain") -> np.ndarray:
-        """Estimated error of `rms`, shape (S, k)."""
+        """Return the estimated error of `rms`, shape (S, k)."""
         return self._of(quantity, self.statistics_error.rms)
 
     def rms_in_turn(self, quantity: str = "strain") -> np.ndarray:
-        """Root mean square at the angle of rotation at which it is largest, shape (S, k)."""
+        """Return a quantity's root mean square at the angle at which it is largest, shape (S, k)."""
         return self._of(quantity, self.statistics.rms_in_turn)
 
     def mean(self, quantity: str = "strain") -> np.ndarray:
-        """Constant part of a quantity, by the steady rotation: shape (S, k)."""
+        """Return the constant part of a quantity, by the steady rotation: shape (S, k)."""
         return self._of(quantity, self.statistics.mean)
 
     def gravity(self, quantity: str = "strain") -> np.ndarray:
-        """Amplitude of what gravity makes of a quantity within a turn: shape (S, k)."""
+        """Return the amplitude of a quantity's variation by gravity within a turn: shape (S, k)."""
         return self._of(quantity, self.statistics.gravity)
 
     def crossings(self, quantity: str = "strain") -> np.ndarray:
-        """How often the random part of a quantity passes 0 upwards [1/s], by Rice: shape (S, k)."""
+        """Return the frequency of upward zero crossings of a quantity's random part [1/s]: (S, k)."""
         return self._of(quantity, self.statistics.crossings)
 
     def quantile(self, quantity: str = "strain", probability: float = 0.99) -> np.ndarray:
-        """Compute the magnitude that a quantity does not pass in the duration with a probability.
+        """Compute the magnitude that a quantity does not exceed in the duration with a given probability.
 
-        It is a quantile of the largest magnitude.
+        This is a quantile of the largest magnitude.
 
         Parameters
         ----------
         quantity : {"strain", "stress", "curvature", "moment", "force"}
             The quantity.
         probability : float
-            The probability, from 0.5 to 1 - 1e-9.
+            Probability from 0.5 to 1 - 1e-9.
 
         Returns
         -------
@@ -148,7 +149,7 @@ class RandomLoads(SpanLoads):
         station: int = 0,
         component: int = 0,
     ) -> np.ndarray:
-        """Compute the one-sided density of a quantity at a station.
+        """Compute the one-sided power spectral density of a quantity at a station.
 
         Parameters
         ----------
@@ -162,7 +163,7 @@ class RandomLoads(SpanLoads):
         Returns
         -------
         ndarray, shape (F,)
-            Its unit squared per Hz.
+            Density [unit of the quantity squared per Hz].
         """
         f = ascending("frequencies", frequencies)
         refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
@@ -175,12 +176,12 @@ class RandomLoads(SpanLoads):
         return total
 
     def plot(self, ax: Axes | None = None, quantity: str = "strain") -> Axes:
-        """Draw the largest magnitude expected of a quantity along the span."""
+        """Draw the largest expected magnitude of a quantity along the span."""
         label = f"largest {with_unit(quantity)} expected in {self.duration:g} s"
         return self.draw(ax, quantity, self.values, label)
 
     def _of(self, quantity: str, values: np.ndarray) -> np.ndarray:
-        """The components (S, k) of a quantity among those of all."""
+        """Select the components (S, k) of a quantity from values of all."""
         self.check_component(quantity, None)
         return values[:, self.outputs.places[quantity]]
 
@@ -202,7 +203,7 @@ def random_loads(
 ) -> RandomLoads:
     """Compute loads along the span under a stationary random input, at a steady speed.
 
-    They follow from the loads and the inertia outboard of each station, not from the curvature of modes.  The
+    Loads follow from forces and inertia outboard of each station, not from the curvature of modes.  The
     equations are those of `random_response`, about the straight beam, with the same parametric term left out.
 
     Parameters
@@ -222,7 +223,7 @@ def random_loads(
     modes
         As for `random_response`.
     tolerance : float
-        Error aimed at by "auto", relative to the largest of each component along the span.
+        Target of the error for "auto", relative to the largest of each component along the span.
     discretization
         As for `random_response`.
 
@@ -255,7 +256,7 @@ def random_loads(
     )
     drive, spectrum = random_input(scene, speed, psd, input)
     check_damped(scene)
-    if not isinstance(spectrum, PowerSpectrum):  # a cut moves with the input at once
+    if not isinstance(spectrum, PowerSpectrum):  # loads follow the input at once: infinite for white noise
         bound = "mean squares of loads by white noise are not finite"
         raise InvalidValue("psd", psd, bound, "give a PowerSpectrum, which ends at some frequency")
     asked = AskedLoads.of(scene, at, points, youngs_modulus)
@@ -289,7 +290,7 @@ def random_loads(
 
 
 def _tip_deflection(model: ModelAtSpeed, drive: Excitation, spectrum: PowerSpectrum) -> np.ndarray:
-    """Deflection of the tip in each modelled direction that it rarely passes [m], shape (d,)."""
+    """Compute the tip deflection in each modelled direction that is rarely exceeded [m], shape (d,)."""
     seen = [DeflectionAt(), DeflectionAt(direction=ACROSS)][: model.equations.planes]
     squares = [
         sum(
@@ -302,14 +303,14 @@ def _tip_deflection(model: ModelAtSpeed, drive: Excitation, spectrum: PowerSpect
 
 
 def _warn_of_few(found: RandomStatistics, duration: float) -> Iterator[str]:
-    """Yield a warning if the duration is too short for statistics of the largest."""
+    """Yield a warning if the duration is too short for statistics of the largest value."""
     crossings = found.crossings[found.rms > 0]
     if len(crossings) and duration * crossings.min() < _FEW:
         yield f"in {duration:g} s there are few vibrations: the largest expected are a rough guess"
 
 
 def _warn_of_few_modes(moment: np.ndarray, error: np.ndarray, model: ModelAtSpeed) -> Iterator[str]:
-    """Yield a warning if the modes left out may change the largest bending moment in its first digits."""
+    """Yield a warning if modes left out may change the first digits of the largest bending moment."""
     if model.modes is not None and error.max() > _UNSURE * moment.max() > 0:
         share = percent(float(error.max() / moment.max()))
         yield (

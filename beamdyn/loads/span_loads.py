@@ -1,22 +1,23 @@
-"""Base of all results on loads along the span: stations, loads there, and their errors."""
+"""Base of all results on loads along the span: stations, loads there, and errors of the loads."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, one_of
 from beamdyn.common.plots.curves import plot_along_span
 from beamdyn.common.results.one_line import counted, error_at_most, number, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.equations.effects import modelled_directions
-from beamdyn.loads.load_rows import STRAIGHT
+from beamdyn.loads.load_rows import STRAIGHT, refuse_uncovered_camber
 from beamdyn.loads.stations import (
+    SHOWN,
     UNITS,
     Positions,
     SectionPoints,
@@ -29,9 +30,6 @@ from beamdyn.modes.repeated import JudgedByRepeating
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_elastic_limit
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 REMEDIES = {
     "strain": "give the beam an outer_fibre, or points of the section",
     "stress": "give youngs_modulus, and the beam an outer_fibre, or points of the section",
@@ -42,7 +40,7 @@ _JUDGED = "strain", "moment", "force"
 
 
 class LoadCase(NamedTuple):
-    """First axis of the arrays: its name, its unit, and the field that has its values."""
+    """First axis of the arrays of a result: its name, its unit, and the field that has its values."""
 
     name: str
     unit: str
@@ -54,22 +52,22 @@ SPEEDS = LoadCase("speed", "rad/s", "speeds")
 
 @dataclass(frozen=True)
 class LargestLoad:
-    """The largest magnitude of a quantity along the span, and where it is.
+    """Largest magnitude of a quantity along the span, with its place.
 
     Parameters
     ----------
     quantity : str
         "force", "moment", "curvature", "strain" or "stress".
     value : float
-        The value there, with its sign where that is known [N, N m, 1/m, 1, Pa].
+        Largest value, with its sign where that is known [N, N m, 1/m, 1, Pa].
     error : float
         Estimated error of the value [same unit].
     x : float
         Position along the beam [m].
     inboard : bool
-        Whether that is just inboard of the position, where something jumps there.
+        Whether the place is just inboard of the position, if the quantity jumps there.
     component : int
-        Index of the direction, of the force, or of the point of the section.
+        Index of the direction, of the force component, or of the point of the section.
     case : float
         Time [s] or speed [rad/s].
 
@@ -94,9 +92,9 @@ class LargestLoad:
 class SpanLoads(JudgedByRepeating):
     """Forces, moments, curvatures, strains and stresses at stations along the span.
 
-    C is the number of times or speeds, S that of stations, d that of modelled planes of bending (1 or 2), P
-    that of points of the section.  Loads are those of the part outboard of a station on the part inboard,
-    about its deflected axis; they follow from the loads and the inertia outboard, not from a curvature.
+    C is the number of times or speeds, S the number of stations, d of modelled planes of bending (1 or 2), P
+    of points of the section.  Loads are those of the part outboard of a station on the part inboard,
+    about its deflected axis; they follow from external forces and inertia outboard, not from a curvature.
 
     `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
     largest value of the `judged_quantity`.
@@ -104,8 +102,8 @@ class SpanLoads(JudgedByRepeating):
     Parameters
     ----------
     x : ndarray, shape (S,)
-        Stations [m].  One that occurs twice has two sides, the inboard one first: a section jumps there, or a
-        mass stands there.
+        Stations [m].  A repeated station has two sides, the inboard one first: a section jumps there, or a
+        mass is there.
     inboard : ndarray of bool, shape (S,)
         Whether the station is just inboard of its position.
     points : ndarray, shape (S, P, 2)
@@ -127,7 +125,7 @@ class SpanLoads(JudgedByRepeating):
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How it was computed.
+        Program version, discretization and computing time.
 
     Examples
     --------
@@ -157,58 +155,63 @@ class SpanLoads(JudgedByRepeating):
     case: ClassVar[LoadCase]
 
     def headline(self) -> Iterator[str]:
-        """Largest moment and strain of all cases and stations in one line; see `Result.headline`."""
-        yield f"{len(self.cases)} x {counted(len(self.x), 'station')}"
+        """Yield largest moment and strain of all cases and stations for one line; see `Result.headline`."""
+        yield f"{counted(len(self.cases), self.case.name)}, {counted(len(self.x), 'station')}"
         for name in ("moment", "strain"):
             size = np.abs(self.values(name))
-            if np.isfinite(size).any():
+            if np.isfinite(size).any() and (size != 0).any():
                 yield f"{name} to {number(np.nanmax(size), UNITS[name])}"
                 yield error_at_most(self.error_of(name), UNITS[name])
         yield warned(self.warnings)
 
     @property
     def judged_quantity(self) -> str:
-        """The quantity of which the model error is stated: the first of these that is not 0 or unknown."""
+        """Quantity of which the model error is stated: the first that is neither 0 nor unknown."""
         sizes = {name: np.nan_to_num(np.abs(self.values(name))).max(initial=0.0) for name in _JUDGED}
         return next((name for name, size in sizes.items() if size), _JUDGED[-1])
 
     @property
+    def drawn_quantity(self) -> str:
+        """Quantity that a picture shows where none is chosen: the moment, unless nothing bends the beam."""
+        return "moment" if np.nan_to_num(self.moment).any() else self.judged_quantity
+
+    @property
     def judged_value(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """The largest value of which quantity the model error is stated, in words."""
+        """Words for the value whose model error is stated, such as "the largest strain"."""
         return f"the largest {self.judged_quantity}"
 
     def judged(self, found: SpanLoads) -> np.ndarray:
-        """The largest value of the `judged_quantity`, nan where none is known: shape ()."""
+        """Select the largest value of the `judged_quantity`, nan where none is known: shape ()."""
         known = np.isfinite(found.values(self.judged_quantity)).any()
         return np.array(abs(found.largest(self.judged_quantity).value) if known else np.nan)
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """The station of the largest value, with both of its sides."""
+        """Arguments that limit a repeated analysis to the station of the largest value, with both sides."""
         return {"at": [self.largest(self.judged_quantity).x] * 2}
 
     @property
     def bending_speed(self) -> float:
-        """Speed [rad/s] at which large deflection is judged: that of the largest value."""
+        """Speed [rad/s] of the largest value, at which the change by large deflection is estimated."""
         return self.largest(self.judged_quantity).case
 
     @property
     def cases(self) -> np.ndarray:
-        """Times [s] or speeds [rad/s], shape (C,)."""
+        """Times [s] or speeds [rad/s] of the first axis, shape (C,)."""
         return np.atleast_1d(getattr(self, self.case.field))
 
     def values(self, quantity: str) -> np.ndarray:
-        """A quantity by its name (C, S, k)."""
+        """Return the values of a quantity by its name: shape (C, S, k)."""
         one_of("quantity", quantity, (*UNITS,))
         return getattr(self, quantity)
 
     def error_of(self, quantity: str) -> np.ndarray:
-        """Error of a quantity, as an array that broadcasts against its values."""
+        """Return the error of a quantity, as an array that broadcasts against the values."""
         one_of("quantity", quantity, (*UNITS,))
         return getattr(self, f"{quantity}_error")
 
     def components(self, quantity: str) -> tuple[str, ...]:
-        """Names of the components of a quantity."""
+        """List the names of a quantity's components."""
         one_of("quantity", quantity, (*UNITS,))
         if quantity in ("strain", "stress"):
             return tuple(f"point {k + 1}" for k in range(self.points.shape[1]))
@@ -247,50 +250,51 @@ class SpanLoads(JudgedByRepeating):
         )
 
     def station_of(self, found: LargestLoad) -> int:
-        """Index of the station of a value."""
+        """Find the index of the station at which a value occurs."""
         return int(np.flatnonzero((self.x == found.x) & (self.inboard == found.inboard))[0])
 
     def check_known(self, quantity: str) -> None:
-        """Refuse a quantity of which the result has no value."""
+        """Refuse a quantity for which the result has no values."""
         if not np.isfinite(self.values(quantity)).any():
             remedy = REMEDIES.get(quantity, "")
             raise InvalidValue("quantity", quantity, f"the result has no {quantity}", remedy)
 
     def check_component(self, quantity: str, component: int | None) -> list[int]:
-        """Indices of the components that are asked for."""
+        """List the indices of the requested components, or refuse a component that does not exist."""
         size = self.values(quantity).shape[-1]
         return list(range(size)) if component is None else [count("component", component, 0, size - 1)]
 
     def located(
         self, quantity: str, value: float, error: float, station: int, component: int, case: float
     ) -> LargestLoad:
-        """A value with the position, component and case at which it occurs."""
+        """Combine a value with the position, component and case at which it occurs."""
         at = float(self.x[station]), bool(self.inboard[station])
         return LargestLoad(quantity, value, error, *at, component, case)
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
-        """Draw a quantity along the span: of few cases, else the range in which it lies."""
+        """Draw a quantity along the span: each of few cases, or else the range of all."""
         return self.draw(ax, quantity, self.values, with_unit(quantity))
 
     def draw(self, ax: Axes | None, quantity: str, values: Callable[[str], np.ndarray], label: str) -> Axes:
-        """Draw values (C, S, k) of a quantity along the span, if the result has it."""
+        """Draw values (C, S, k) of a quantity along the span, if the result has the quantity."""
         self.check_known(quantity)
         named = self.components(quantity)
-        return plot_along_span(self.x, values(quantity), named, label, ax, self.display_units)
+        scale, _ = SHOWN[quantity]
+        return plot_along_span(self.x, scale * values(quantity), named, label, ax, self.display_units)
 
 
 def with_unit(quantity: str) -> str:
-    """A quantity with its unit, for an axis."""
+    """Label an axis by a quantity and its unit."""
     one_of("quantity", quantity, (*UNITS,))
-    return f"{quantity} [{UNITS[quantity]}]" if UNITS[quantity] else quantity
+    return f"{quantity} [{SHOWN[quantity][1]}]"
 
 
-# What is asked for --------------------------------------------------------------------------------
+# Requests of loads --------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class AskedLoads:
-    """Stations and outputs that are asked for along the span, from which results of all kinds are made.
+    """Request of loads along the span: stations and outputs, from which results of all kinds are made.
 
     Parameters
     ----------
@@ -299,13 +303,13 @@ class AskedLoads:
     stations : SpanStations
         The S stations.
     outputs : StationOutputs
-        The K outputs there.
+        The K outputs at each station.
     points : ndarray, shape (S, P, 2)
         Points of the sections [m].
     notes : tuple of str
-        Parts that the strain lacks.
+        Contributions that the strain does not include.
     start : float
-        When it was asked [s].
+        Time of the request [s].
     """
 
     scene: Scene
@@ -319,7 +323,8 @@ class AskedLoads:
     def of(
         cls, scene: Scene, at: Positions | None, points: SectionPoints | None, youngs_modulus: float | None
     ) -> AskedLoads:
-        """Check the stations, the points of the sections and Young's modulus of a request."""
+        """Check the stations, the points of sections and Young's modulus of a request."""
+        refuse_uncovered_camber(scene)
         start, stations = perf_counter(), stations_at(scene.modelled_beam, at)
         sections = sections_at(scene, stations, points, youngs_modulus)
         return cls(scene, stations, sections.outputs, sections.points, sections.notes, start)
@@ -327,7 +332,7 @@ class AskedLoads:
     def result(
         self, values: np.ndarray, errors: np.ndarray, warnings: Iterable[str], method: str, compared_with: str
     ) -> dict[str, Any]:
-        """Fields of a `SpanLoads`, with values and errors of the outputs (..., S, K)."""
+        """Build the fields of a `SpanLoads` from values and errors of the outputs (..., S, K)."""
         by_quantity = self.outputs.split(values)
         beyond = warn_of_elastic_limit(by_quantity["strain"])
         return {
@@ -338,12 +343,12 @@ class AskedLoads:
             **by_quantity,
             **self.outputs.split(errors, "_error"),
             "warnings": (*self.notes, *warnings, *beyond),
-            "provenance": Provenance(__version__, method, compared_with, perf_counter() - self.start),
+            "provenance": Provenance.since(self.start, method, compared_with),
         }
 
 
 def refuse_large_deflection(scene: Scene) -> None:
-    """Refuse a scene of large deflection, to which virtual work on the straight beam does not apply."""
+    """Refuse a scene with large deflection, to which virtual work on the straight beam does not apply."""
     if scene.physics.large_deflection:
         remedy = "leave large_deflection out where the deflection is small"
         raise InvalidValue("physics.large_deflection", True, STRAIGHT, remedy)

@@ -1,4 +1,4 @@
-"""Loads along the span in equilibrium at steady speeds: centrifugal forces and gravity."""
+"""Loads along the span in equilibrium at steady speeds, by centrifugal forces and gravity."""
 
 from __future__ import annotations
 
@@ -30,20 +30,22 @@ from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection, warn_of_strain
 
-_MODES = 3  # modes of which the model is accurate: loads in equilibrium need no more
-_SINGULAR = 1e-13  # smallest eigenvalue of the scaled stiffness that is told from 0
+_MODES = 3  # number of modes for which the model is accurate: loads in equilibrium need no more
+_SINGULAR = 1e-13  # smallest nonzero eigenvalue of the scaled stiffness
 # Moments at the root fall by 0.26 to 0.42 times the squared ratio of deflection and length, up to 0.5: by
 # `equilibrium`, at four setting angles.
 _BENT, _BY_DEFLECTION = 0.4, "roughly, by the squared ratio of deflection and length"
-_ALONG = 0.25  # least share of the largest distance of two models along the span
-_ROUNDING = 1e-12  # relative to the largest along the span
+# The difference of two models at a station counts as at least this fraction of the largest one along the
+# span, since it may be small by chance.
+_ALONG = 0.25
+_ROUNDING = 1e-12  # rounding error relative to the largest value along the span
 
 
 @dataclass(frozen=True)
 class StaticLoads(span_loads.SpanLoads):
     """Loads along the span in equilibrium at C steady speeds.
 
-    The fields are those of `SpanLoads` and, besides:
+    The fields are those of `SpanLoads`, and the following.
 
     Parameters
     ----------
@@ -69,7 +71,7 @@ class StaticLoads(span_loads.SpanLoads):
     case: ClassVar[span_loads.LoadCase] = span_loads.SPEEDS
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Values with large deflection, by the deflection of the tip of the straight beam."""
+        """Estimate values with large deflection from the straight beam's tip deflection."""
         ratio = float(np.linalg.norm(self.tip, axis=1).max()) / self.scene.beam.length
         return SolvedValues(straight / (1 + _BENT * ratio**2), "", _BY_DEFLECTION if ratio else "")
 
@@ -92,12 +94,12 @@ def static_loads(
     ----------
     scene : Scene
         The scene; its motion is not used.  Gravity acts as it does at the `angle` of rotation: at a speed
-        other than 0 it varies, which is the matter of `transient_loads` and `steady_loads`.
+        other than 0 it varies, as `transient_loads` and `steady_loads` model.
     speeds : float or sequence of float
         Speeds [rad/s], ascending.
     at : sequence of float, optional
         Stations [m]; by default 21 evenly along the beam, and both sides of each jump.  A position that is
-        given twice stands for both sides of it; alone for the outboard one.
+        given twice stands for both of its sides, a single one for the outboard side.
     points : sequence of (float, float), optional
         Points of the section at which strain and stress are wanted [m], along its first direction and along
         the second; by default the outer fibres, or the corners of a rectangle that bends in two planes.
@@ -148,7 +150,7 @@ def static_loads(
     def solved(model: Model) -> _Solved:
         (found, tip), (coarse, _) = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
         rounding = _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
-        distance = np.abs(found - coarse)  # by chance it is small at a station or other
+        distance = np.abs(found - coarse)  # at some stations the distance may be small by chance
         distance = np.maximum(distance, _ALONG * distance.max(axis=1, keepdims=True))
         error = BASES_OF_STATIC_LOADS.factor * distance + rounding
         return _Solved(model, found, error, tip)
@@ -172,7 +174,10 @@ def static_loads(
 
 
 class _Solved(NamedTuple):
-    """Outputs (C, S, K) and their errors by a model, and the deflection of the tip (C, d)."""
+    """K outputs and errors by a model at C speeds and S stations, (C, S, K), and tip deflections (C, d).
+
+    The tip bends in d directions.
+    """
 
     model: Model
     value: np.ndarray
@@ -180,14 +185,14 @@ class _Solved(NamedTuple):
     tip: np.ndarray
 
     def relative_error(self, outputs: StationOutputs) -> float:
-        """Largest error over the largest value, of the quantity where that is largest."""
+        """Compute the largest ratio of error to largest value over all quantities."""
         values, errors = (outputs.split(np.nan_to_num(np.abs(each))) for each in (self.value, self.error))
         sizes = {name: each.max(initial=0.0) for name, each in values.items()}
         return max((errors[name].max() / size for name, size in sizes.items() if size), default=0.0)
 
 
 def _warnings(scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray) -> Iterator[str]:
-    """Yield what limits the answer: effects left out, and large deflection or strain at the speeds (C,)."""
+    """Yield warnings: effects left out, and large deflection or strain at the speeds (C,)."""
     yield from warn_of_left_out(scene)
     _, stretch = static_load(model, speeds)
     yield from warn_of_strain(float(stretch.max()))
@@ -198,7 +203,7 @@ def _warnings(scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray) -
 def _solve(
     model: Model, asked: span_loads.AskedLoads, speeds: np.ndarray, theta: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Outputs (C, S, K) in equilibrium at each speed, and the deflection of the tip (C, d)."""
+    """Compute K outputs at S stations in equilibrium at C speeds, (C, S, K), and tip deflections (C, d)."""
     equations = model.equations
     rows = span_rows(model.scene, model.discretization, equations, asked.stations)
     root = equations.root(replace(MotionSample.steady(speeds), angle=np.full(len(speeds), theta)))
@@ -207,9 +212,9 @@ def _solve(
 
 
 def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarray:
-    """Coordinates (C, n) in equilibrium: K (C, n, n) must be positive definite."""
+    """Solve equilibrium coordinates (C, n); refuse stiffnesses (C, n, n) that are not positive definite."""
     size = np.sqrt(np.einsum("cii->ci", np.abs(K)))
-    size[size == 0] = 1.0  # of a function that nothing holds
+    size[size == 0] = 1.0  # sizes of functions that nothing holds
     scaled = K / (size[:, :, None] * size[:, None, :])
     least = np.linalg.eigvalsh((scaled + scaled.swapaxes(1, 2)) / 2)[:, 0]
     if (lost := least <= _SINGULAR).any():

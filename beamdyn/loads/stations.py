@@ -1,6 +1,6 @@
-"""Stations along the span, and what is asked for there, as linear outputs of the loads.
+"""Stations along the span, and the requested outputs there as linear functions of the loads.
 
-The outputs are the loads themselves, and curvature, strain and stress at points of the sections.  Their modal
+Outputs are the loads themselves, and curvature, strain and stress at points of the sections.  The modal
 truncation error follows from the distance of the loads from those of a solution with more modes.
 """
 
@@ -24,28 +24,32 @@ Positions: TypeAlias = "float | Sequence[float] | np.ndarray"
 SectionPoints: TypeAlias = "Sequence[Sequence[float]] | np.ndarray"
 
 UNITS = {"force": "N", "moment": "N m", "curvature": "1/m", "strain": "", "stress": "Pa"}  # units of loads
+# Units in which tables and pictures show loads, and how many of each are one in SI.
+_OF_SECTIONS = {"strain": (1e6, "1e-6"), "stress": (1e-6, "MPa")}
+SHOWN = {name: (1.0, unit) for name, unit in UNITS.items()} | _OF_SECTIONS
 
-_EVENLY = 21  # stations by default, besides both sides of each jump
+_EVENLY = 21  # number of stations by default, in addition to both sides of each jump
 _MOST, _MOST_POINTS = 1001, 100
-_SAME = 1e-12  # distance over the length at which a position is that of a breakpoint: as breakpoints merge
+_SAME = 1e-12  # distance over the length at which a position counts as a breakpoint, as breakpoints merge
 _BESIDE = 2e-12  # distance over the length at which the properties beside a jump are read
-_ROUNDING = 1e-9  # relative: a point on the edge is inside
-_LIMIT = 0.3  # of the distance over the largest along the span, up to which it bounds the error
-_ROUNDING_OF_LOADS = 1e-12  # relative to the largest along the span
-_BETWEEN = 21  # stations besides those asked for, at which distances are found
+_ROUNDING = 1e-9  # relative tolerance within which a point on the edge is inside
+# Largest difference of two models, over the largest load along the span, that still bounds the error.
+_LIMIT = 0.3
+_ROUNDING_OF_LOADS = 1e-12  # rounding error relative to the largest load along the span
+_BETWEEN = 21  # number of further stations at which two models are compared
 _WITHOUT_AXIAL = "the strain is that of bending alone: the beam has no axial_stiffness"
 
 
 @dataclass(frozen=True)
 class SpanStations:
-    """Cross-sections at which the beam is cut.
+    """Stations along the span: cross-sections at which the beam is cut.
 
     Parameters
     ----------
     xi : ndarray, shape (S,)
-        Positions x/L, ascending; one that is given twice stands for the two sides of a jump.
+        Positions x/L, ascending; a repeated one stands for the two sides of a jump.
     inboard : ndarray of bool, shape (S,)
-        Whether the cut is just inboard of the position, so that what stands there belongs to the part
+        Whether the cut is just inboard of the position, so that a mass there belongs to the part
         outboard; else it is just outboard.
     """
 
@@ -54,14 +58,14 @@ class SpanStations:
 
     @property
     def beside(self) -> np.ndarray:
-        """Positions x/L (S,) at which the section on the side of the cut is read."""
+        """Positions x/L (S,) at which section properties are read, on the side of the cut."""
         return np.clip(self.xi + np.where(self.inboard, -_BESIDE, _BESIDE), 0.0, 1.0)
 
 
 def stations_at(beam: Beam, at: Positions | None) -> SpanStations:
-    """Stations at positions [m], or by default evenly along the beam and on both sides of each jump.
+    """Build stations at positions [m], or by default evenly along the beam and on both sides of jumps.
 
-    A position that is given twice stands for both sides, the inboard one first; alone it stands for the
+    A repeated position stands for both sides, the inboard one first; a single one stands for the
     outboard side, at the tip for the inboard one.
     """
     ends = np.array(beam.breakpoints)
@@ -75,7 +79,7 @@ def stations_at(beam: Beam, at: Positions | None) -> SpanStations:
 
 
 def _checked_positions(at: Positions, length: float) -> np.ndarray:
-    """Positions [m] that ascend along the beam, each at most twice."""
+    """Check that positions [m] ascend along the beam, each occurring at most twice."""
     array = as_floats(at)
     x = real_array("at", array.reshape(1) if array is not None and not array.ndim else at)
     if not 1 <= len(x) <= _MOST:
@@ -91,12 +95,12 @@ def _checked_positions(at: Positions, length: float) -> np.ndarray:
 
 
 def _snapped(xi: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Positions, those within rounding of a breakpoint exactly at it."""
+    """Move positions that are within rounding of a breakpoint exactly to it."""
     nearest = ends[np.abs(xi[:, None] - ends).argmin(axis=1)]
     return np.where(np.abs(xi - nearest) <= _SAME, nearest, xi)
 
 
-# Outputs ------------------------------------------------------------------------------------------
+# Outputs at the stations --------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -117,17 +121,17 @@ class StationOutputs:
 
     @property
     def places(self) -> dict[str, slice]:
-        """Components of each quantity."""
+        """Slices of the components of each quantity, by name."""
         ends = np.cumsum(self.sizes).tolist()
         return {name: slice(b - n, b) for name, n, b in zip(UNITS, self.sizes, ends, strict=True)}
 
     def split(self, values: np.ndarray, suffix: str = "") -> dict[str, Any]:
-        """The components (..., K) of each quantity, by its name and a suffix."""
+        """Split components (..., K) by quantity, each under its name with a suffix."""
         return {name + suffix: values[..., place] for name, place in self.places.items()}
 
 
 class Sections(NamedTuple):
-    """The outputs of the sections at stations, their points (S, P, 2) [m], and what the strain lacks."""
+    """Outputs of the sections at stations, points (S, P, 2) [m], and contributions missing in the strain."""
 
     outputs: StationOutputs
     points: np.ndarray
@@ -140,7 +144,7 @@ def sections_at(
     points: SectionPoints | None = None,
     youngs_modulus: float | None = None,
 ) -> Sections:
-    """Find the outputs of the sections of a scene at S stations.
+    """Build the outputs of the sections of a scene at S stations.
 
     Parameters
     ----------
@@ -182,7 +186,7 @@ def sections_at(
         at_stations = signs * np.nan_to_num(half)[:, None]
     curvature = of_free = _curvature(beam, xi, planes)
     if scene.physics.camber:
-        assert rectangle is not None, "a scene with camber has a section"
+        assert rectangle is not None, "camber of layers is refused beforehand"
         curvature = _with_camber(curvature, rectangle, beam.length, xi)
         of_free = np.concatenate([of_free, np.zeros((*of_free.shape[:2], 1))], axis=2)
     modulus = np.nan if rectangle is None else rectangle.youngs_modulus
@@ -192,7 +196,7 @@ def sections_at(
     axial = np.zeros((len(xi), 1, loads))
     if beam.axial_stiffness is not None:
         axial[:, 0, 0] = 1 / beam.axial_stiffness(xi)
-    # The stress is in balance with the moment, also where the clamp hinders the strain.
+    # Stress is in balance with the moment, even where the clamp hinders the strain.
     strain, strain_by_stress = (
         axial - np.einsum("spi,sik->spk", at_stations[..., :planes], each) for each in (curvature, of_free)
     )
@@ -210,7 +214,7 @@ def sections_at(
 
 
 def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
-    """Points (P, 2) that lie in every section whose edges are known."""
+    """Check that points (P, 2) are inside every section whose edges are known."""
     array = as_floats(points)
     if array is None or array.ndim != 2 or array.shape[1] != 2 or not 1 <= len(array) <= _MOST_POINTS:
         many = f"give 1 to {_MOST_POINTS} pairs"
@@ -219,7 +223,7 @@ def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
     if not np.isfinite(array).all():
         raise InvalidValue("points", points, "give finite numbers", unit="m")
     for side, name in enumerate(("first", "second")):
-        limit = half[:, side].min()  # nan is no limit
+        limit = half[:, side].min()  # nan stands for no limit
         bad = np.abs(array[:, side]) > limit * (1 + _ROUNDING)
         bound = f"it lies outside the section: along its {name} direction the thinnest reaches {{limit}}"
         remedy = "leave {field} out: the outermost of each"
@@ -228,7 +232,7 @@ def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
 
 
 def _curvature(beam: Beam, xi: np.ndarray, planes: int) -> np.ndarray:
-    """Curvature in each direction of the section per load, (S, d, 1 + 2 d)."""
+    """Compute the curvature in each direction of the section per load, shape (S, d, 1 + 2 d)."""
     turned = np.zeros(len(xi)) if beam.twist is None else beam.twist(xi)
     cos, sin = np.cos(turned), np.sin(turned)
     matrix = np.zeros((len(xi), planes, 1 + 2 * planes))
@@ -241,9 +245,9 @@ def _curvature(beam: Beam, xi: np.ndarray, planes: int) -> np.ndarray:
 
 
 def _with_camber(curvature: np.ndarray, section: Rectangle, length: float, xi: np.ndarray) -> np.ndarray:
-    """The mean curvature along the beam by the loads and by the moment of camber (S, d, 2 + 2 d).
+    """Compute the mean curvature by the loads and by the moment of camber, shape (S, d, 2 + 2 d).
 
-    The moment is E I/(1 - nu^2) times the curvature, and the moment of camber.
+    The bending moment is E I/(1 - nu^2) times the curvature, plus the moment of camber.
     """
     stiffening = section.camber_stiffening, section.stiffening_across(length)
     held = np.stack([each(xi) for each, _ in zip(stiffening, curvature[0], strict=False)], axis=1)
@@ -257,7 +261,7 @@ def _with_camber(curvature: np.ndarray, section: Rectangle, length: float, xi: n
 
 
 def with_neighbours(stations: SpanStations) -> SpanStations:
-    """The stations, then others evenly along the beam at which distances are found as well."""
+    """Append stations evenly along the beam, at which distances of loads are found as well."""
     more = np.linspace(0, 1, _BETWEEN)
     return SpanStations(np.append(stations.xi, more), np.append(stations.inboard, more == 1))
 
@@ -270,11 +274,11 @@ def mode_error(
     basis: ModalBasis,
     length: float,
 ) -> np.ndarray:
-    """Estimate errors of outputs from distances of loads, with rounding errors.
+    """Estimate the errors of outputs from distances of loads between models, including rounding.
 
-    At the nodes of the modes that a larger model adds, the distance is small by chance, while other modes
-    left out are not.  So at each station the largest distance counts within half a wave of the first mode
-    left out, to either side.
+    At the nodes of the modes that a larger model adds, the distance is small by chance, although other modes
+    left out contribute.  So the largest distance counts within half a wave of the first mode
+    left out, to either side of a station.
 
     Parameters
     ----------
@@ -285,7 +289,7 @@ def mode_error(
     stations : SpanStations
         The S stations asked for.
     outputs : StationOutputs
-        Outputs there.
+        The K outputs at each station.
     basis : ModalBasis
         The modes kept.
     length : float
@@ -302,10 +306,11 @@ def mode_error(
     nearby = np.where(near[..., None], distance[..., None, :, :], 0.0).max(axis=-2)
     loads = distance.shape[-1]
     planes = (loads - 1) // 2
-    of_moments = loads - 1 - planes  # with that of camber, where there is one
+    of_moments = loads - 1 - planes  # moments, including that of camber, if there is one
     factors = MODES_OF_MOMENTS.factor, MODES_OF_FORCES.factor, MODES_OF_MOMENTS.factor
     margins = np.repeat(factors, [1, planes, of_moments])
-    force = along_span[..., : 1 + planes].max(axis=-1, keepdims=True)  # the largest, also on the whole length
+    # The largest force, over the whole length.
+    force = along_span[..., : 1 + planes].max(axis=-1, keepdims=True)
     moment = np.maximum(along_span[..., 1 + planes :].max(axis=-1, keepdims=True), length * force)
     both = [np.repeat(force, 1 + planes, axis=-1), np.repeat(moment, of_moments, axis=-1)]
     rounding = through(outputs, (_ROUNDING_OF_LOADS * np.concatenate(both, axis=-1))[..., None, :])
@@ -314,7 +319,7 @@ def mode_error(
 
 
 def through(outputs: StationOutputs, errors: np.ndarray) -> np.ndarray:
-    """Errors of outputs (..., S, K) from those of the loads (..., S, 1 + 2 d), which add up."""
+    """Convert errors of loads (..., S, 1 + 2 d) to errors of outputs (..., S, K); errors add up."""
     weights = np.abs(outputs.matrix)
-    with np.errstate(invalid="ignore"):  # what is infinite does not matter where it has no weight
+    with np.errstate(invalid="ignore"):  # infinite errors do not matter where they have no weight
         return np.where(weights != 0, weights * errors[..., None, :], 0.0).sum(axis=-1)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import kind, one_of
+from beamdyn.common.results.pictures import Axes
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.loads import span_loads
 from beamdyn.loads.load_rows import LoadRows, span_rows
@@ -29,18 +30,15 @@ from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.response import SteadyResponse
 from beamdyn.steady.vibration import combine_pairs, vibration_of
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_BATCH = 2000  # sums of lines whose largest values are sought at once
-_NEGLIGIBLE = 1e-12  # size of a line of the tip, over the sum of all, below which it is left out
+_BATCH = 2000  # number of sums of lines whose largest values are sought at once
+_NEGLIGIBLE = 1e-12  # size of a line of the tip, relative to the sum of all, below which it is left out
 
 
 @dataclass(frozen=True)
 class SteadyLoads(span_loads.SpanLoads):
     """Loads along the span in steady response at C speeds: largest magnitudes over both phases.
 
-    The fields are those of `SpanLoads` and, besides, the following; values are nan where there is no steady
+    The fields are those of `SpanLoads`, and the following; values are nan where there is no steady
     response.
 
     Parameters
@@ -50,7 +48,7 @@ class SteadyLoads(span_loads.SpanLoads):
     harmonics : ndarray of int, shape (l, 2)
         Multiples j of the rotation and k of the road of each line.
     lines : tuple of Line, length l
-        The lines of the loads; the static one has the mean.
+        Lines (frequencies) of the loads, named by what excites them; the static line is the mean.
 
     Examples
     --------
@@ -71,7 +69,7 @@ class SteadyLoads(span_loads.SpanLoads):
     case: ClassVar[span_loads.LoadCase] = span_loads.SPEEDS
 
     def line_amplitude(self, quantity: str) -> np.ndarray:
-        """Complex amplitude a of each line of a quantity: shape (C, S, k, l).
+        """Return complex amplitudes a of each line of a quantity: shape (C, S, k, l).
 
         The quantity is the sum of Re(a exp(i (j theta + k chi))), as in `SteadyResponse`.
         """
@@ -79,14 +77,14 @@ class SteadyLoads(span_loads.SpanLoads):
         return self._amplitudes[:, :, self.outputs.places[quantity]]
 
     def mean(self, quantity: str) -> np.ndarray:
-        """Mean of a quantity over the phases: shape (C, S, k)."""
+        """Compute the mean of a quantity over the phases: shape (C, S, k)."""
         static = ~self.harmonics.any(axis=1)
         return np.real(self.line_amplitude(quantity)[..., static]).sum(axis=-1)
 
     def at_phases(
         self, quantity: str, rotation: np.ndarray | float, road: np.ndarray | float = 0.0
     ) -> np.ndarray:
-        """A quantity at phases theta and chi [rad] of shape (...): shape (C, S, k, ...)."""
+        """Evaluate a quantity at phases of rotation and road [rad] of shape (...): shape (C, S, k, ...)."""
         angle, wave = np.broadcast_arrays(rotation, road)
         phase = np.tensordot(self.harmonics, np.stack([angle, wave]), axes=1)
         return np.real(np.tensordot(self.line_amplitude(quantity), np.exp(1j * phase), axes=1))
@@ -101,7 +99,7 @@ class SteadyLoads(span_loads.SpanLoads):
 
     @cached_property
     def _amplitudes(self) -> np.ndarray:
-        """Amplitudes (C, S, K, l) of all outputs."""
+        """Amplitudes (C, S, K, l) of the lines of all outputs."""
         stations = SpanStations(self.x / self.scene.beam.length, self.inboard)
         return lines_of_response(self.response, stations, self.outputs).amplitude
 
@@ -113,7 +111,7 @@ def steady_loads(
     points: SectionPoints | None = None,
     youngs_modulus: float | None = None,
 ) -> SteadyLoads:
-    """Compute the loads along the span in steady response, from its loads and inertia.
+    """Compute the loads along the span in steady response, from external forces and inertia.
 
     Parameters
     ----------
@@ -169,17 +167,19 @@ def steady_loads(
     )
 
 
-# Lines of the loads -------------------------------------------------------------------------------
+# Computation of the lines of the loads ------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class LoadLines:
     """Outputs at stations as sums of lines Re(a exp(i (j theta + k chi))).
 
+    The phases are theta of the rotation and chi of the road.
+
     Parameters
     ----------
     harmonics : ndarray of int, shape (l, 2)
-        j and k of each line; of a harmonic and its opposite, the one of positive frequency.
+        Harmonic (j, k) of each line; of two opposite harmonics, the one of positive frequency.
     amplitude : ndarray of complex, shape (C, S, K, l)
         Amplitudes a at C speeds, S stations, of K outputs; nan where there is no steady response.
     of_harmonics : ndarray, shape (C, S, K)
@@ -192,7 +192,7 @@ class LoadLines:
 
     @cached_property
     def largest(self) -> np.ndarray:
-        """Largest magnitudes over both phases: shape (C, S, K)."""
+        """Compute the largest magnitudes over both phases: shape (C, S, K)."""
         flat = self.amplitude.reshape(-1, 1, len(self.harmonics))
         found, known = np.full(len(flat), np.nan), np.flatnonzero(np.isfinite(flat).all(axis=(1, 2)))
         for some in np.array_split(known, 1 + len(known) // _BATCH):
@@ -200,9 +200,9 @@ class LoadLines:
         return found.reshape(self.amplitude.shape[:-1])
 
     def distance_from(self, other: LoadLines) -> np.ndarray:
-        """Sum over the lines of the distances of the amplitudes from those of another solution (C, S, K).
+        """Sum the distances of all lines' amplitudes from another solution: shape (C, S, K).
 
-        Infinite where one of the two alone has a steady response.
+        The sum is inf where only one of the two has a steady response.
         """
         names = [*dict.fromkeys([*map(tuple, self.harmonics), *map(tuple, other.harmonics)])]
         difference = np.abs(self._over(names) - other._over(names)).sum(axis=-1)
@@ -210,7 +210,7 @@ class LoadLines:
         return np.where(known[0] ^ known[1], np.inf, difference)
 
     def _over(self, names: list[tuple[int, ...]]) -> np.ndarray:
-        """Amplitudes over the lines of these names, 0 for those that are missing."""
+        """Select the amplitudes of named lines; missing lines are 0."""
         found = np.zeros((*self.amplitude.shape[:-1], len(names)), dtype=complex)
         found[..., [names.index(tuple(h)) for h in self.harmonics]] = self.amplitude
         return found
@@ -219,7 +219,7 @@ class LoadLines:
 def lines_of_response(
     response: SteadyResponse, stations: SpanStations, outputs: StationOutputs | None = None
 ) -> LoadLines:
-    """Find the lines of loads in a steady response.
+    """Compute the lines of loads in a steady response.
 
     Parameters
     ----------
@@ -243,7 +243,7 @@ def lines_of_response(
     rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
     used = dict.fromkeys([*rows.load, *rows.position, *rows.velocity])
     spectra = periodic_system.expand_quantities(equations, used, motion, speeds)
-    reached = set(pairs) | {(0, 0)}  # harmonics of coordinates and root, then those of their products
+    reached = set(pairs) | {(0, 0)}  # harmonics of coordinates and root, followed by those of their products
     for quantity in rows.load:
         reached |= periodic_system.list_harmonics(spectra[quantity])
     for quantity in (*rows.position, *rows.velocity):
@@ -259,15 +259,15 @@ def lines_of_response(
 def _solve(
     response: SteadyResponse, equations: Equations
 ) -> tuple[list[periodic_system.Pair], np.ndarray, np.ndarray]:
-    """Solve for the coordinates with the harmonics of one interaction more than in the response.
+    """Solve for the coordinates with one more interaction's harmonics than the response has.
 
-    Lines of the tip within rounding error at all speeds are left out.
+    Lines of the tip that are within rounding error at all speeds are left out.
 
     Returns
     -------
     harmonics : list of pair, length H
     coordinates, truncated : ndarray of complex, shape (C, H, n)
-        With all harmonics, and without those of the further interaction, to estimate the error.
+        Coordinates with all harmonics, and without the further interaction's, to estimate the error.
     """
     request = response.request
     vibration = vibration_of(request.model, request.basis, request.scene.motion, response.speeds)
@@ -295,7 +295,7 @@ def _expand(
     rates: np.ndarray,
     q: np.ndarray,
 ) -> np.ndarray:
-    """Complex harmonics (C, S, K, U) of the outputs; the U harmonics include those of the coordinates."""
+    """Compute complex harmonics (C, S, K, U) of outputs; the U harmonics include the coordinates'."""
     everywhere = np.zeros((len(rates), len(union), q.shape[-1]), dtype=complex)
     everywhere[:, [union.index(h) for h in pairs]] = q
     velocity = 1j * (rates @ np.array(union).T)[..., None] * everywhere

@@ -1,20 +1,21 @@
-"""Loads along the span during a transient."""
+"""Loads along the span during a transient, with their extremes and errors."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, ascending, kind, real
 from beamdyn.common.plots.curves import plot_load_over_time
+from beamdyn.common.results.pictures import Axes
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.loads import span_loads
 from beamdyn.loads.load_path import LoadPath
-from beamdyn.loads.stations import UNITS, Positions, SectionPoints
+from beamdyn.loads.stations import SHOWN, Positions, SectionPoints
 from beamdyn.modes.modal.modal_basis import find_speed_range
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
@@ -22,23 +23,20 @@ from beamdyn.modes.repeated import BY_FREQUENCY, repeatable
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.simulate import Transient
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 _BY_DEFLECTION = "as of the largest deflection"
-_MOST_TIMES = 2000  # times of the result by default
+_MOST_TIMES = 2000  # largest number of times of the result by default
 
 
 @dataclass(frozen=True)
 class EquivalentRange:
-    """The range of equal cycles that do the damage of those counted at one station, by Miner's rule.
+    """Range of equal cycles that do the same damage as the counted ones at one station (Miner's rule).
 
     Parameters
     ----------
     quantity : str
         "force", "moment", "curvature", "strain" or "stress".
     component : int
-        Index of its component.
+        Index of the quantity's component.
     x : float
         Position along the beam [m].
     start, end : float
@@ -48,9 +46,9 @@ class EquivalentRange:
     cycles : float
         Number of equal cycles.
     range : float
-        Their range [unit of the quantity].
+        Range of the equal cycles [unit of the quantity].
     error : float
-        Its estimated absolute error [unit of the quantity].
+        Estimated absolute error of the range [unit of the quantity].
     """
 
     quantity: str
@@ -68,14 +66,14 @@ class EquivalentRange:
 class TransientLoads(span_loads.SpanLoads):
     """Loads along the span at C times of a transient.
 
-    The fields are those of `SpanLoads` and, besides:
+    The fields are those of `SpanLoads`, and the following.
 
     Parameters
     ----------
     t : ndarray, shape (C,)
         Times [s].
     equivalent_ranges : tuple of EquivalentRange
-        Ranges of equal cycles, where they were asked for, as by `beamdyn loads --woehler`.
+        Ranges of equal cycles, where they were requested, as by `beamdyn loads --woehler`.
 
     Notes
     -----
@@ -100,30 +98,33 @@ class TransientLoads(span_loads.SpanLoads):
 
     @property
     def run(self) -> Transient:
-        """The transient."""
+        """The transient that was analysed."""
         return self.path.run
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the largest value; not known where the run began at coordinates of its own model."""
+        """Changes of the largest value by effects left out; unknown if the run began at given coordinates."""
         from_rest = isinstance(self.run.request.initial, str)
         return super().left_out_effects if from_rest else nothing_known(self.scene)
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Largest value with an effect: by another run, or as its largest deflection changes."""
+        """Find the largest value with an effect, from another run or from the change of deflection."""
         return self.as_deflection(self.judged(self), name) or super().solve(scene, name)
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Values with large deflection, as the largest deflection of the run changes."""
+        """Estimate values with large deflection from the change of the run's largest deflection."""
         return self.as_deflection(straight, LARGE_DEFLECTION.name) or SolvedValues(straight, reason)
 
     @property
     def bending_speed(self) -> float:
-        """Largest speed of the run [rad/s]."""
+        """Largest speed of the run [rad/s], at which large deflection is judged."""
         return find_speed_range(self.run.request.motion, self.run.path.end)[-1]
 
     def as_deflection(self, value: np.ndarray, name: str) -> SolvedValues | None:
-        """A value with an effect that changes the run little, or large deflection; None with another."""
+        """Estimate a value with an effect by the change of the tip deflection; None if not applicable.
+
+        It applies to large deflection, and to effects judged by the frequency alone.
+        """
         of_run = self.run.left_out_effects
         if name != LARGE_DEFLECTION.name and of_run.assumed.get(name) != BY_FREQUENCY:
             return None
@@ -131,25 +132,25 @@ class TransientLoads(span_loads.SpanLoads):
         return SolvedValues(value * (1 + of_run.changes[name]), reason, _BY_DEFLECTION)
 
     def with_equivalent_ranges(self, found: tuple[EquivalentRange, ...]) -> TransientLoads:
-        """Copy with ranges of equal cycles, which can be judged as this one."""
+        """Copy the loads with ranges of equal cycles, whose model error can then be stated."""
         copy = replace(self, equivalent_ranges=found)
         vars(copy)["again"] = self.again
         return copy
 
     def at(self, quantity: str, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """A quantity at times t [s] (T,) of the run, ascending: shape (T, S, k)."""
+        """Evaluate a quantity at times t [s] (T,) of the run, ascending: shape (T, S, k)."""
         self.check_component(quantity, None)
         return self.path.at(_times_in(self.run, t))[..., self.path.outputs.places[quantity]]
 
     def peaks(
         self, quantity: str = "strain", start: float | None = None, end: float | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Values of largest magnitude from `start` to `end` [s], also between the times of the result.
+        """Find values of largest magnitude from `start` to `end` [s], also between the result's times.
 
         Returns
         -------
         values, times : ndarray, shape (S, k)
-            Each value with its sign, and when it is reached [s].
+            Values with their signs, and the times at which they are reached [s].
         """
         self.check_component(quantity, None)
         place = self.path.outputs.places[quantity]
@@ -199,10 +200,11 @@ class TransientLoads(span_loads.SpanLoads):
         return self.draw(ax, quantity, within, span_loads.with_unit(quantity))
 
     def plot_over_time(self, station: int = 0, quantity: str = "moment", ax: Axes | None = None) -> Axes:
-        """Draw a quantity over time at the station of an index, such as the root's bending moment."""
+        """Draw a quantity over time at a station given by its index, such as the root's bending moment."""
         values, labels = self.values(quantity)[:, station], self.components(quantity)
-        label = f"{quantity} at {self.x[station]:.6g} m [{UNITS[quantity] or '-'}]"
-        return plot_load_over_time(self.t, values, labels, label, ax)
+        scale, unit = SHOWN[quantity]
+        label = f"{quantity} at {self.say_length(self.x[station])} [{unit}]"
+        return plot_load_over_time(self.t, scale * values, labels, label, ax)
 
 
 @repeatable
@@ -213,7 +215,7 @@ def transient_loads(
     t: np.ndarray | Sequence[float] | None = None,
     youngs_modulus: float | None = None,
 ) -> TransientLoads:
-    """Compute the loads along the span during a transient, from its loads and inertia.
+    """Compute the loads along the span during a transient, from external forces and inertia.
 
     Parameters
     ----------
@@ -262,7 +264,7 @@ def transient_loads(
 
 
 def _times_in(run: Transient, t: np.ndarray | Sequence[float] | float) -> np.ndarray:
-    """Times (T,) [s] that lie in the run."""
+    """Check that times (T,) [s] are within the run."""
     times = ascending("t", t)
     if not (times.min() >= run.path.start and times.max() <= run.path.end * (1 + 1e-12)):
         bound = f"times must lie in the run, from {run.path.start:g} to {run.path.end:g} s"
@@ -271,7 +273,7 @@ def _times_in(run: Transient, t: np.ndarray | Sequence[float] | float) -> np.nda
 
 
 def window_in(run: Transient, start: float | None, end: float | None) -> tuple[float, float]:
-    """A time window [s] of a run, which is the whole run if it is not given."""
+    """Check a time window [s] of a run; the default is the whole run."""
     path = run.path
     first = path.start if start is None else real("start", start, "s")
     last = path.end if end is None else real("end", end, "s")

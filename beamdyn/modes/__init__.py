@@ -1,1 +1,1 @@
-"""Natural modes at steady speed, the speeds at which they vanish, and guaranteed bounds."""
+"""Natural modes at steady speed, critical speeds, equilibria, and guaranteed bounds of frequencies."""

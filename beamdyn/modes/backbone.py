@@ -1,4 +1,4 @@
-"""Frequency over amplitude, to first order, of a beam of any deflection about its equilibrium.
+"""Backbone curve: frequency over amplitude, to first order, for a beam about its equilibrium.
 
 A free vibration x = eps w + eps^2 z of an undamped beam, w = Re(v exp(i tau)) a mode, has the angular
 frequency omega + eps^2 omega_2 (Lindstedt and Poincare).  The forces that are even in w give the steady part
@@ -9,13 +9,14 @@ are those of the full equations at a small eps, from two of which the limit eps 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
 
 import numpy as np
 
-from beamdyn.accuracy.refinement import SLOW_BASES
+from beamdyn.accuracy.refinement import THREE_DISCRETIZATIONS, error_of_finest
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
@@ -30,7 +31,7 @@ from beamdyn.modes.modes import provenance_of
 from beamdyn.modes.repeated import left_out_of_frequencies
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds
+from beamdyn.scene.validity import check_speeds, refuse_tip_load
 
 
 @dataclass(frozen=True)
@@ -49,13 +50,13 @@ class Backbone(StatesModelError):
     frequency : float
         Frequency f0 of small vibration [Hz].
     coefficient : float
-        The nondimensional coefficient k; a is the longer semi-axis of the path of the tip, L the length [m].
+        Nondimensional coefficient k; a is the longer semi-axis of the tip's path, L the length [m].
     error : float
-        Estimated absolute error of the coefficient, which is nondimensional as that is.
+        Estimated absolute error of the coefficient, a ratio.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How it was found.
+        Program version, discretization and computing time.
 
     Examples
     --------
@@ -75,22 +76,19 @@ class Backbone(StatesModelError):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the one-line summary of the backbone; see `Result.headline`."""
         yield f"mode {self.mode} at {self.say_speed(self.speed)}: {number(self.frequency, 'Hz')}"
-        yield from (
-            f"coefficient {number(self.coefficient)}",
-            error_at_most(self.error),
-            warned(self.warnings),
-        )
+        yield f"coefficient {number(self.coefficient)}"
+        yield from (error_at_most(self.error), warned(self.warnings))
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the frequency of small vibration by the effects left out, of shape ()."""
+        """Changes of the small-vibration frequency by the effects left out of the model, of shape ()."""
         effects = left_out_of_frequencies(self.scene, self.speed, self.mode)
         return replace(effects, unlisted=()).at(self.mode - 1)
 
     def at(self, amplitude: np.ndarray | float) -> np.ndarray:
-        """Frequency [Hz] at amplitudes of the tip [m]."""
+        """Compute the frequency [Hz] at amplitudes of the tip [m]."""
         return self.frequency * (1 + self.coefficient * (np.asarray(amplitude) / self.scene.beam.length) ** 2)
 
 
@@ -140,6 +138,7 @@ def backbone(
     """
     start = perf_counter()
     check_scene(scene)
+    refuse_tip_load(scene)
     speeds, mode = np.array([real("speed", speed, "rad/s")]), count("mode", mode)
     check_speeds(speeds, "speed")
     scene = replace(scene.undamped, physics=scene.physics.with_large_deflection())
@@ -149,29 +148,49 @@ def backbone(
     if not (s.imag > 0 and s.real <= 0):
         bound = f"it does not vibrate about the equilibrium at {speeds[0]:g} rad/s"
         raise InvalidValue("mode", mode, bound, 'another speed or Physics(branch="bent")')
-    models = solution.model, solution.model.coarser
-    found = [FreeVibration.of(model, float(speeds[0]), mode) for model in models]
-    k, coarse = (each.coefficient(SMALL / 2) for each in found)
+    found = FreeVibration.of(solution.model, float(speeds[0]), mode)
+    k, coarse, coarsest = found.coefficient(SMALL / 2), *_coarser_coefficients(solution.model, speeds, mode)
+    is_compared = solution.model.coarser.solver.size < solution.model.solver.size
+    before = coarse - coarsest if abs(k - coarse) < _STEADY * abs(k) else np.nan
+    of_basis = float(error_of_finest(THREE_DISCRETIZATIONS, k - coarse, before, _ROUNDED * abs(k)))
     return Backbone(
         speed=float(speeds[0]),
         mode=mode,
         frequency=float(s.imag / (2 * np.pi)),
         coefficient=k,
-        error=SLOW_BASES.factor * abs(k - coarse) + abs(k - found[0].coefficient(SMALL)),
-        warnings=tuple(found[0].warnings()),
+        error=_OF_AMPLITUDE * abs(k - found.coefficient(SMALL)) + (of_basis if is_compared else np.inf),
+        warnings=tuple(found.warnings()),
         provenance=provenance_of(solution, start),
         scene=scene,
     )
 
 
-SMALL = 0.02  # amplitude of the tip over the length, and half of it
-_SAMPLES = 16  # samples of a period: harmonics up to the seventh are apart
-_RESONANT = 1e-3  # condition of the dynamic stiffness below which a second harmonic is a mode
+def _coarser_coefficients(model: Model, speeds: np.ndarray, mode: int) -> tuple[float, float]:
+    """Compute the coefficient by the two coarser models; nan if the coarsest has no such mode.
+
+    The coarser of the two has the mode, as its frequency has an error.
+    """
+    coarse, coarsest = model.coarser, model.coarser.coarser
+    found = FreeVibration.of(coarse, float(speeds[0]), mode).coefficient(SMALL / 2)
+    with suppress(ArithmeticError, np.linalg.LinAlgError):  # the coarsest may have no equilibrium
+        if coarsest.solver.size >= mode:
+            return found, FreeVibration.of(coarsest, float(speeds[0]), mode).coefficient(SMALL / 2)
+    return found, np.nan
+
+
+# Amplitude of the tip over the length: the change of frequency is found at half of it, and its error by the
+# difference from that at the whole.
+SMALL = 0.02
+_OF_AMPLITUDE = 2.0  # the difference may be rounding, of which it is a single sample
+_STEADY = 1e-3  # relative distance of coefficients below which bases converge steadily
+_ROUNDED = 1e-7  # relative distance of coefficients up to which it may be that of rounding, over eps^2
+_SAMPLES = 16  # samples of a period, which separate harmonics up to the seventh
+_RESONANT = 1e-3  # condition of the dynamic stiffness below which a second harmonic resonates with a mode
 
 
 @dataclass(frozen=True)
 class FreeVibration:
-    """Vibration of a mode about an equilibrium.
+    """Free vibration of a beam in one mode about an equilibrium.
 
     Parameters
     ----------
@@ -180,7 +199,7 @@ class FreeVibration:
     speed, omega : float
         Speed, and angular frequency of the mode [rad/s].
     vector : ndarray of complex, shape (n,)
-        The mode, for which the tip moves by the length of the beam.
+        The mode, scaled so that the tip moves by the length of the beam.
     """
 
     state: BentState
@@ -190,7 +209,7 @@ class FreeVibration:
 
     @classmethod
     def of(cls, model: Model, speed: float, mode: int) -> FreeVibration:
-        """Mode of a number about the equilibrium of a model."""
+        """Find the mode of a given number about the equilibrium of a model."""
         solver = model.solver
         assert isinstance(solver, DeflectedSolver)
         found = solver.solve(np.array([speed]), mode)
@@ -200,25 +219,25 @@ class FreeVibration:
         return cls(state, speed, float(found.eigenvalue[0, mode - 1].imag), v * state.of.length / size)
 
     def coefficient(self, small: float) -> float:
-        """Relative change of the frequency over the squared relative amplitude, extrapolated to none."""
+        """Compute the frequency's relative change over the squared relative amplitude, in the limit of 0."""
         rough, fine = (self._shift(eps) for eps in (small, small / 2))
         return (4 * fine - rough) / (3 * self.omega)
 
     def warnings(self) -> list[str]:
-        """Say where the second harmonic is near a mode, which then vibrates too."""
+        """List a warning if the second harmonic is near a mode, which then vibrates, too."""
         values = np.abs(np.linalg.eigvals(np.linalg.solve(self._dynamic(0), self._dynamic(2))))
-        near = values.min() < _RESONANT * 3  # 3: of the mode itself, |1 - 2^2|
+        near = values.min() < _RESONANT * 3  # the factor 3 is that of the mode itself, |1 - 2^2|
         return ["twice the frequency is near that of another mode: the two exchange energy"] if near else []
 
     def _dynamic(self, harmonic: int) -> np.ndarray:
-        """Dynamic stiffness (n, n) at a multiple of the frequency."""
+        """Compute the dynamic stiffness (n, n) at a multiple of the frequency."""
         state, w, pencil = self.state, harmonic * self.omega, self.state.linearized().steady()
         return (
             pencil.K0 + self.speed**2 * pencil.K2 + 1j * w * self.speed * state.gyroscopic - w**2 * state.mass
         )
 
     def _shift(self, eps: float) -> float:
-        """Change of the angular frequency over eps^2 [rad/s]."""
+        """Compute the change of the angular frequency over eps^2 [rad/s] at a small amplitude eps."""
         v, state = self.vector, self.state
         even = (self._forces({1: eps * v}) + self._forces({1: -eps * v})) / (2 * eps**2)
         z = {h: -np.linalg.solve(self._dynamic(h), _harmonic(even, h)) for h in (0, 2)}
@@ -228,7 +247,7 @@ class FreeVibration:
         return float(np.real(v.conj() @ _harmonic(odd, 1)) / np.real(v.conj() @ slope @ v))
 
     def _forces(self, harmonics: dict[int, np.ndarray]) -> np.ndarray:
-        """Residual (_SAMPLES, n) over a period of a motion with given harmonics about the equilibrium."""
+        """Compute the residual (_SAMPLES, n) over a period of a motion with given harmonics."""
         phase = 2 * np.pi * np.arange(_SAMPLES) / _SAMPLES
         waves = {h: np.exp(1j * h * phase)[:, None] * x for h, x in harmonics.items()}
         q, rate, acceleration = (
@@ -241,5 +260,5 @@ class FreeVibration:
 
 
 def _harmonic(samples: np.ndarray, harmonic: int) -> np.ndarray:
-    """Complex amplitude (n,) of a harmonic of samples (_SAMPLES, n) over a period."""
+    """Compute the complex amplitude (n,) of a harmonic from samples (_SAMPLES, n) over a period."""
     return np.fft.fft(samples, axis=0)[harmonic] * (2 if harmonic else 1) / _SAMPLES

@@ -1,6 +1,6 @@
-"""Guaranteed bounds, from below and above, of the natural frequencies of bending, and of critical speeds.
+"""Guaranteed lower and upper bounds of natural frequencies of bending, and of critical speeds.
 
-The theorem is that of `beamdyn.modes.residual_bound`; here, the Ritz part grows until they hardly narrow.
+The theorem is in `beamdyn.modes.residual_bound`; here, the Ritz part grows until the bounds hardly narrow.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import count, real
 from beamdyn.common.results.one_line import listed, spanned, warned
@@ -31,13 +30,15 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection
 
 _EPS = float(np.finfo(float).eps)
-_NARROW = 1e-11  # relative width of the squares below which the basis is not enlarged
-_RESOLVED = 1e-8  # the same of two coupled planes, whose heads are twice as large: some times the allowances
-_PROOF_SIZES = (24, 48, 96)  # functions on all segments with which a bound of the critical speed is sought
-_CLOSE = 1 - 1e-6  # part of the squared Ritz value at which such a bound is close enough
-# The parts of the squared Ritz value that are tried as such a bound.
+_NARROW = 1e-11  # relative width of the bounds of squares below which the basis is not enlarged
+# Relative width of the bounds of squares below which the basis is not enlarged, for two coupled planes: their
+# Ritz parts are twice as large, and this is some times the rounding allowances.
+_RESOLVED = 1e-8
+_PROOF_SIZES = (24, 48, 96)  # sizes of bases, on all segments, tried for a bound of the critical speed
+_CLOSE = 1 - 1e-6  # fraction of the squared Ritz value at which a bound is close enough
+# Fractions of the squared Ritz value that are tried as bounds of the critical speed.
 _SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
-_OF_DEFLECTION = 1e-3  # relative error of a model of which the static deflection is read
+_OF_DEFLECTION = 1e-3  # relative error of the model from which the static deflection is taken
 
 
 @dataclass(frozen=True)
@@ -54,11 +55,11 @@ class FrequencyBounds(Result):
         Bounds of the squared angular frequency [rad2/s2], negative for an unstable mode; nan where
         none is guaranteed.
     width : ndarray, shape (m,)
-        Relative width upper / lower - 1; nan where a bound is.
+        Relative width upper / lower - 1; nan where a bound is nan.
     how : str
         Argument by which the bounds are guaranteed.
     warnings : tuple of str
-        Bounds that are missing, and why; that rotation bends the beam too far for the model they are of.
+        Bounds that are missing, and why; also if rotation bends the beam too far for the model.
     provenance : Provenance
         Program version, discretization and computing time.
 
@@ -83,7 +84,7 @@ class FrequencyBounds(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the one-line summary of the bounds; see `Result.headline`."""
         yield f"{len(self.lower)} at {self.say_speed(self.speed)}: {listed(self.upper, 'Hz')}"
         yield from (f"relative width {spanned(self.width)}", warned(self.warnings))
 
@@ -92,7 +93,7 @@ class FrequencyBounds(Result):
 def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> FrequencyBounds:
     """Compute guaranteed lower and upper bounds of the natural frequencies of bending at a steady speed.
 
-    They hold for the Euler-Bernoulli model without damping, in one plane or in two, which the twist or the
+    The bounds hold for the undamped Euler-Bernoulli model, in one plane or in two, which the twist or the
     bending angle may couple; see docs/bounds.md.
 
     Parameters
@@ -158,15 +159,15 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
         width=high / low - 1,
         how="above: Rayleigh-Ritz; below: the same less a bound of the coupling to all other functions",
         warnings=(*warn_of_plain(unresolved), *_warnings(lower, upper), *bent),
-        provenance=Provenance(__version__, str(method), "its complement", perf_counter() - start),
+        provenance=Provenance.since(start, str(method), "its complement"),
         scene=scene,
     )
 
 
 def _lowest(of_planes: Sequence[np.ndarray], modes: int, missing: float) -> np.ndarray:
-    """The lowest bounds of all planes together, ascending; nan where none is known.
+    """Merge the bounds of all planes, and return the lowest, ascending; nan where none is known.
 
-    One that is missing in a plane is -inf from below, or what bounds the mode before it, and inf from above.
+    A missing lower bound is -inf, or the bound of the mode before; a missing upper bound is inf.
     """
     if len(of_planes) == 1:
         return of_planes[0][:modes]
@@ -181,7 +182,7 @@ def _widen(values: np.ndarray, units: int) -> np.ndarray:
 
 
 def _frequency(squared: np.ndarray, units: int) -> np.ndarray:
-    """Frequencies [Hz] of squared angular frequencies, moved by rounding units; nan where not positive."""
+    """Convert squared angular frequencies to frequencies [Hz], moved by rounding units; nan if negative."""
     return _widen(np.sqrt(np.where(squared > 0, squared, np.nan)) / (2 * np.pi), units)
 
 
@@ -204,7 +205,7 @@ def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[Statement]:
 
 
 def _nondimensional(scene: Scene) -> tuple[Scene, float]:
-    """Scale a scene to unit length, mass and stiffness, and compute its unit of time [s]."""
+    """Scale a scene to unit length, mass and stiffness, and return its unit of time [s], too."""
     beam, length = scene.beam, scene.beam.length
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
@@ -224,7 +225,7 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
 def bound_critical_speed(scene: Scene) -> float:
     """Compute a guaranteed lower bound of the critical speed of bending [rad/s]; 0 if none is proved.
 
-    By the theorem of this module with z = 0 and k = 1: the stiffness at that speed, and so at every slower
+    The theorem with z = 0 and k = 1 proves the stiffness at that speed, and so at every slower
     one, is positive.
     """
     scaled, time = _nondimensional(scene)
@@ -234,7 +235,7 @@ def bound_critical_speed(scene: Scene) -> float:
     sizes = iter(_PROOF_SIZES)
 
     def finer(found: tuple[float, float]) -> tuple[float, float] | None:
-        """Largest squared speed for which the stiffness is proved positive, and the Ritz value."""
+        """Find the largest squared speed at which the stiffness is proved positive, and the Ritz value."""
         if (total := next(sizes, None)) is None:
             return None
         part = PlaneEnclosure(scaled, min(most, max(6, total // segments)), 1.0, flexibility)
@@ -250,11 +251,11 @@ def bound_critical_speed(scene: Scene) -> float:
     return float(_widen(np.sqrt(np.array(proved)), -8) / time)
 
 
-# The search ---------------------------------------------------------------------------------------
+# Search for narrow bounds ---------------------------------------------------------------------------
 
 
 def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
-    """Bounds of the squared angular frequencies in one plane, or in two coupled ones, and the last basis."""
+    """Bound the squared angular frequencies in one plane or two coupled ones; return the last basis, too."""
     scaled, time = _nondimensional(scene)
     beam, speed = scaled.beam, speed * time
     first = bound_flexibility(beam.bending_stiffness)
@@ -277,17 +278,19 @@ def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.nda
     return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, ritz
 
 
-_Found: TypeAlias = tuple[np.ndarray, np.ndarray, int, np.ndarray]  # bounds, size, and the width before
+# Bounds, size of the basis, and the width before.
+_Found: TypeAlias = tuple[np.ndarray, np.ndarray, int, np.ndarray]
 
 
 def _narrow(
     enclosure: Callable[[int], Enclosure], sizes: Iterator[int], modes: int, narrow: float
 ) -> tuple[np.ndarray, np.ndarray, int]:
-    """Bounds of z from growing bases, until they hardly narrow, and the size of the last."""
+    """Compute bounds from growing bases until they hardly narrow, and the size of the last basis."""
 
     def finer(found: _Found) -> _Found | None:
         lower, upper, _, _ = found
-        with suppress(StopIteration, np.linalg.LinAlgError):  # rounding of so many functions at such a speed
+        # So many functions may fail by rounding at such a speed.
+        with suppress(StopIteration, np.linalg.LinAlgError):
             size = next(sizes)
             low, high = enclosure(size).bounds(modes)
             return np.fmax(lower, low), np.fmin(upper, high), size, upper - lower
@@ -303,7 +306,7 @@ def _narrow(
 
 
 def _growing(size: int, most: int) -> Iterator[int]:
-    """Yield growing numbers of functions."""
+    """Yield increasing numbers of functions, from `size` up to `most`."""
     while size < most:
         yield size
         size = 4 * size // 3

@@ -1,4 +1,4 @@
-"""Whether rotation buckles a beam at any speed, decided without a search for that speed.
+"""Decision whether rotation buckles a beam at any speed, made without a search for that speed.
 
 A critical speed exists exactly if some deflection u lowers the form that multiplies the squared speed,
 
@@ -93,30 +93,32 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # rounding error of a sum, relative to its terms
-_SHORTEST = 1e-12  # distance from the tip below which a point mass stands there, as x/L
-_STRING_SIZES = 60, 100  # functions on all segments together, in two bases that must agree
-_RESOLVED = 10  # distance of an eigenvalue from its limit, relative to that of the two bases
-_CELLS = 2000  # cells of the midpoint rule on all segments together
+_SHORTEST = 1e-12  # distance of a point mass from the tip, as x/L, below which it counts as at the tip
+_STRING_SIZES = 60, 100  # numbers of functions, on all segments together, of two bases that must agree
+# Smallest distance of an eigenvalue from its limit, relative to the difference of the two bases.
+_RESOLVED = 10
+_CELLS = 2000  # number of cells of the midpoint rule on all segments together
 _MARGIN = 1.01  # factor that allows for the error of the midpoint rule
-_LARGE_STRAIN = 0.01  # axial, in order of magnitude (speed L / speed of sound)^2: linear theory ends
-_ALIGNED = 1e-14  # product of inertia relative to the moments below which a body is not oblique
+# Axial strain, in order of magnitude (speed L / speed of sound)^2, at which linear theory ends.
+_LARGE_STRAIN = 0.01
+_ALIGNED = 1e-14  # product of inertia, relative to the moments, below which a body is not oblique
 
 
 @dataclass(frozen=True)
 class Buckling:
-    """Whether a beam in bending has a critical speed.
+    """Decision whether a beam in bending has a critical speed, with the argument.
 
     Parameters
     ----------
     exists : bool or None
-        None if this could not be decided.
+        Whether there is a critical speed; None if this could not be decided.
     why : str
-        The argument, in words.
+        The argument that decides, in words.
     speed : float or None
         Critical speed [rad/s], where the argument supplies it: 0 if the beam is unstable at every speed, inf
-        if its axial strain passes 1 % first; None if it is to be sought.
+        if its axial strain passes 1 % first; None if a search is needed.
     none_below : float
-        Where only the inertia of tilting sections can buckle the beam: a speed [rad/s] below which it does
+        Where only the inertia of tilting sections can buckle the beam, a speed [rad/s] below which it does
         not; else 0.
     """
 
@@ -129,7 +131,7 @@ class Buckling:
 def decide_buckling(scene: Scene) -> Buckling:
     """Decide whether bending has a critical speed, by the arguments in the docstring of this module.
 
-    They do not hold where offsets of sections couple it with torsion.
+    The arguments do not hold where offsets of sections couple bending with torsion.
     """
     if scene.physics.torsion and scene.beam.has_offsets:
         return Buckling(None, "no argument covers sections with offsets")
@@ -137,7 +139,7 @@ def decide_buckling(scene: Scene) -> Buckling:
         return Buckling(True, "the rotation turns the beam about its hinge", speed=0.0)
     beam, tip = scene.modelled_beam, scene.beam.tip or TipMass(0.0)
     cosine, sine = exact_cos_sin(scene.mount.precone)
-    slope2, a = (sine / cosine) ** 2, _inward(scene) / cosine  # 0 without precone
+    slope2, a = (sine / cosine) ** 2, _inward(scene) / cosine  # both are 0 without precone
     if scene.physics.planes == 1:
         cos2, sin2 = (v**2 for v in aligned_cos_sin(scene.mount.bending_angle))
         tilt = (sin2 - slope2) * (tip.inertia_about_bending_direction - tip.axial_inertia)
@@ -161,18 +163,18 @@ def decide_buckling(scene: Scene) -> Buckling:
 
 
 def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> Buckling:
-    """Decide for a slender beam in one plane, at last by the string: if its lowest eigenvalue > 1, F >= 0.
+    """Decide for a slender beam in one plane, finally by the string: F >= 0 if its lowest eigenvalue > 1.
 
-    The numbers are the distance a of the root from the axis, against the direction of the beam [m], c^2 and
-    s^2, and what is said of J_e - J_1 [kg m2].
+    The arguments are the distance a of the root from the axis, against the direction of the beam [m], c^2 and
+    s^2, and terms of J_e - J_1 [kg m2].
     """
     L, tip = beam.length, beam.tip or TipMass(0.0)
     m, eps, reach, (xi, lumped) = tip.mass, tip.offset, L + tip.offset - a, beam.lumps
     n_a, n_b = (float(n(np.zeros(1))[0]) for n in axial_tension(beam))
     lump = float(lumped[xi > 1 - _SHORTEST].sum())
     at_root, at_tip = _sum(n_b, -a * n_a), _sum((m + lump) * L, m * eps, -(m + lump) * a)
-    toppling = _sum(tilt, m * eps * L, -m * eps * a, m * eps * sin2 * eps)  # T_22
-    coupling = cos2 * m * eps  # -T_12
+    toppling = _sum(tilt, m * eps * L, -m * eps * a, m * eps * sin2 * eps)  # T_22 of this module's matrix T
+    coupling = cos2 * m * eps  # -T_12 of the matrix T in the docstring of this module
     if at_root < 0 or at_tip < 0:
         return Buckling(True, "the rotation compresses a part of the beam")
     if toppling < 0 or (toppling == 0 and coupling):
@@ -194,7 +196,7 @@ def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float
 
 
 def _lowest_of_string(beam: Beam, a: float, cos2: float, end_mass: float, size: int) -> float:
-    """Lowest ratio of the work of the tension to that of the spin, by a Ritz basis: never too low."""
+    """Compute an upper bound of the string's lowest ratio of work of tension to that of spin (Ritz)."""
     space = Ritz(max(2, size // (len(beam.breakpoints) - 1))).spaces(beam).functions(FIXED)
     n_a, n_b = axial_tension(beam)
     tension = space.gram(n_b, 1) - a * space.gram(n_a, 1)
@@ -205,23 +207,24 @@ def _lowest_of_string(beam: Beam, a: float, cos2: float, end_mass: float, size: 
 
 
 def _sum(*terms: float) -> float:
-    """Add terms; 0 if the sum is within their rounding errors.
+    """Add numbers; 0 if the sum is within their rounding errors.
 
-    A critical speed that hangs on less than these errors lies beyond 1e6 sqrt(EI / (rho A L^4)).
+    A critical speed that depends on less than these errors lies beyond 1e6 sqrt(EI / (rho A L^4)).
     """
     total = math.fsum(terms)
     return total if abs(total) > _ROUNDING * math.fsum(map(abs, terms)) else 0.0
 
 
 def _inward(scene: Scene) -> float:
-    """Distance a of the root from the axis of rotation, against the direction of the beam [m]."""
+    """Compute the root's distance a from the axis of rotation, against the direction of the beam [m]."""
     return scene.mount.radius * aligned_cos_sin(scene.mount.setting_angle)[0]
 
 
 def _least_turning(scene: Scene) -> float:
-    """Least of the form F over rigid turns about a hinge, of unit angle [kg m2]; inf without a hinge."""
+    """Compute the minimum of this module's form F over unit turns about a hinge [kg m2]; inf if clamped."""
     springs = scene.mount.root_stiffnesses[: scene.physics.planes]
-    held = [scene.beam.springs(direction)[1].size > 0 for direction in range(len(springs))]  # by springs
+    # Springs along the beam hold it in these directions.
+    held = [scene.beam.springs(direction)[1].size > 0 for direction in range(len(springs))]
     hinges = np.flatnonzero((np.array(springs) == 0) & ~np.array(held))
     if not hinges.size:
         return math.inf
@@ -242,11 +245,11 @@ def _least_turning(scene: Scene) -> float:
     return least if abs(least) > _ROUNDING * size else 0.0
 
 
-# The inertia of what tilts --------------------------------------------------------------------------
+# Inertia of tilting sections and tip body ----------------------------------------------------------
 
 
 def _decide_toppling(scene: Scene) -> Buckling | None:
-    """Decide where the rotation stiffens the beam, but for the inertia of what tilts; None without any.
+    """Decide for a beam that rotation stiffens but for the inertia of tilting bodies; None if none tilts.
 
     Integrals are sums over n cells; tensors (n, 2, 2) have the directions in the plane of rotation and out of
     it.
@@ -264,15 +267,15 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
         return None
     bending = _tensor(beam, "bending_stiffness", xi, planes)
     springs = np.array(mount.root_stiffnesses)[:planes]
-    flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # flexibility by the smaller stiffness
-    root = np.diag([1 / k if k else 0.0 for k in springs])  # there is no bound with hinges that matter
+    flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # flexibility from the smaller bending stiffness
+    root = np.diag([1 / k if k else 0.0 for k in springs])  # with hinges that matter there is no bound
     by_bending = np.cumsum(np.linalg.inv(bending) * width[:, None, None], axis=0)
     C = components @ (root + by_bending) @ components.T
     torque, slope = np.cumsum((width * products)[::-1])[::-1] - body, np.sqrt(C[:, 0, 0])
     n_a, n_b = axial_tension(beam)
     at = np.append(xi[:-1], 1.0)  # the last cell has the value at the tip
     tension = n_b(at) - _inward(scene) * n_a(at)
-    ratios = [np.inf]  # r by the two arguments
+    ratios = [np.inf]  # candidates of r from the two arguments
     if not any(k == 0 and (n or oblique) for k, n in zip(springs, components[1], strict=True)):
         both = np.sqrt(C[:, 0, 0] * C[:, 1, 1])
         ratio = width @ (moments * C[:, 1, 1] + np.abs(products) * both)
@@ -289,11 +292,11 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
             smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
             ratio = max(ratio, float((tension / smaller).max()))
         ratios.append(ratio)
-    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # that of sound over the length
+    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # speed of sound over the length
     if inertia := float(width @ rotary[:, 0, 0]):
         sound_speed = (inertia * float(width @ (1 / bending[:, 0, 0]))) ** -0.5
     speed = math.inf if slowest >= _LARGE_STRAIN**0.5 * sound_speed else None
-    # In a bend of no length, sections or a tip body may surely topple whatever the stiffness.
+    # Whatever the stiffness, sections or a tip body may topple in a bend of no length.
     free_end = tension[-1] < moments[-1] * (components[1] ** 2).sum()
     surely = not mount.precone and bool(shear or oblique or free_end)
     why = "only the rotary inertia of what tilts out of the plane can buckle it"
@@ -303,9 +306,9 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
 def _tilting_inertia(
     scene: Scene, components: np.ndarray, rotary: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """I33, or all of it in one plane, and I23 of the sections (n,) [kg m], and B23 of the tip body [kg m2].
+    """Compute I33 (all of it in one plane) and I23 of sections (n,) [kg m], and B23 of the tip body [kg m2].
 
-    Products are 0 within rounding; B23 is at least as large as the factor of its work where there is precone.
+    Products of inertia within rounding are set to 0.  With precone, B23 is at least the factor of its work.
     """
     if scene.physics.planes == 1:
         return rotary[:, 0, 0] * bool(components[1, 0]), np.zeros(len(rotary)), 0.0
@@ -319,9 +322,9 @@ def _tilting_inertia(
 
 
 def _tensor(beam: Beam, name: str, xi: np.ndarray, planes: int) -> np.ndarray:
-    """A property of the sections in the directions of bending: shape (n, planes, planes)."""
+    """Evaluate a section property in the directions of bending: shape (n, planes, planes)."""
     values = np.zeros((len(xi), planes, planes))
     for (i, j), profile in section_tensor(beam, name).items():
-        if max(i, j) < planes:  # torsion in one plane has both rotary inertias
+        if max(i, j) < planes:  # torsion in one plane uses both rotary inertias
             values[:, i, j] = profile(xi)
     return values

@@ -1,4 +1,4 @@
-"""Critical speed: the lowest at which the stiffness of the straight beam is singular."""
+"""Critical speed: the lowest speed at which the stiffness of the straight beam is singular."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from time import perf_counter
 
 import numpy as np
 
-from beamdyn._version import __version__
-from beamdyn.common.inputs.checks import within
+from beamdyn.common.inputs.checks import InvalidValue, within
 from beamdyn.common.results.one_line import error_at_most
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import (
     INPUT,
     NO_ANSWER,
@@ -56,8 +56,8 @@ _BENT = Words(
     Named("equilibrium_branches", "beamdyn branches"),
     " finds where its equilibrium turns back",
 )
-_LOST = "the beam that rotation bends has no stiffness against a further bend or twist"
-_KEPT = "the beam that rotation bends was followed so far, and stays stable"
+_LOST = "the beam that {} has no stiffness against a further bend or twist"
+_KEPT = "the beam that {} was followed so far, and stays stable"
 _FUNCTIONS = 5  # functions of a model of which only the loads are read
 
 
@@ -65,7 +65,7 @@ _FUNCTIONS = 5  # functions of a model of which only the loads are read
 class CriticalPoint(StatesModelError):
     """Critical speed, at which the stiffness of the rotating beam is singular, with its error.
 
-    `error` is that of the number; `model_error` and `left_out`, computed when asked for, are what the physics
+    `error` is numerical; `model_error` and `left_out`, computed when asked for, are what the physics
     left out would change in a speed that was found.
 
     Parameters
@@ -74,7 +74,7 @@ class CriticalPoint(StatesModelError):
         Critical speed [rad/s]; inf if there is none, or if none was found: `none_below` says which; 0 if the
         rotation turns the beam about a hinge at every speed.
     error : float
-        Its estimated relative error; 0 where an argument decides, inf if it is unresolved.
+        Estimated relative error of the speed; 0 where an argument decides, inf if it is unresolved.
     none_below : float
         No critical speed lies below this [rad/s]: `speed` itself where it was found, a guaranteed bound
         where not, inf if there is none.  With an error of 0, only the inertia of tilting sections can
@@ -86,6 +86,8 @@ class CriticalPoint(StatesModelError):
         Limits of the answer.
     provenance : Provenance
         How it was found.
+    of_bent_beam : bool
+        Whether the beam has bent before, by the rotation or by a load at its tip.
 
     Examples
     --------
@@ -103,9 +105,10 @@ class CriticalPoint(StatesModelError):
     provenance: Provenance
     scene: Scene = field(repr=False)
     model: Model | None = field(repr=False)
+    of_bent_beam: bool = field(default=False, metadata=ADDED_LATER)
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the one-line summary of the critical speed; see `Result.headline`."""
         if np.isfinite(self.speed):
             yield self.say_speed(self.speed)
             yield error_at_most(self.error)
@@ -117,8 +120,8 @@ class CriticalPoint(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of the critical speed by the effects that the model leaves out, of shape ()."""
-        if self.reason == _LOST:
-            return nothing_known(self.scene, "it is not computed where rotation bends the beam")
+        if self.of_bent_beam and np.isfinite(self.speed):
+            return nothing_known(self.scene, "it is not computed of a beam that has bent before")
         if self.model is None or not (0 < self.speed < np.inf and np.isfinite(self.error)):
             return nothing_known(self.scene)
         return left_out_of_critical_speed(self.model, self.speed)
@@ -177,7 +180,8 @@ def critical_point(
     end without one, guaranteed bounds say up to which speed there is none.
 
     Where rotation bends the beam in space from rest on, it is the speed at which the equilibrium that follows
-    from rest loses its stability: a deep section buckles sideways, or the branch turns back.
+    from rest loses its stability: a deep section buckles sideways, or the branch turns back.  So it is with a
+    dead load at the tip; one under which a beam may flutter is refused.
 
     Parameters
     ----------
@@ -211,6 +215,9 @@ def critical_point(
         return _find_with_chosen_physics(scene, find, PHYSICS_TOLERANCE if tolerance is None else tolerance)
     target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     check_discretization(discretization)
+    if scene.tip_load.acts:
+        _refuse_without_potential(scene)
+        return _of_bent_beam(scene, discretization, target, tolerance, start)
     if scene.physics.large_deflection and _is_loaded_across(scene):
         if scene.bends_in_space:
             return _of_bent_beam(scene, discretization, target, tolerance, start)
@@ -222,13 +229,15 @@ def critical_point(
 def _of_straight_beam(
     scene: Scene, discretization: DiscretizationChoice, target: float, tolerance: float | None, start: float
 ) -> CriticalPoint:
-    """The speed at which a straight beam buckles, by an argument or by a search."""
+    """Find the critical speed of a straight beam, by an argument or by a search."""
     target = affordable_target(scene, discretization, target)
     models = partial(critical_search.models_of_critical_speed, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):
-        buckling = replace(buckling, speed=None)  # sections so heavy that a long bend topples
-    sought = buckling.exists is not False and buckling.speed is None  # by bending, within reach of the theory
+        # A model buckles at a strain below 1 %, of which the argument knows only the order of magnitude.
+        buckling = replace(buckling, speed=None)
+    # The search is for buckling by bending, within reach of the theory.
+    sought = buckling.exists is not False and buckling.speed is None
     if buckling.speed == 0 or (not sought and not scene.physics.stretch):
         return _argued(scene, buckling, start)
     found, reason = critical_search.search_critical_speed(first, target), buckling.why
@@ -243,7 +252,7 @@ def _of_straight_beam(
             found = bending
         else:
             reason = "the rotation softens the stretch by more than the axial stiffness"
-    none_below = found.speed  # else it is bounded for a slender beam by planes
+    none_below = found.speed  # otherwise planes of a slender beam bound the speed
     if np.isinf(found.error):
         by_plane = () if scene.physics.stretch else map(bound_critical_speed, separate_planes(scene))
         none_below = min(by_plane, default=0.0 if scene.physics.stretch else buckling.none_below)
@@ -260,21 +269,21 @@ def _of_straight_beam(
 
 
 def _is_lower(bending: critical_search.FoundSpeed, found: critical_search.FoundSpeed) -> bool:
-    """Whether bending is critical first: a basis that resolves stretch may not see bending's speed."""
+    """Whether bending becomes critical first; a basis that resolves stretch may miss bending's speed."""
     same = min(bending.error + found.error, UNRESOLVED)
     return bool(np.isfinite(bending.speed)) and bending.speed <= found.speed * (1 + same)
 
 
 def _made_by(found: critical_search.FoundSpeed, start: float) -> Provenance:
-    """The provenance of a search that began at a time."""
+    """Build the provenance of a search that began at a given time."""
     names = str(found.model.discretization), str(found.coarse.discretization)
-    return Provenance(__version__, *names, perf_counter() - start)
+    return Provenance.since(start, *names)
 
 
 def _of_bent_beam(
     scene: Scene, discretization: DiscretizationChoice, target: float, tolerance: float | None, start: float
 ) -> CriticalPoint:
-    """The speed at which a beam that rotation bends from rest on loses its stability."""
+    """Find the speed at which a beam that rotation bends from rest on loses its stability."""
     target = affordable_target(scene, discretization, target)
     models = critical_search.models_of_critical_speed(scene, discretization, target, cheapest=True)
     found, is_lost = critical_search.search_bent(models, target)
@@ -285,34 +294,49 @@ def _of_bent_beam(
         speed=found.speed if is_lost else np.inf,
         error=found.error if is_lost else 0.0,
         none_below=found.speed,
-        reason=_LOST if is_lost else _KEPT,
+        reason=(_LOST if is_lost else _KEPT).format(_bending(scene)),
         warnings=tuple(warnings),
         provenance=_made_by(found, start),
         scene=scene,
         model=None,
+        of_bent_beam=True,
     )
 
 
+def _bending(scene: Scene) -> str:
+    return "its load bends or compresses" if scene.tip_load.acts else "rotation bends"
+
+
 def _is_loaded_across(scene: Scene) -> bool:
-    """Whether rotation bends the beam at every speed, in a direction that is modelled."""
+    """Whether rotation bends the beam at every speed, in a modelled direction."""
     if scene.beam.is_curved:
         return True
     in_plane = 1.0 if scene.physics.planes == 2 else aligned_cos_sin(scene.mount.bending_angle)[0]
     return bool(scene.mount.radius * aligned_cos_sin(scene.mount.setting_angle)[1] * in_plane)
 
 
+def _refuse_without_potential(scene: Scene) -> None:
+    """Refuse a load at the tip under which the beam may flutter, which no singular stiffness shows."""
+    load = scene.tip_load
+    name = "follows" if load.follows else "moment"
+    if scene.may_flutter_by_load:
+        bound = "under such a load, which has no potential, a beam may flutter with a regular stiffness"
+        remedy = "look where a growth rate of natural_modes or frequency_locus becomes positive"
+        raise InvalidValue(f"tip_load.{name}", getattr(load, name), bound, remedy)
+
+
 def _is_within_theory(model: Model) -> bool:
-    """Whether a model resolves a critical speed, and nothing says that it stretches the beam by over 1 %."""
+    """Whether a model resolves its critical speed, without an axial strain above 1 % as far as known."""
     found = critical_search.compare_critical_speeds(model)
     if np.isinf(found.error):
         return False
     _, strain = static_load(model, np.array([found.speed]))
-    return not strain[0] > LARGE_STRAIN  # nan: the axial stiffness is not known
+    return not strain[0] > LARGE_STRAIN  # nan if the axial stiffness is not known
 
 
 def _argued(scene: Scene, buckling: Buckling, start: float) -> CriticalPoint:
-    """The answer that follows from an argument alone."""
-    provenance = Provenance(__version__, "an argument", "nothing", perf_counter() - start)
+    """Build the critical point that follows from an argument alone, without a search."""
+    provenance = Provenance.since(start, "an argument", "nothing")
     speed = np.inf if buckling.speed is None else buckling.speed
     none_below = buckling.none_below or speed
     warnings = tuple(warn_of_left_out(scene))
@@ -327,7 +351,7 @@ def _warnings(
     discretization: DiscretizationChoice,
     tolerance: float | None,
 ) -> Iterator[str]:
-    """Yield what limits a critical speed that was found, or that none was."""
+    """Yield warnings about a critical speed that was found, or about a search that found none."""
     yield from warn_of_left_out(scene)
     if discretization == "fem" and found.model.discretization.order is None:
         said = f"finite elements do not resolve the critical speed: sought with {found.model.discretization}"
@@ -344,12 +368,12 @@ def _warnings(
         said = f"the estimated relative error of the critical speed is {found.error:.1g}"
         quantity = "estimated relative error"
         yield Statement(said, kind=TOLERANCE, quantity=quantity, value=found.error, limit=1e-6)
-    if _is_loaded_across(scene):  # the beam has bent long before
+    if _is_loaded_across(scene):  # the beam has bent long before the critical speed
         said = "rotation bends the beam at every speed, so that it does not buckle as a straight one does: "
         yield Statement(said, Speeds(found.speed), f" is {OUTSIDE}", kind=OUTSIDE)
 
 
-# The choice of the physics --------------------------------------------------------------------------
+# Choice of the physics ------------------------------------------------------------------------------
 
 
 def _find_with_chosen_physics(
@@ -357,7 +381,7 @@ def _find_with_chosen_physics(
 ) -> CriticalPoint:
     """Find a critical point with the effects that change it by more than the tolerance.
 
-    Each effect is judged by the critical speed that is found with it: a second plane may buckle where the
+    The size of each effect is judged by the critical speed found with it: a second plane may buckle where the
     first does not.
     """
 
@@ -381,7 +405,11 @@ def _find_with_chosen_physics(
 
 
 def _change(without: CriticalPoint, within: CriticalPoint) -> float:
-    """Relative change of a critical speed; inf if one of the two is there, nan if that was not resolved."""
+    """Compute the relative change of a critical speed by an effect.
+
+    It is inf if there is a critical speed only with, or only without the effect, and nan if one is
+    unresolved.
+    """
     if math.isinf(without.error) or math.isinf(within.error):
         return math.nan
     if without.speed == within.speed:

@@ -1,4 +1,4 @@
-"""Search for a critical speed with finer and finer models, each compared with one of about half its size."""
+"""Search for a critical speed with finer and finer models, each compared with one of half its size."""
 
 from __future__ import annotations
 
@@ -15,19 +15,22 @@ from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, 
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.scene import Scene
 
-_SIZED_FOR = 5  # modes that suit the first basis, so that a basis of half its size usually suits, too
+# Number of modes for which the first basis is sized, so that a basis of half its size usually suffices, too.
+_SIZED_FOR = 5
 _NEAR_TIP = 0.5  # x/L beyond which the deflection is so large that rounding of short elements shows
-_OF_SHORTEST = 4 * float(np.finfo(float).eps)  # rounding error times the cube of an element's length over L
+# Rounding error times the cubed relative length of the shortest element.
+_OF_SHORTEST = 4 * float(np.finfo(float).eps)
 _ROUNDING_OF_BENT = (
-    1e-10  # relative: the stiffness whose sign is sought is small beside those that add up to it
+    1e-10  # relative error: the sought stiffness is small compared with the terms that add up to it
 )
-_MESHES_OF_BENT = 1e-5  # least error at which meshes of a bent beam aim: each costs as much as all before
-_TO_HALF = 4  # steps from a basis to one of about half its size
+# Smallest error at which meshes of a bent beam aim: each mesh costs as much as all before.
+_MESHES_OF_BENT = 1e-5
+_TO_HALF = 4  # number of steps from a basis to one of about half its size
 
 
 @dataclass(frozen=True)
 class FoundSpeed:
-    """Critical speed of a model [rad/s], its relative error by a coarser model, and rounding's part in it."""
+    """Critical speed of a model [rad/s], its relative error, and the part of rounding in the error."""
 
     model: Model
     coarse: Model
@@ -46,12 +49,11 @@ def models_of_critical_speed(
 
 
 def search_critical_speed(models: Iterator[Model], target: float) -> FoundSpeed:
-    """Refine until the error meets the target or rounding, or the models end."""
+    """Refine models until the error meets the target or rounding, or the models end."""
 
     def finer(found: FoundSpeed) -> FoundSpeed | None:
-        with suppress(
-            np.linalg.LinAlgError, StopIteration
-        ):  # rounding of so many functions: the last is best
+        # With so many functions the factorization may fail by rounding: the last result is then the best.
+        with suppress(np.linalg.LinAlgError, StopIteration):
             return compare_critical_speeds(next(models))
         return None
 
@@ -62,9 +64,9 @@ def search_critical_speed(models: Iterator[Model], target: float) -> FoundSpeed:
 
 
 def compare_critical_speeds(model: Model) -> FoundSpeed:
-    """Compare a model with one of about half its size.
+    """Compute the critical speed of a model, with its error from a model of about half the size.
 
-    A basis that lacks a few functions only would differ too little where convergence is slow: where the error
+    A basis that lacks only a few functions would differ too little where convergence is slow: where the error
     falls as a power p >= 1 of the size, it is at most the distance from the basis of half the size.
     """
     discretization, solver = model.discretization, model.solver
@@ -77,31 +79,32 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
         coarse = model.coarser
         ends = discretization.cells(model.scene.modelled_beam).ends
         shortest = float(np.diff(ends)[ends[1:] > _NEAR_TIP].min())
-        noise = max(noise, _OF_SHORTEST * shortest**-3)  # noise of elements by their integrals
+        noise = max(noise, _OF_SHORTEST * shortest**-3)  # elements have a rounding error from their integrals
     fine_softening, coarse_softening = solver.softening, coarse.solver.softening
     distance = fine_softening - coarse_softening
     softening = fine_softening if order is None else fine_softening + distance / (2**order - 1)
-    if not 0 < softening < np.inf:  # False for nan, too
+    if not 0 < softening < np.inf:  # this is False for nan, too
         return FoundSpeed(model, coarse, np.inf, np.inf, np.inf)
     rounding = solver.critical_rounding
     noise, left = rounding + noise, abs(distance)
-    if order is not None:  # short segments may keep a mesh from being half of another
+    if order is not None:  # short segments may keep a mesh from having half the elements of another
         half = coarse.coarser.solver
         before = coarse_softening - half.softening if is_halved(half, coarse.solver) else np.nan
         left = float(extrapolation_error(*np.array([[distance], [before], [noise * softening]]))[0])
     error = left / (2 * softening) + noise
-    resolved = error < UNRESOLVED and coarse.solver.size < solver.size  # the same functions say nothing
+    # A comparison with the same functions tells nothing.
+    resolved = error < UNRESOLVED and coarse.solver.size < solver.size
     error = float(error) if resolved else np.inf
     return FoundSpeed(model, coarse, float(softening**-0.5), error, rounding)
 
 
-# Of a beam that rotation bends --------------------------------------------------------------------
+# Beams that rotation bends --------------------------------------------------------------------------
 
 
 def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, bool]:
-    """Refine the speed at which a beam that rotation bends in space loses its stability, and whether it does.
+    """Refine the speed at which a beam that rotation bends loses stability; also return whether it does.
 
-    Where it does not, the speed is the largest that was tried.
+    Where it does not, the returned speed is the largest that was tried.
     """
     found, is_lost = compare_bent(next(models))
     if found.model.discretization.order is not None:
@@ -112,17 +115,18 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
 
 
 def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
-    """Compare the speed at which stability is lost with that of the model of which errors are estimated."""
+    """Compute the speed of loss of stability, its error from the coarser model, and whether it is lost."""
     solver, coarse = model.solver, model.compared.solver
     assert isinstance(solver, DeflectedSolver) and isinstance(coarse, DeflectedSolver)
     (squared, is_lost), (of_coarse, also) = (find_loss_of_stability(s.load) for s in (solver, coarse))
-    error = _margin(model) * abs(of_coarse / squared - 1) / 2 + _ROUNDING_OF_BENT
+    distance = abs(of_coarse - squared)
+    error = _margin(model) * distance / (2 * squared) + _ROUNDING_OF_BENT if distance else _ROUNDING_OF_BENT
     error = error if is_lost and also else np.inf
     return FoundSpeed(model, model.compared, float(np.sqrt(squared)), error, _ROUNDING_OF_BENT), is_lost
 
 
 def _margin(model: Model) -> float:
-    """Error over the distance from the model compared with: of a mesh of twice the elements at most 1."""
+    """Choose the ratio of error to distance between two models; for meshes of half the elements, 1."""
     if model.discretization.order is not None:
         return 1.0
     return (SLOW_BASES if model.lacks_one else BASES_OF_FIELDS).factor

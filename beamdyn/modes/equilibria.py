@@ -6,28 +6,19 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.accuracy.refinement import SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue, one_of, positive, real, within
 from beamdyn.common.plots.plots import plot_branches
 from beamdyn.common.plots.plots_of_shapes import plot_bent_beam
 from beamdyn.common.results.one_line import error_at_most, listed, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
 from beamdyn.common.words import Words
-from beamdyn.modes.modal.continuation import (
-    NotConverged,
-    Point,
-    count_negative,
-    find_at,
-    find_turning_point,
-    follow,
-    start_curve,
-)
+from beamdyn.modes.modal import continuation
 from beamdyn.modes.modal.discretization_choice import (
     TOLERANCES,
     DiscretizationChoice,
@@ -44,11 +35,8 @@ from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_FINE = 0.05  # arc length of a step, for smooth curves in a picture
-_MOST_POINTS = 2000  # points of a branch
+_FINE = 0.05  # arc length of a step, small enough for smooth curves in a picture
+_MOST_POINTS = 2000  # largest number of points of a branch
 _STEEPEST = 2 * np.pi  # slope angle up to which a branch is followed [rad]
 _UNSTABLE = "the straight beam, of which effects are judged, is unstable"
 _ROUNDING = 1e-13  # error of a position over the length
@@ -58,7 +46,7 @@ _ROUNDING = 1e-13  # error of a position over the length
 class Equilibrium(StatesModelError):
     """Equilibrium of a beam at a steady speed, of any deflection.
 
-    `error` is that of the numbers; `model_error` and `left_out`, computed when asked for, are what the
+    `error` is the numerical error; `model_error` and `left_out`, computed when asked for, are what the
     physics left out would change in the deflection of the tip, as far as it is small.
 
     Parameters
@@ -66,7 +54,7 @@ class Equilibrium(StatesModelError):
     speed : float
         Speed [rad/s].
     branch : str
-        "straight": it follows from rest as the speed rises; "bent": it stands beside that one.
+        "straight": it follows from rest as the speed rises; "bent": it exists beside the straight branch.
     tip : ndarray, shape (3,)
         Position of the tip from the root along b1, b2, b3 [m].
     tip_angle : float
@@ -81,7 +69,7 @@ class Equilibrium(StatesModelError):
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How it was found.
+        Program version, discretization and computing time.
 
     Examples
     --------
@@ -106,7 +94,7 @@ class Equilibrium(StatesModelError):
     model: Model = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the one-line summary of the equilibrium; see `Result.headline`."""
         unit = self.display_units.length_unit()
         yield f"at {self.say_speed(self.speed)}: tip at {listed(self.tip * unit.per_si, unit.name)}"
         yield error_at_most(self.error * unit.per_si, unit.name)
@@ -116,17 +104,17 @@ class Equilibrium(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the deflection of the tip by the effects left out, as of the straight beam: shape ()."""
+        """Changes of the straight beam's tip deflection by the effects left out of the model: shape ()."""
         return left_out_by_solving(self.scene, self._solve_static)
 
     def _solve_static(self, scene: Scene, _: str) -> SolvedValues:
-        """Static deflection of the tip of a straight beam with an effect."""
+        """Solve the static tip deflection of a straight beam with an effect added."""
         speeds = np.array([self.speed])
         tip = np.linalg.norm(choose_model(scene.undamped, "ritz", speeds, 1).static_tips(speeds))
         return SolvedValues(np.asarray(tip), _UNSTABLE if np.isnan(tip) else "")
 
     def shape(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Positions (len(x), 3) along b1, b2, b3 [m] of the points at x [m] along the beam."""
+        """Compute positions (len(x), 3) along b1, b2, b3 [m] of the points at x [m] along the beam."""
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
         if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
             raise InvalidValue("x", x, f"positions run from 0 to the length {self.scene.beam.length:g} m")
@@ -135,7 +123,7 @@ class Equilibrium(StatesModelError):
         return _in_space(state.positions(np.minimum(xi, 1.0)), self.scene)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the bent beam."""
+        """Draw the bent beam in equilibrium."""
         across = _directions(self.scene)[0]
         points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
         title = f"equilibrium at {self.display_units.speed_unit().say(self.speed)}, {self.branch} branch"
@@ -159,7 +147,7 @@ def equilibrium(
     speed : float
         Speed [rad/s].
     branch : {"straight", "bent"}, optional
-        "straight": the equilibrium that follows from rest as the speed rises; "bent": the stable one beside
+        "straight": the equilibrium that follows from rest as the speed rises; "bent": the stable one next to
         it, past a critical speed or a turning point.  By default that of `scene.physics`.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
@@ -201,17 +189,11 @@ def equilibrium(
     error *= SLOW_BASES.factor if solution.model.lacks_one else 1.0
     at = Words("at ", Speeds(float(speeds[0])))
     flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
-    remedy = 'branch="bent" asks for the stable one beside it'
-    unstable = Statement(
-        "the equilibrium is unstable ",
-        at,
-        f": a small motion grows at {growth:.3g} 1/s; {remedy}",
-        kind=GROWING,
-        quantity="growth rate [1/s]",
-        value=growth,
-        limit=0.0,
-        remedy=remedy,
-    )
+    loaded = "a small force across at the tip leads to a stable one if it is there"
+    remedy = loaded if scene.tip_load.acts else 'branch="bent" asks for the stable one beside it'
+    said = "the equilibrium is unstable ", at, f": a small motion grows at {growth:.3g} 1/s; {remedy}"
+    rate = {"quantity": "growth rate [1/s]", "value": growth, "limit": 0.0}
+    unstable = Statement(*said, kind=GROWING, remedy=remedy, **rate)
     return Equilibrium(
         speed=float(speeds[0]),
         branch=scene.physics.branch,
@@ -228,7 +210,7 @@ def equilibrium(
 
 
 def _with_large_deflection(scene: object, branch: str | None) -> Scene:
-    """The scene with large deflection, on a branch."""
+    """Return the scene with large deflection, on a given branch of equilibria."""
     check_scene(scene)
     assert isinstance(scene, Scene)
     if branch is not None:
@@ -243,13 +225,13 @@ def _solver(model: Model) -> DeflectedSolver:
 
 
 def _directions(scene: Scene) -> np.ndarray:
-    """Components (2, 2) of the direction of bending, and of that across, on b2, b3."""
+    """Compute components (2, 2) on b2, b3 of the direction of bending, and of the direction across."""
     c, s = aligned_cos_sin(scene.mount.bending_angle)
     return np.array([[c, s], [-s, c]])
 
 
 def _in_space(positions: np.ndarray, scene: Scene) -> np.ndarray:
-    """Positions (..., 3) along b1, b2, b3 from those along b1, the direction of bending and maybe across."""
+    """Transform positions along b1, the direction of bending and maybe across, to (..., 3) along b1 to b3."""
     across = positions[..., 1:] @ _directions(scene)[: positions.shape[-1] - 1]
     return np.concatenate([positions[..., :1], across], axis=-1)
 
@@ -259,7 +241,7 @@ def _in_space(positions: np.ndarray, scene: Scene) -> np.ndarray:
 
 @dataclass(frozen=True)
 class EquilibriumBranch:
-    """Equilibria along a branch, in the order in which it is followed.
+    """Points of one branch of equilibria, in the order in which it is followed.
 
     Parameters
     ----------
@@ -270,7 +252,7 @@ class EquilibriumBranch:
     tip : ndarray, shape (k, 3)
         Positions of the tip from the root along b1, b2, b3 [m].
     stable : ndarray of bool, shape (k,)
-        Whether the potential energy, that of the centrifugal forces included, is least.
+        Whether the potential energy, including that of the centrifugal forces, has a minimum.
     turning_speeds : ndarray, shape (t,)
         Speeds at which the branch turns back, by a fold or where it meets the straight beam [rad/s].
 
@@ -299,13 +281,13 @@ class EquilibriumBranches(Result):
     top_speed : float
         Top speed [rad/s].
     branches : tuple of EquilibriumBranch
-        The branch from rest, then that beside it at the top speed, if there is one.
+        The branch from rest, then the branch next to it at the top speed, if there is one.
     critical_speed : float
         Speed at which the straight beam buckles [rad/s]; inf where rotation bends it from rest on.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How they were found.
+        Program version, discretization and computing time.
 
     Examples
     --------
@@ -323,7 +305,7 @@ class EquilibriumBranches(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the one-line summary of the branches; see `Result.headline`."""
         yield f"{' and '.join(each.name for each in self.branches)} up to {self.say_speed(self.top_speed)}"
         if np.isfinite(self.critical_speed):
             yield f"straight beam buckles at {self.say_speed(self.critical_speed)}"
@@ -372,16 +354,16 @@ def equilibrium_branches(
     check_speeds(top, "top_speed")
     model = choose_model(scene, discretization, np.array([0.0, top]), 1)
     solver = _solver(model)
-    load, rest = solver.load, np.zeros(solver.size)
+    load, rest = solver.load, solver.load.at_rest
     if load.bends:
-        branches = [_collect("straight", load, start_curve(load, rest, 0.0, 1.0), top, scene)]
+        branches = [_collect("straight", load, continuation.start_curve(load, rest, 0.0, 1.0), top, scene)]
     else:
         speeds = np.linspace(0, top, 101)
         stable = np.array([np.linalg.eigvalsh(load.jacobian(rest, v**2))[0] >= 0 for v in speeds])
         tips = np.tile(_in_space(load.elastica.tip(rest), scene), (len(speeds), 1))
         branches = [EquilibriumBranch("straight", speeds, tips, stable, np.empty(0))]
-    try:  # follows the branch beside it, from the top speed through its turning points
-        start_of_bent = start_curve(load, find_bent(load, top), top**2, -1.0)
+    try:  # follows the other branch from the top speed through its turning points
+        start_of_bent = continuation.start_curve(load, find_bent(load, top), top**2, -1.0)
         branches.append(_collect("bent", load, start_of_bent, top, scene))
         warnings = ()
     except NoEquilibrium as error:
@@ -391,24 +373,26 @@ def equilibrium_branches(
         branches=tuple(branches),
         critical_speed=solver.critical_speed,
         warnings=warnings,
-        provenance=Provenance(__version__, str(model.discretization), "", perf_counter() - start),
+        provenance=Provenance.since(start, str(model.discretization)),
         scene=scene,
     )
 
 
-def _collect(name: str, load: SteadyLoad, start: Point, top: float, scene: Scene) -> EquilibriumBranch:
-    """The points of a branch until it passes the top speed, or the beam has made a turn."""
-    points, turning, curve = [start], [], follow(load, start, _FINE)
+def _collect(
+    name: str, load: SteadyLoad, start: continuation.Point, top: float, scene: Scene
+) -> EquilibriumBranch:
+    """Collect the points of a branch until it passes the top speed, or the beam has made a turn."""
+    points, turning, curve = [start], [], continuation.follow(load, start, _FINE)
     while True:
         try:
             point = next(curve)
-        except NotConverged:  # it cannot be followed further
+        except continuation.NotConverged:  # the branch cannot be followed further
             break
         if point.p_rate * points[-1].p_rate < 0:
-            turning.append(find_turning_point(load, points[-1], point))
+            turning.append(continuation.find_turning_point(load, points[-1], point))
             points.append(turning[-1])
         if point.p >= top**2:
-            points.append(replace(point, q=find_at(load, points[-1], point, top**2), p=top**2))
+            points.append(replace(point, q=continuation.find_at(load, points[-1], point, top**2), p=top**2))
             break
         points.append(point)
         if np.abs(point.q @ load.angles).max() > _STEEPEST or len(points) > _MOST_POINTS:
@@ -418,6 +402,6 @@ def _collect(name: str, load: SteadyLoad, start: Point, top: float, scene: Scene
         name,
         np.sqrt([max(point.p, 0.0) for point in points]),
         _in_space(tips, scene),
-        np.array([count_negative(load, point.q, point.p) == 0 for point in points]),
+        np.array([continuation.count_negative(load, point.q, point.p) == 0 for point in points]),
         np.sqrt([point.p for point in turning]),
     )

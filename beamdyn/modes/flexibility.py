@@ -1,4 +1,4 @@
-"""Upper bounds of the flexibility 1/EI, and of what all deflections of unit energy do to the loads.
+"""Upper bounds of the flexibility 1/EI, and of the work of loads on all deflections of unit energy.
 
 All quantities are nondimensional, as in `beamdyn.modes.residual_bound`.
 """
@@ -17,12 +17,12 @@ from beamdyn.scene.profile import Profile
 
 _EPS = float(np.finfo(float).eps)
 _DEGREES = (0, 8, 16, 32, 64, 128)
-_EXCESS = 1e-10  # relative, of the bound over 1/EI
-_HALVINGS = 40  # halvings of a segment on which no degree suffices
+_EXCESS = 1e-10  # relative excess of the bound over 1/EI
+_HALVINGS = 40  # largest number of halvings of a segment on which no polynomial degree suffices
 
 
 def bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:
-    """Upper bounds of the traces of P1 ... P4 relative to a: shape (4,).
+    """Bound the traces of the operators P1 ... P4 relative to the energy a from above: shape (4,).
 
     The slope at x under unit energy is at most sqrt(int_0^x 1/EI), the deflection
     sqrt(int_0^x (x - s)^2 / EI).  Exchanging the integrals leaves outboard integrals of the loads:
@@ -31,7 +31,7 @@ def bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:
     tip = beam.tip or TipMass(0.0)
     n_a, n_b = axial_tension(beam)
     moment = outboard_moments(beam)[0].outboard_integral().outboard_integral().scaled(2.0)
-    arm = Profile((0.0, 1.0), ((0.5 + tip.offset, -0.5),))  # 1 - s + eps
+    arm = Profile((0.0, 1.0), ((0.5 + tip.offset, -0.5),))  # the lever 1 - s + eps
     loads = (n_b.outboard_integral(), n_a.outboard_integral(), moment)
     tension_b, tension_a, inertia = (_integral(flexibility * load) for load in loads)
     inertia += tip.mass * _integral(flexibility * (arm * arm))
@@ -43,14 +43,14 @@ def _integral(profile: Profile) -> float:
 
 
 def bound_on_cells(profile: Profile, ends: np.ndarray) -> np.ndarray:
-    """Upper bounds of the absolute values of a property on cells between ends (c + 1,), by |P_k| <= 1."""
+    """Bound the absolute values of a property on cells with ends (c + 1,), using |P_k| <= 1."""
     parts = profile.split(ends.tolist())
     first = np.searchsorted(parts.breakpoints, ends[:-1])
     return np.maximum.reduceat(np.abs(parts.series).sum(axis=0), first)
 
 
 def bound_flexibility(stiffness: Profile) -> Profile | None:
-    """Piecewise polynomial that is a close upper bound of 1/EI; None if the search fails."""
+    """Find a piecewise polynomial that bounds 1/EI closely from above; None if the search fails."""
     for _ in range(_HALVINGS):
         rows = [bound_reciprocal(np.array(row)) for row in stiffness.coefficients]
         bounds = tuple(row for row in rows if row is not None)
@@ -62,7 +62,11 @@ def bound_flexibility(stiffness: Profile) -> Profile | None:
 
 
 def bound_reciprocal(row: np.ndarray) -> tuple[float, ...] | None:
-    """Legendre coefficients of g / (1 - misfit) >= 1/EI, if |1 - EI g| <= misfit < 1; None if too large."""
+    """Find a polynomial close above 1/EI on a segment from the Legendre coefficients of EI.
+
+    With |1 - EI g| <= misfit < 1 for a polynomial g, it is
+    g / (1 - misfit); None if no degree is close enough.
+    """
     for degree in _DEGREES:
         t, _ = gauss_rule(degree + 1)
         g = legendre_series(degree + 1) @ (1 / legendre.legval(t, row))

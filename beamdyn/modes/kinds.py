@@ -1,4 +1,4 @@
-"""Kinds of modes: what deforms in them."""
+"""Kinds of modes (bending, torsion, camber), by the kinetic energy of each."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from beamdyn.common.results.result import Result
 from beamdyn.equations.equations_of_motion import Equations
 
 BENDING, TORSION, CAMBER = "bending", "torsion", "camber"
-_TIE = 1e-9  # relative difference of kinetic energies below which the first kind has it
+_TIE = 1e-9  # relative difference of kinetic energies below which the first kind is chosen
 
 
 def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | None:
-    """Kind of modes (S, n, k): what has most of their kinetic energy, in a word each (S, k).
+    """Name the kind of each of modes (S, n, k) by the largest part of its kinetic energy: words (S, k).
 
-    Of bending in both directions, torsion and camber it is the first that is within 1e-9 of the largest; the
+    Bending in both directions, torsion and camber are compared, and ties within 1e-9 go to the first; the
     energy of stretch is not compared.  None where a model has neither torsion nor camber.
     """
     own = [name for name in (TORSION, CAMBER) if name in equations.blocks]
@@ -29,9 +29,9 @@ def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | No
 
 
 class TellsKinds(Result):
-    """Base of results of modes of which it says what deforms in them; see `Result`.
+    """Base class of results of modes that tells the kind of each mode; see `Result`.
 
-    A subclass has the field `kinds`: None where its modes are all of bending.
+    A subclass has the field `kinds`, which is None where all modes are bending modes.
     """
 
     frequency: np.ndarray
@@ -39,9 +39,9 @@ class TellsKinds(Result):
 
     @property
     def kind(self) -> np.ndarray:
-        """What has most of the kinetic energy of each mode: "bending", "torsion" or "camber"."""
+        """Kind of each mode by its largest part of kinetic energy: "bending", "torsion" or "camber"."""
         return np.full(self.frequency.shape, BENDING) if self.kinds is None else self.kinds
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with the kinds of its modes where they differ."""
+        """Convert the result to numbers, lists and strings, with the kinds of modes where they differ."""
         return super().to_dict() | ({} if self.kinds is None else {"kind": self.kinds.tolist()})

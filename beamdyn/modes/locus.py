@@ -1,4 +1,4 @@
-"""Loci of natural modes over speeds."""
+"""Loci: natural modes followed over speed."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.inputs.checks import ascending, count, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.plots import plot_locus, plot_locus_by_plane
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import announced
@@ -24,23 +26,20 @@ from beamdyn.modes.modal.over_speeds import track
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.unlisted_modes import left_out_with_modes
+from beamdyn.modes.modes import drawn_order, frequency_of, provenance_of, status_of, warn_of_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-from beamdyn.modes.modes import drawn_order, frequency_of, provenance_of, status_of, warn_of_modes
-
-_MOST_JUDGED = 16  # speeds of a locus at which its model error is computed
-_EXTRA_MODES = 2  # higher modes with which tracking may exchange the requested ones
+_MOST_JUDGED = 16  # largest number of speeds of a locus at which the model error is computed
+_EXTRA_MODES = 2  # number of further higher modes, with which the requested ones may exchange their order
 
 
 @dataclass(frozen=True)
 class Locus(TellsKinds, StatesModelError):
     """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
 
-    `error` is that of the numbers; `model_error` (k, m) and `left_out`, computed when asked for, are what the
-    physics left out would change at the `left_out_speeds` (k,); `left_out_at` says it of any.  `kind` (S, m)
+    `error` is the numerical error; `model_error` (k, m) and `left_out`, computed when asked for, are what the
+    physics left out would change at the `left_out_speeds` (k,), or by `left_out_at` at others.  `kind` (S, m)
     is "bending", "torsion" or "camber" as in `Modes`, at each speed: modes exchange their kinds as they veer.
 
     Parameters
@@ -58,7 +57,7 @@ class Locus(TellsKinds, StatesModelError):
     status : ndarray of str, shape (S, m)
         "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
     eigenvalue : ndarray of complex, shape (S, m)
-        s in exp(s t) [1/s].
+        Eigenvalue s of the motion exp(s t) [1/s].
     plane_share : ndarray, shape (S, m, 2)
         Share of each direction of bending at the root in the kinetic energy of the mode's deflection.
     static_deflection : ndarray, shape (S,)
@@ -68,7 +67,7 @@ class Locus(TellsKinds, StatesModelError):
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How it was found.
+        Program version, discretization and computing time.
 
     Examples
     --------
@@ -92,58 +91,56 @@ class Locus(TellsKinds, StatesModelError):
     provenance: Provenance
     scene: Scene = field(repr=False)
     model: Model = field(repr=False)
-    ascending: np.ndarray = field(repr=False)  # eigenvalues (S, k) in ascending order, of a few more modes
-    place: np.ndarray = field(repr=False)  # place of each mode in `ascending` (S, m)
+    # Eigenvalues (S, k) in ascending order, including a few more modes.
+    ascending: np.ndarray = field(repr=False)
+    place: np.ndarray = field(repr=False)  # index of each mode in `ascending` (S, m)
     kinds: np.ndarray | None = field(default=None, repr=False, metadata=ADDED_LATER)
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the one-line summary of the locus; see `Result.headline`."""
         count, modes = self.frequency.shape
         yield f"{counted(modes, 'mode')}, {counted(count, 'speed')}, {self.say_speed(self.speeds)}"
         yield spanned(self.frequency, "Hz")
-        yield from (
-            error_at_most(self.error),
-            states(self.status, ("stable", "neutral")),
-            warned(self.warnings),
-        )
+        yield error_at_most(self.error)
+        yield from (states(self.status, ("stable", "neutral")), warned(self.warnings))
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the frequencies at the `left_out_speeds` by the effects left out (k, m)."""
+        """Changes of frequencies at the `left_out_speeds` by the effects left out of the model, (k, m)."""
         return self.left_out_at(self._judged)
 
     @property
     def left_out_speeds(self) -> np.ndarray:
-        """Speeds of the locus at which its model error is computed [rad/s], (k,).
+        """Speeds of the locus at which the model error is computed [rad/s], (k,).
 
-        The ends are among them, and those before and after a mode becomes unstable or stable.
+        Both ends are included, and the speeds before and after a mode becomes unstable or stable.
         """
         return self.speeds[self._judged]
 
     @property
     def _judged(self) -> np.ndarray:
-        """Indices of the speeds at which the model error is computed (k,)."""
+        """Indices (k,) of the speeds at which the model error is computed."""
         changed = (self.status[1:] != self.status[:-1]).any(axis=1)
-        before, count = np.flatnonzero(changed)[:_MOST_JUDGED], len(self.speeds)
-        spread = np.linspace(0, count - 1, min(count, _MOST_JUDGED)).round().astype(int)
+        before = np.flatnonzero(changed)[:_MOST_JUDGED]
+        spread = evenly_spread(len(self.speeds), _MOST_JUDGED)
         return np.unique(np.concatenate([spread, before, before + 1]))
 
     def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
-        """Changes by the effects left out at the speeds of some indices (k,): (k, m)."""
+        """Estimate the changes by the effects left out at the speeds of given indices (k,): (k, m)."""
         at = np.asarray(indices, dtype=int)
         return left_out_with_modes(self.model, self.speeds[at], self.eigenvalue[at])
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with its model error and what is left out."""
+        """Convert the result to numbers, lists and strings, with model error and effects left out."""
         return super().to_dict() | {"left_out_speeds": self.left_out_speeds.tolist()}
 
     def names(self) -> tuple[str, ...]:
-        """Name of each mode: its number, and its kind where it does not mostly bend at the first speed."""
+        """Return the names of the modes: a number, and the kind unless a mode mostly bends at first."""
         kinds = (f", {kind}" if kind != BENDING else "" for kind in self.kind[0])
         return tuple(f"mode {i}{kind}" for i, kind in enumerate(kinds, 1))
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the frequencies over speed."""
+        """Draw the frequencies of all modes over speed."""
         units, names = self.display_units, self.names()
         if self.scene.physics.planes == 2:
             (solid, _), words = drawn_order(self.scene)

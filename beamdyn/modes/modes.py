@@ -1,4 +1,4 @@
-"""Natural modes at a steady speed."""
+"""Natural modes at a steady speed: frequencies, shapes, growth rates and their errors."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import count, real, within
 from beamdyn.common.plots.export import write_shapes
 from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane, plot_surfaces
@@ -35,15 +34,16 @@ if TYPE_CHECKING:
 
     from beamdyn.modes.modal.equilibrium import DeflectedSolver
 
-Mesh: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # what `Modes.mesh` returns
+# Coordinates and shapes as `Modes.mesh` returns them.
+Mesh: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
 class Modes(TellsKinds, StatesModelError):
     """Natural modes at one speed, the lowest first.
 
-    `error` is that of the numbers; `model_error` (m,) and `left_out`, computed when asked for, are what the
-    physics left out would change.  `kind` (m,) says in a word what has most of the mode's kinetic energy:
+    `error` is numerical; `model_error` (m,) and `left_out`, computed when asked for, are what the
+    physics left out would change.  `kind` (m,) names the kind with most of a mode's kinetic energy:
     "bending", "torsion" or "camber".
 
     Parameters
@@ -59,7 +59,7 @@ class Modes(TellsKinds, StatesModelError):
     status : ndarray of str, shape (m,)
         "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
     eigenvalue : ndarray of complex, shape (m,)
-        s in exp(s t) [1/s].
+        Eigenvalue s of the motion exp(s t) [1/s].
     tip, tip_across : ndarray, shape (m,)
         Tip deflections of the mass-normalised modes [kg^-1/2] in the direction of bending at the root and
         across it, the larger one positive; 0 across where one plane is modelled.
@@ -77,7 +77,7 @@ class Modes(TellsKinds, StatesModelError):
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How it was found.
+        Program version, discretization and computing time.
 
     Examples
     --------
@@ -112,54 +112,54 @@ class Modes(TellsKinds, StatesModelError):
     kinds: np.ndarray | None = field(default=None, repr=False, metadata=ADDED_LATER)
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the one-line summary of the modes; see `Result.headline`."""
         yield f"{len(self.frequency)} at {self.say_speed(self.speed)}: {listed(self.frequency, 'Hz')}"
         yield from (error_at_most(self.error), states(self.status, ("stable",)), warned(self.warnings))
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of each frequency by the effects that the model leaves out (m,)."""
+        """Changes of each frequency by the effects left out of the model, shape (m,)."""
         # Imported here, as few calls ask for it.
         from beamdyn.modes.model_error.unlisted_modes import left_out_with_modes
 
         return left_out_with_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
-        """Deflection of the mass-normalised modes at positions x [m] along the beam: shape (m, len(x)).
+        """Compute the mass-normalised modes' deflection at x [m] along the beam: shape (m, len(x)).
 
-        The direction is 0 for that of the bending angle at the root, 1 for that across.
+        Direction 0 is that of the bending angle at the root, 1 the one across.
         """
         equations = self.model.equations_at(self.speed)
         return self.vectors.T @ equations.deflection(self._over_length(x), direction=direction)
 
     def surface(self, x: np.ndarray | Sequence[float], eta: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Deflection of the mass-normalised modes over the area of a strip: shape (m, len(x), len(eta)).
+        """Compute mass-normalised modes' deflection over a strip: shape (m, len(x), len(eta)).
 
-        It is that in the direction of bending, at positions x [m] along the beam and eta = 2 y/b across its
-        width b, from -1 to 1, where y points in the direction across.  Its mean over eta is `shape`; where
-        neither torsion nor camber is modelled, it is that everywhere.
+        The deflection is in the direction of bending, at positions x [m] along the beam and eta = 2 y/b
+        across its width b, from -1 to 1, where y points in the direction across.  The mean over eta is
+        `shape`; where neither torsion nor camber is modelled, the deflection does not depend on eta.
         """
         equations = self.model.equations_at(self.speed)
         return np.tensordot(self.vectors.T, equations.surface(self._over_length(x), np.asarray(eta)), 1)
 
     def mesh(self, along: int = 101, across: int = 21) -> Mesh | None:
-        """Shapes on a mesh over the strip, in its own axes: see `common.plots.export.write_shapes`.
+        """Compute shapes on a mesh over the strip, in its own axes: see `common.plots.export.write_shapes`.
 
         Parameters
         ----------
         along, across : int
-            Number of positions.
+            Number of positions along and across the strip.
 
         Returns
         -------
         x : ndarray, shape (n,)
             Positions along the strip [m].
         y : ndarray, shape (n, k)
-            Positions across it [m], ascending.
+            Positions across the strip [m], ascending.
         shapes : ndarray, shape (m, n, k)
             Deflections in the direction of bending, real.
         across : ndarray, shape (m, n)
-            Those in the direction across, which is -y.
+            Deflections in the direction across, which is -y.
 
         None where the sections keep their shape, or their width is not known.
         """
@@ -170,14 +170,14 @@ class Modes(TellsKinds, StatesModelError):
         return x, y, np.real(self.surface(x, eta)), np.real(self.shape(x, 1))
 
     def _over_length(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Positions along the beam over its length; a ValueError if one [m] is not on it."""
+        """Divide positions x by the length; raise a ValueError if one [m] is not on the beam."""
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
         if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
             raise ValueError(f"x: positions run from 0 to the length {self.scene.beam.length:g} m")
         return np.minimum(xi, 1.0)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the mode shapes, those of a strip that twists or cambers as seen from above."""
+        """Draw the mode shapes; a strip that twists or cambers is seen from above."""
         if (mesh := self.mesh()) is not None:
             return plot_surfaces(*mesh, self.labels(), ax, self.display_units)
         x = np.linspace(0, self.scene.beam.length, 201)
@@ -196,7 +196,9 @@ class Modes(TellsKinds, StatesModelError):
     ) -> None:
         """Write the mode shapes as a mesh file for ParaView; see `common.plots.export.write_shapes`.
 
-        A strip that twists or cambers is drawn in its own width.  The labels are `labels()` if not given.
+        A strip that twists or cambers is written as a surface, with its true width if `width` [m] is not
+        given; any other beam as a ribbon, a tenth of its length wide if not given.  The labels are `labels()`
+        if not given.  With `force`, a file that exists is overwritten.
         """
         mesh, drawn = self.mesh(), width
         if mesh is None:
@@ -208,7 +210,7 @@ class Modes(TellsKinds, StatesModelError):
         write_shapes(path, x, shapes, self.labels() if labels is None else labels, drawn, force, across)
 
     def labels(self) -> list[str]:
-        """One line of text for each mode."""
+        """Describe each mode in one line: number, frequency or growth rate, and kind."""
         kinds = [""] * len(self.frequency) if self.kinds is None else [f", {kind}" for kind in self.kinds]
         values = enumerate(zip(self.frequency, self.growth_rate, kinds, strict=True), 1)
         sizes = ((i, f"{g:.4g} 1/s" if np.isnan(f) else f"{f:.5g} Hz", kind) for i, (f, g, kind) in values)
@@ -216,7 +218,7 @@ class Modes(TellsKinds, StatesModelError):
 
 
 def drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
-    """Directions that are drawn solid and dashed, and their names."""
+    """Return the directions that are drawn solid and dashed, and their names."""
     solid, names = first_drawn(scene), name_directions(scene)
     return (solid, 1 - solid), (names[solid][0], names[1 - solid][0])
 
@@ -277,7 +279,8 @@ def natural_modes(
         None if tolerance is None else within("tolerance", tolerance, *discretization_choice.TOLERANCES)
     )
     if scene.chooses_physics:
-        from beamdyn.modes.model_error.effect_choice import choose_physics  # few calls need it
+        # Imported here, as few calls need it.
+        from beamdyn.modes.model_error.effect_choice import choose_physics
 
         scene = choose_physics(scene, speeds, modes, tolerance)
     solution = discretization_choice.solve_to_tolerance(scene, discretization, speeds, modes, tolerance)
@@ -316,9 +319,9 @@ def natural_modes(
 
 
 def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | None) -> np.ndarray:
-    """Modes (n, m) turned so that the larger tip deflection is real and positive.
+    """Scale modes (n, m) by signs or phases that make the larger tip deflection real and positive.
 
-    Those of sections that twist or camber are so at the corner of the tip in the direction across.
+    For sections that twist or camber, the deflection at the tip's corner in the direction across counts.
     """
     tips = equations.tips @ vectors
     larger = tips[np.abs(tips).argmax(axis=0), np.arange(tips.shape[1])]
@@ -329,14 +332,14 @@ def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | N
 
 
 def status_of(s: np.ndarray) -> np.ndarray:
-    """Status of modes in a word, by their eigenvalues [1/s]: both of one shape."""
+    """Name the status of modes, such as "stable" or "flutter", from eigenvalues [1/s] of any shape."""
     growing, oscillating = np.real(s) > 0, np.imag(s) != 0
     without_growth = np.where(oscillating, "stable", np.where(s == 0, "neutral", "overdamped"))
     return np.where(growing, np.where(oscillating, "flutter", "divergence"), without_growth)
 
 
 def frequency_of(s: np.ndarray) -> np.ndarray:
-    """Frequencies [Hz] of modes by their eigenvalues [1/s], of one shape; nan of others than stable ones."""
+    """Compute frequencies [Hz] from eigenvalues [1/s] of any shape; nan unless a mode is stable."""
     vibrates = (np.real(s) <= 0) & ((np.imag(s) != 0) | (s == 0))
     return np.where(vibrates, np.imag(s) / (2 * np.pi), np.nan)
 
@@ -350,24 +353,18 @@ def warn_of_modes(
     growth_rate: np.ndarray,
     tolerance: float | None,
 ) -> Iterator[Statement]:
-    """Yield what limits the answer, by errors and growth rates (S, m) at speeds (S,), and static loads."""
+    """Yield warnings about modes: errors and growth rates (S, m) at speeds (S,), and static loads."""
     scene = model.scene
     yield from warn_of_left_out(scene)
     unstable = growth_rate > 0
     if unstable.any():
         s = int(unstable.any(axis=1).argmax())
-        yield Statement(
-            "unstable at ",
-            Speeds(speeds[s]),
-            f": {unstable[s].sum()} mode(s) grow; see growth_rate",
-            kind=GROWING,
-            quantity="growth rate [1/s]",
-            value=growth_rate[s].max(),
-            limit=0.0,
-        )
+        said = "unstable at ", Speeds(speeds[s]), f": {unstable[s].sum()} mode(s) grow; see growth_rate"
+        rate = {"quantity": "growth rate [1/s]", "value": growth_rate[s].max(), "limit": 0.0}
+        yield Statement(*said, kind=GROWING, **rate)
     yield from warn_of_strain(strain.max(initial=0))
     if scene.physics.large_deflection:
-        # It is imported here for the time that it takes to import it.
+        # Imported here, because the import takes long.
         from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 
         solver = cast("DeflectedSolver", model.solver)
@@ -385,6 +382,6 @@ def warn_of_modes(
 
 
 def provenance_of(solution: EstimatedModes, start: float) -> Provenance:
-    """How modes were found, since a start by `perf_counter` [s]."""
+    """Build the provenance of modes, with the time since a start by `perf_counter` [s]."""
     names = str(solution.model.discretization), str(solution.model.compared.discretization)
-    return Provenance(__version__, *names, wall_time=perf_counter() - start)
+    return Provenance.since(start, *names)

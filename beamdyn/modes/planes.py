@@ -1,4 +1,4 @@
-"""Two planes of bending: those that nothing couples, each as a scene in one plane."""
+"""Separation of two uncoupled planes of bending into scenes in one plane each."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _QUARTER = math.pi / 2
 
 
 def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
-    """Split a scene into scenes of slender beams in one plane.
+    """Split a scene into scenes of slender beams in one plane each.
 
     Parameters
     ----------
@@ -28,8 +28,8 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
     Returns
     -------
     tuple of Scene
-        The scene itself if it is of a slender beam in one plane.  Of one in two planes that nothing couples,
-        that of the direction of bending at the root, and that across; else nothing.
+        The scene itself if its beam is slender and in one plane.  For two uncoupled planes of a slender beam,
+        a scene for the direction of bending at the root, and one for the direction across; else empty.
     """
     if scene.is_slender_beam_in_one_plane:
         return (scene,)
@@ -44,7 +44,7 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
     properties = ("bending_stiffness", "shear_stiffness", "rotary_inertia")
     unread = (*(f"second_{name}" for name in properties), *properties[1:], "twist")
     first = replace(beam, **dict.fromkeys(unread))
-    if tip is not None:  # it turns about another axis in the second direction
+    if tip is not None:  # the tip body turns about another axis in the second direction
         moments = tip.inertia_about_bending_direction, tip.inertia, tip.axial_inertia
         tip = TipMass(tip.mass, tip.offset, *moments)
     second = replace(first, bending_stiffness=beam.second_bending_stiffness, tip=tip, outer_fibre=None)
@@ -60,12 +60,12 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
 
 
 def refuse_uncovered(scene: Scene, speed: float) -> None:
-    """Refuse, by name, what the theorem of `beamdyn.modes.bounds` does not cover.
+    """Refuse a scene with features, named in the message, that `beamdyn.modes.bounds` does not cover.
 
     Raises
     ------
     InvalidValue
-        With the remedy.
+        If the theorem does not cover the scene; the message has the remedy.
     """
     bound = "bounds are known for an undamped slender beam on a clamped root"
     for name in ("shear", "rotary_inertia", "camber", "torsion", "stretch", "large_deflection"):
@@ -94,7 +94,7 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
 
 
 def _quarter_turns(beam: Beam) -> int | None:
-    """Number of quarter turns by which all sections are turned; None if that is not a whole number."""
+    """Return the number of quarter turns by which all sections are turned; None if it is not whole."""
     if beam.twist is None:
         return 0
     if any(any(row[1:]) for row in beam.twist.coefficients):

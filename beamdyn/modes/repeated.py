@@ -1,4 +1,4 @@
-"""Model errors of results whose analysis is repeated with each effect that the model leaves out."""
+"""Model errors of results, found by repeating the analysis with each effect that the model leaves out."""
 
 from __future__ import annotations
 
@@ -27,22 +27,23 @@ Answer = TypeVar("Answer")
 BY_FREQUENCY = "by the first frequency"
 _LOADED = "it, or what it was made of, was loaded from a file without it: ask for it before saving"
 _NOTHING = "there is no value that it could change"
-_LOWEST, _SMALL = 2, 1e-5  # lowest modes, and change of their frequencies up to which nothing is repeated
+# Number of lowest modes, and relative change of their frequencies up to which nothing is repeated.
+_LOWEST, _SMALL = 2, 1e-5
 
 
 class JudgedByRepeating(StatesModelError):
-    """Base of results whose model error is found by the same analysis of the scene with each effect.
+    """Base class of results whose model error is found by repeating the analysis with each effect.
 
-    A subclass has `judged`.  Its analysis is decorated by `repeatable`, or sets `again`.
+    A subclass implements `judged`.  The analysis is decorated by `repeatable`, or sets `again`.
 
     Attributes
     ----------
     again : callable or None
-        The analysis with the arguments that gave this result, of another scene; None in a result that was
+        Function that repeats the analysis with these arguments for another scene; None in a result that was
         loaded from a file without its model error.
     follows_stiffness : bool
-        Whether values grow as the compliance of the first mode does: so what large deflection changes in them
-        is estimated, where the analysis is one of the straight beam.
+        Whether values grow as the compliance of the first mode does, so that their change by large deflection
+        can be estimated where the analysis is for straight beams.
     """
 
     judged_by_solving = True
@@ -50,31 +51,31 @@ class JudgedByRepeating(StatesModelError):
     follows_stiffness: ClassVar[bool] = True
 
     def judged(self, found: Any) -> np.ndarray:
-        """Values of a result of this kind, at the places that matter in this one."""
+        """Select the values of a result of this kind whose model error is stated."""
         raise NotImplementedError
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """Arguments with which the analysis is repeated for no more than the values that are judged."""
+        """Arguments that limit a repeated analysis to the values whose model error is stated."""
         return {}
 
     @property
     def bending_speed(self) -> float:
-        """Speed [rad/s] at which large deflection is judged."""
+        """Speed [rad/s] at which the change by large deflection is estimated."""
         return getattr(self, "speed", 0.0)
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the values that are `judged`, by the effects left out."""
+        """Changes of the values selected by `judged` by the effects left out of the model."""
         if self.again is None or not np.isfinite(self.judged(self)).any():
             return nothing_known(self.scene, _LOADED if self.again is None else _NOTHING)
         found, name = left_out_by_solving(self.scene, self.solve), LARGE_DEFLECTION.name
-        if reason := found.not_known.get(name):  # in two planes, or at an oblique angle
+        if reason := found.not_known.get(name):  # not known in two planes, or at an oblique angle
             found = _with_change(found, name, self.judged(self), self.bent_values(self.judged(self), reason))
         return replace(found, counted=self.counted or found.counted)
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Values of a scene with the effect of a name; by large deflection as far as the analysis allows."""
+        """Solve a scene with the named effect; large deflection only as far as the analysis allows."""
         own = self.judged(self)
         if scene == self.scene or self.again is None:
             return SolvedValues(own)
@@ -88,21 +89,22 @@ class JudgedByRepeating(StatesModelError):
         except InvalidValue as refusal:
             if name == LARGE_DEFLECTION.name:
                 return self.bent_values(self.solve(scene.straightened, "").values, refusal.bound)
-            if scene.models_width and name == CAMBER.name:  # sections that camber nowhere bound it
-                return self.solve(without_camber(self.scene), name)._replace(assumed=MOST_CAMBER)
+            if scene.models_width and name == CAMBER.name:  # sections that camber nowhere bound the change
+                held_flat = without_camber(replace(scene, physics=self.scene.physics))
+                return self.solve(held_flat, name)._replace(assumed=MOST_CAMBER)
             return SolvedValues(np.full(own.shape, np.nan), refusal.bound)
 
     @cached_property
     def _small_changes(self) -> dict[str, float]:
-        """Changes of the first frequency by effects that change the lowest frequencies hardly at all."""
+        """Changes of the first frequency by effects that hardly change the lowest frequencies."""
         changes = left_out_of_frequencies(self.scene, self.bending_speed, _LOWEST).changes
         small = {name: each for name, each in changes.items() if np.abs(each).max() <= _SMALL}
         return {name: float(each[0]) for name, each in small.items() if name != LARGE_DEFLECTION.name}
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Values with large deflection, by the first frequency; nan, and why, if they do not follow that.
+        """Estimate the values with large deflection from the first frequency; nan, and why, if impossible.
 
-        They are those of the straight beam where rotation does not bend it.
+        The values are those of the straight beam where rotation does not bend it.
         """
         effects = left_out_of_frequencies(self.scene, self.bending_speed, 1)
         name = LARGE_DEFLECTION.name
@@ -114,7 +116,7 @@ class JudgedByRepeating(StatesModelError):
 
 
 def _with_change(found: LeftOutEffects, name: str, own: np.ndarray, bent: SolvedValues) -> LeftOutEffects:
-    """The changes with that of an effect that was not known, if it is now."""
+    """Add to the changes that of an effect that was unknown before, if it is known now."""
     with np.errstate(divide="ignore", invalid="ignore"):
         change = bent.values / own - 1
     if not np.isfinite(change).all():
@@ -125,13 +127,13 @@ def _with_change(found: LeftOutEffects, name: str, own: np.ndarray, bent: Solved
 
 
 def left_out_of_frequencies(scene: Scene, speed: float, modes: int) -> LeftOutEffects:
-    """Changes of the lowest natural frequencies at a speed: shape (m,)."""
+    """Find changes of the lowest natural frequencies at a speed by the effects left out: shape (m,)."""
     with unannounced():
         return natural_modes(scene, speed, modes).left_out_effects
 
 
 def repeatable(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
-    """Make an analysis of a scene, or of a repeatable result, keep in its result how it is done `again`."""
+    """Make an analysis of a scene, or of a repeatable result, keep in its result how to repeat it."""
     signature = inspect.signature(analysis)
 
     @functools.wraps(analysis)
@@ -139,10 +141,11 @@ def repeatable(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Ans
         result = analysis(*given, **named)
         (_, source), *others = signature.bind(*given, **named).arguments.items()
         options = dict(others)
-        options |= options.pop("options", {})  # of `solve_ivp`
-        # The function with all its decorators, which is found by name where it is pickled.
+        options |= options.pop("options", {})  # options of `solve_ivp`
+        # The function with all its decorators, found by name where it is unpickled.
         public = vars(sys.modules[analysis.__module__])[analysis.__name__]
-        if isinstance(source, Scene) or getattr(source, "again", None) is not None:  # none that was loaded
+        # Results loaded from files cannot be repeated.
+        if isinstance(source, Scene) or getattr(source, "again", None) is not None:
             vars(result)["again"] = functools.partial(_repeat, public, source, options)
         return result
 
@@ -152,5 +155,8 @@ def repeatable(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Ans
 def _repeat(
     analysis: Callable[..., Any], source: Any, options: dict[str, Any], scene: Scene, **others: Any
 ) -> Any:
-    """Do an analysis, with some other options, of another scene, or of its source's result of that."""
+    """Repeat an analysis for another scene, with some options changed.
+
+    An analysis of a result gets that result repeated for the scene.
+    """
     return analysis(scene if isinstance(source, Scene) else source.again(scene), **options | others)

@@ -1,4 +1,4 @@
-"""Guaranteed bounds of the eigenvalues of bending: the Ritz part, and the residual of all other functions.
+"""Guaranteed bounds of eigenvalues of bending: from a Ritz part, and the residual of all other functions.
 
 All quantities are nondimensional: x is x/L, mass and stiffness are relative to the segment at the root.
 
@@ -13,18 +13,18 @@ z = lambda^2 are those at which the form
 
 has a kernel, and the k-th of them is at least z if Q_z >= 0 on a subspace of codimension k - 1.
 
-**The split.**  The head, or Ritz part, is spanned by some trial functions, of any kind; the tail is its
+**The split.**  The Ritz part is spanned by trial functions of any kind; the tail is its
 orthogonal complement with respect to a.  On the tail P_j <= tail_j a, where tail_j is a trace,
 
-    tail_j = trace(P_j) - trace(P_j on the head),  for instance  trace(P1) = int N_B(x) int_0^x 1/EI,
+    tail_j = trace(P_j) - trace(P_j on the Ritz part),  for instance  trace(P1) = int N_B(x) int_0^x 1/EI,
 
 because P_j is a sum of squares of functionals whose norms the cantilever, being statically
 determinate, has in closed form.  Hence Q_z >= q a on the tail with q = 1 - sum_j max(0, -c_j) tail_j.
 
-**The coupling.**  For v of the head and w of the tail, integrating from the tip inwards,
+**The coupling.**  For v of the Ritz part and w of the tail, integrating from the tip inwards,
 sum_j c_j P_j(v, w) = int F w'', where F is the moment that the loads of v cause; and as int EI p w'' = 0 for
-curvatures p of the head, it is int (F - EI p) w'' <= sqrt(R(v, v) a(w, w)), R = int (F - EI p)^2 / EI.
-All this for any p; the best is the head's answer to the loads.  On cells where F and EI p are
+curvatures p of the Ritz part, it is int (F - EI p) w'' <= sqrt(R(v, v) a(w, w)), R = int (F - EI p)^2 / EI.
+All this for any p; the best is the Ritz part's answer to the loads.  On cells where F and EI p are
 polynomials, R is integrated exactly with an upper bound of 1/EI on each.
 
 **The theorem.**  Q_z(v + w) >= Q_z(v) - 2 sqrt(R a(w, w)) + q a(w, w) >= (Q_z - R / q)(v).  So, if q > 0
@@ -33,7 +33,6 @@ Nothing is assumed of other eigenvalues, signs or the speed.  Assumptions and ro
 
 **Two planes** that the twist or the mount couples.  With the curvature vector k = (v'', w'') and the
 stiffness tensor D(x) of the sections, turned by the twist,
-tensor D(x) of the sections, turned by the twist,
 
     a(u, u) = int k . D k,    P_mass = int rho A |u|^2 + m |t|^2,    P_tension = int N |u'|^2,
 
@@ -49,11 +48,11 @@ P_soft <= P_mass and s . T s >= (least eigenvalue of T) |s|^2 are used on the ta
 **Twisting by inertia.**  A tip body with a product of inertia on the axes of rotation adds
 H int (v' w'' - v'' w'), a form of either sign.  It is int int k(x) . K(x, s) k(s) with the kernel
 K = (H/2) sign(s - x) (0, 1; -1, 0).  The squares of its eigenvalues relative to a have the sum
-H^2 det(int D^-1) / 2, and on the tail at most that less the head's.
+H^2 det(int D^-1) / 2, and on the tail at most that less the trace on the Ritz part.
 
 **The coupling.**  Loads cause a moment vector F by the static balance of the cantilever, in fixed axes; with
-any curvatures p of the head the tail sees F - D p, and R = int (F - D p) . D^-1 (F - D p), where the axes of
-the section have one EI each.  The rest is as in one plane.
+any curvatures p of the Ritz part the tail sees F - D p, and R = int (F - D p) . D^-1 (F - D p), where the
+axes of the section have one EI each.  The rest is as in one plane.
 """
 
 from __future__ import annotations
@@ -79,23 +78,23 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, tilting_inertia
 
 _EPS = float(np.finfo(float).eps)
-_MOST_STEPS = 12  # steps of the search for z from a Ritz value
-_LARGEST_STEP = 10.0  # largest step of this search over 1 + |z|: a bound beyond it would be useless
+_MOST_STEPS = 12  # largest number of steps of the search for z from a Ritz value
+_LARGEST_STEP = 10.0  # largest step of the search for z, over 1 + |z|: a bound beyond it would be useless
 
 
 class Enclosure(ABC):
-    """Bounds of the lowest z of one problem, from the head and what bounds the tail.
+    """Bounds of the lowest eigenvalues z of one problem, from its Ritz part and bounds of the tail.
 
     Parameters
     ----------
     speed : float
         Nondimensional speed.
     stiffness : ndarray, shape (n, n)
-        Energies a of pairs of functions of the head.
+        Energies a of pairs of functions of the Ritz part.
     forms : ndarray, shape (m, n, n)
-        The forms P_j on the head.
+        The forms P_j on the Ritz part.
     spin, mass : ndarray, shape (m,)
-        Parts of their coefficients c_j per squared speed and per -z.
+        Parts of the coefficients c_j per squared speed and per -z.
     spin_terms : ndarray, shape (m,)
         Sums of the absolute values of the terms of `spin`.
     unit : float
@@ -112,22 +111,25 @@ class Enclosure(ABC):
 
     @abstractmethod
     def _tail(self, coefficients: np.ndarray, terms: np.ndarray) -> float:
-        """Upper bound of -sum_j c_j P_j on the tail relative to a: 1 - q, with the rounding of its terms."""
+        """Bound how far the forms lower `a` on the tail, relative to `a`, with rounding.
+
+        In the docstring of this module it is 1 - q.
+        """
 
     @abstractmethod
     def _residual(self, coefficients: np.ndarray) -> np.ndarray:
-        """Residual R of the loads with coefficients c_j, shape (n, n)."""
+        """Compute the residual R of this module (n, n) for loads with coefficients c_j of the forms."""
 
     @abstractmethod
     def _residual_allowance(self, terms: np.ndarray) -> float:
-        """Bound of the rounding error of R: of the products, and of the moments in them."""
+        """Bound the rounding error of the residual R of this module: products, and moments."""
 
     @abstractmethod
     def _sizes(self) -> np.ndarray:
-        """Traces of the absolute terms of the forms on the head, shape (m,)."""
+        """Compute the traces of the absolute terms of the forms on the Ritz part, shape (m,)."""
 
     def bounds(self, modes: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute lower and upper bounds of the lowest z."""
+        """Compute lower and upper bounds of the lowest eigenvalues z = lambda^2, (modes,) each."""
         mass = self._sum(self.mass)
         starts = -np.real(self._solver.solve(np.array([self.speed]), modes).eigenvalue[0] ** 2)
         lower, upper = (
@@ -138,46 +140,58 @@ class Enclosure(ABC):
 
     @cached_property
     def ritz_critical_speed(self) -> float:
-        """Critical speed in the space of the head: never below the exact one but by rounding."""
+        """Critical speed in the space of the Ritz part, an upper bound of the exact one to rounding."""
         return self._solver.critical_speed
 
     @cached_property
     def _solver(self) -> Solver:
-        """Solver of the eigenproblem on the head, whose Ritz values the search starts from."""
+        """Solver of the eigenproblem on the Ritz part, whose Ritz values start the search."""
         mass = self._sum(self.mass)
         zero = np.zeros_like(mass)
         return Solver(SteadyPencil(mass, zero, zero, self.stiffness, self._sum(self.spin), zero[0]))
 
     def upper_form(self, z: float) -> np.ndarray:
-        """Q_z on the head plus the rounding allowance: with k + 1 eigenvalues <= 0, mode k is at most z."""
+        """Compute this module's form Q_z on the Ritz part, plus rounding.
+
+        If k + 1 of its eigenvalues are at most 0, mode k (from 0) has an eigenvalue of at most z.
+        """
         coefficients, terms = self._coefficients(z)
         return self.stiffness + self._sum(coefficients) + self._allowance(terms) * np.eye(len(self.stiffness))
 
     def lower_form(self, z: float) -> np.ndarray | None:
-        """Q_z - R/q minus the rounding allowance: with <= k eigenvalues < 0, mode k is at least z."""
+        """Compute Q_z - R/q of this module, less rounding; None where there is no bound.
+
+        If at most k of its eigenvalues are negative, mode k (from 0) has an eigenvalue of at least z.
+        """
         return self._lower_form(*self._coefficients(z))
 
     def stiffness_form(self, squared_speed: float) -> np.ndarray | None:
-        """The lower form at z = 0 and another speed: without eigenvalues < 0, no slower speed is critical."""
+        """Compute the lower form at z = 0: without eigenvalues < 0, no slower speed is critical."""
         return self._lower_form(squared_speed * self.spin, squared_speed * self.spin_terms)
 
     def _lower_form(self, coefficients: np.ndarray, terms: np.ndarray) -> np.ndarray | None:
-        """Q - R/q minus the rounding allowance, for coefficients c_j and the sums of their absolute terms."""
+        """Compute Q - R/q of this module less rounding, from coefficients c_j and their terms.
+
+        For each coefficient, `terms` is the sum of its terms' absolute values.
+        """
         tail = self._tail(coefficients, terms)
         if tail >= 1:
             return None
-        # Twice, with twice the allowance, because |a + b|^2 <= 2 (a^2 + b^2).
+        # R is doubled, with twice the allowance, because |a + b|^2 <= 2 (a^2 + b^2).
         R = 2 * self._residual(coefficients)
         allowance = self._allowance(terms) + 2 * self._residual_allowance(terms) / (1 - tail)
         return self.stiffness + self._sum(coefficients) - R / (1 - tail) - allowance * np.eye(len(R))
 
     def _coefficients(self, z: float) -> tuple[np.ndarray, np.ndarray]:
-        """Coefficients c_j(z) of the forms, and the sums of the absolute values of their terms."""
+        """Compute the coefficients c_j(z) of this module's forms, and sums of absolute terms."""
         squared = self.speed**2
         return squared * self.spin - z * self.mass, squared * self.spin_terms + abs(z) * self.mass
 
     def _allowance(self, terms: np.ndarray) -> float:
-        """Bound of the rounding error of Q: of an entry of a Gram matrix it is <= unit sqrt(P_ii P_jj)."""
+        """Bound the rounding error of the form Q of this module, from the coefficients' absolute terms.
+
+        For an entry of a Gram matrix of a form P it is at most unit sqrt(P_ii P_jj).
+        """
         return float(self.unit * (np.trace(self.stiffness) + terms @ self._sizes()))
 
     def _sum(self, coefficients: np.ndarray) -> np.ndarray:
@@ -185,14 +199,14 @@ class Enclosure(ABC):
 
 
 class PlaneEnclosure(Enclosure):
-    """Bounds in one plane, at one speed.
+    """Bounds of the eigenvalues in one plane, at one speed.
 
     Parameters
     ----------
     scene : Scene
         A nondimensional scene.
     functions : int
-        Number n of functions of the head, on each segment where these have their own.
+        Number n of functions of the Ritz part, or on each segment, if segments have their own.
     speed : float
         Nondimensional speed.
     flexibility : Profile or None
@@ -203,7 +217,7 @@ class PlaneEnclosure(Enclosure):
         self.scene, self.speed, self.flexibility = scene, speed, flexibility
         self.part = PlaneRitzPart(scene.beam, functions)
         self.stiffness, self.forms = self.part.stiffness, self.part.forms
-        # Coefficients of the forms, and the absolute values of their terms.
+        # Coefficients of the forms, and their terms' absolute values.
         tip, psi = scene.beam.tip or TipMass(0.0), scene.mount.bending_angle
         tension, turning = (v**2 for v in exact_cos_sin(scene.mount.precone))
         root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
@@ -228,7 +242,7 @@ class PlaneEnclosure(Enclosure):
 
     @cached_property
     def _residuals(self) -> tuple[np.ndarray, float]:
-        """Products of unbalanced moments, and an upper bound of the largest EI over the least in a cell."""
+        """Integrals of products of unbalanced moments, and an upper bound of ratios of EI within a cell."""
         assert self.flexibility is not None
         compliance = bound_on_cells(self.flexibility, self.part.ends)
         stiffness = bound_on_cells(self.scene.beam.bending_stiffness, self.part.ends)
@@ -236,13 +250,13 @@ class PlaneEnclosure(Enclosure):
 
     @cached_property
     def _traces(self) -> np.ndarray:
-        """Upper bounds of the traces of the forms on all functions, relative to a."""
+        """Upper bounds of the traces of the forms on all functions, relative to the strain energy a: (4,)."""
         assert self.flexibility is not None
         return bound_traces(self.scene.beam, self.flexibility)
 
     @cached_property
     def tails(self) -> np.ndarray:
-        """Upper bounds tail_j of the four forms on the tail, relative to a."""
+        """Upper bounds of the four forms on the tail, relative to the strain energy a, shape (4,)."""
         head = [np.trace(np.linalg.solve(self.stiffness, form)) for form in self.forms]
         return np.maximum(self._traces - head, 0) + self.unit * self._traces
 
@@ -257,18 +271,18 @@ class PlaneEnclosure(Enclosure):
 
 
 class CoupledEnclosure(Enclosure):
-    """Bounds in two coupled planes, at one speed.
+    """Bounds of the eigenvalues in two coupled planes, at one speed.
 
-    The forms are, in this order, those of the tension N_B per squared speed, of N_A per acceleration of the
-    root, of the mass, of the mass in the plane of rotation, of spin and of inertia of the slope at the tip,
-    and of twisting by inertia.
+    The forms are, in this order: the tension N_B per squared speed, the tension N_A per acceleration of the
+    root, the mass, the mass in the plane of rotation, spin and inertia of the slope at the tip,
+    and twisting by inertia.
 
     Parameters
     ----------
     scene : Scene
         A nondimensional scene in two planes without precone.
     moments : int
-        Number of bending moments of the head in each direction.
+        Number of bending moments of the Ritz part in each direction.
     speed : float
         Nondimensional speed.
     flexibility : tuple of Profile
@@ -296,11 +310,11 @@ class CoupledEnclosure(Enclosure):
         self._direction, self._slope = d, self.part.slope[..., -1]
         tilts = [self._slope @ T @ self._slope.T for T in self._tensors]
         self.forms = np.concatenate([self.part.forms(d), tilts, self.part.twisting[None]])
-        # As in one plane, with two products at a point; the head is of a stiffness as near as the misfit.
+        # There are two products at a point; the stiffness of the Ritz part is exact to the misfit.
         products = 2 * self.part.quadrature.xi.size
         self.unit = 4 * _EPS * (products + len(self.stiffness)) + self.part.misfit
 
-    # The tail -------------------------------------------------------------------------------------
+    # Bounds on the tail -----------------------------------------------------------------------------
 
     @cached_property
     def _traces(self) -> np.ndarray:
@@ -317,7 +331,7 @@ class CoupledEnclosure(Enclosure):
 
     @cached_property
     def _twisting_tail(self) -> float:
-        """Upper bound of twisting by inertia on the tail, relative to a, by the norm of its kernel."""
+        """Upper bound of twisting by inertia on the tail, relative to a, from the norm of its kernel."""
         slope = self._slope
         flexibility = slope.T @ np.linalg.solve(self.stiffness, slope) + self.tails[3] * np.eye(2)
         total = np.linalg.det(flexibility) / 2
@@ -333,11 +347,14 @@ class CoupledEnclosure(Enclosure):
         twisting = terms[6] * self._twisting_tail if terms[6] else 0.0
         return float(self.unit + twisting + np.maximum(signed + self.unit * rounding, 0) @ self.tails)
 
-    # The coupling: by the squared speed and by -z, which are coefficients of softening and of mass ---
+    # Residuals by squared speed and by -z, the coefficients of softening and of mass -----------------
 
     @cached_property
     def _residuals(self) -> np.ndarray:
-        """Products of moments that the head does not balance, by squared speed and -z: (2, n, 2, n)."""
+        """Integrals of products of moments that the Ritz part leaves unbalanced.
+
+        Shape (2, n, 2, n): moments by the squared speed, and by -z.
+        """
         n, d, (spin, inertia) = len(self.stiffness), self._direction, self._tensors
         of_spin = self.spin[:2], -np.outer(d, d), spin, self.spin[6]
         unbalanced = [
@@ -358,7 +375,7 @@ class CoupledEnclosure(Enclosure):
         return self.unit * products**2 + variation * len(self.stiffness) * moments**2
 
     def _of_all(self, traces: np.ndarray, twisting: float) -> np.ndarray:
-        """Sizes of the absolute terms of all forms (7,), by those of four (4,) and that of twisting."""
+        """Combine sizes of four forms' absolute terms (4,) and of twisting to those of all seven (7,)."""
         return np.array([*traces[:3], traces[2], *(self._tensor_terms * traces[3]), twisting])
 
     def _sizes(self) -> np.ndarray:
@@ -367,7 +384,7 @@ class CoupledEnclosure(Enclosure):
 
 
 def _search_bound(form: Callable, mass: np.ndarray, k: int, z: float, side: int) -> float:
-    """Move z until the k-th eigenvalue of form(z), k from 0, proves a lower (side -1) or upper (1) bound."""
+    """Move z until the k-th eigenvalue (from 0) of form(z) proves a lower (side -1) or upper (1) bound."""
     step = 0.0
     for _ in range(_MOST_STEPS):
         matrix = form(z)

@@ -1,4 +1,4 @@
-"""Trial functions with residuals that are known exactly, for the theorem of `beamdyn.modes.residual_bound`.
+"""Trial functions with exactly known residuals, for the theorem of `beamdyn.modes.residual_bound`.
 
 Their curvatures are piecewise polynomials on cells: polynomials on each segment of a beam of few segments,
 bending moments over the stiffness on a beam of many or where it almost vanishes.  So are all moments that
@@ -34,22 +34,23 @@ from beamdyn.modes.flexibility import bound_on_cells
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import ONE, Profile
 
-MOST_MOMENTS = 100  # moments in each of two coupled directions: two seconds of a core
+MOST_MOMENTS = 100  # largest number of moments in each of two coupled directions: two seconds of a core
 _FEW_SEGMENTS = 6  # segments up to which polynomials on each need fewer functions than moments over the beam
-_SAMPLES = 32  # samples of the stiffness on a segment, which decide about the basis only
-_STEEP = 300.0  # ratio of two of them, beyond which cells have to be graded
-_MOST_IN_ALL = 500  # functions on all segments together: an eigenproblem of a tenth of a second
+_SAMPLES = 32  # samples of the stiffness on a segment, which only decide about the basis
+_STEEP = 300.0  # ratio of two samples of the stiffness beyond which cells must be graded
+# Largest number of functions on all segments together: solving their eigenproblem takes a tenth of a second.
+_MOST_IN_ALL = 500
 _LARGEST_TURN = 0.25  # largest turn of a section from the middle of its cell [rad]
-_MISFIT = 1e-14  # relative, of the stiffness of the beam whose twist has polynomials for cosine and sine
-_MOST_DEGREE = 40  # highest degree of these polynomials in the twist
+_MISFIT = 1e-14  # relative error of the stiffness when polynomials replace cosine and sine of the twist
+_MOST_DEGREE = 40  # highest degree of the polynomials, in the twist, that replace its cosine and sine
 
 _CONDITIONS = CLAMPED._replace(stiffness="bending_stiffness")
 
 
 class RitzPart(ABC):
-    """Trial functions on a clamped beam, orthonormal in energy, in one plane (n, N) or in two (n, 2, N).
+    """Trial functions on a clamped beam, orthonormal in energy, in one plane (n, N) or two (n, 2, N).
 
-    Subclasses have the nondimensional `beam`.
+    Subclasses define the nondimensional `beam`.
     """
 
     beam: Beam
@@ -62,52 +63,52 @@ class RitzPart(ABC):
     @cached_property
     @abstractmethod
     def quadrature(self) -> ArcQuadrature:
-        """Gauss rule for products of two moments of the highest degree, and of less with properties."""
+        """Gauss rule that is exact for products of two moments, and for lower products with properties."""
 
     @cached_property
     @abstractmethod
     def bending(self) -> np.ndarray:
-        """Curvatures at the points, along fixed directions."""
+        """Curvatures of the functions at the points of the rule, along fixed directions."""
 
     def at(self, profile: Profile, rule: ArcQuadrature | None = None) -> np.ndarray:
-        """Values of a property at the points of the rule, or of another on the cells, shape (N,)."""
+        """Evaluate a property at the points of the quadrature, or of another rule on the cells: (N,)."""
         points = (rule or self.quadrature).cells.points
         return profile.split(self.ends.tolist()).at_points(points).ravel()
 
     @property
     def tip(self) -> TipMass:
-        """Rigid body at the tip."""
+        """Rigid body at the tip of the beam."""
         return self.beam.tip or TipMass(0.0)
 
     @cached_property
     def slope(self) -> np.ndarray:
-        """Slopes at the points, and at the tip: shape (..., N + 1)."""
+        """Slopes of the functions at the points and at the tip: shape (..., N + 1)."""
         return self.quadrature.integrate(self.bending)
 
     @cached_property
     def deflection(self) -> np.ndarray:
-        """Deflections at the points, and at the tip: shape (..., N + 1)."""
+        """Deflections of the functions at the points and at the tip: shape (..., N + 1)."""
         return self.quadrature.integrate(self.slope[..., :-1])
 
     @cached_property
     def centre(self) -> np.ndarray:
-        """Deflections of the centre of mass of the tip body."""
+        """Deflections of the tip body's centre of mass, per function."""
         return self.deflection[..., -1] + self.tip.offset * self.slope[..., -1]
 
     @cached_property
     def loads(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Properties N_B, N_A and the mass, at the points."""
+        """Tension per squared speed, per root acceleration, and mass per length at the points of the rule."""
         n_a, n_b = axial_tension(self.beam)
         return self.at(n_b), self.at(n_a), self.at(self.beam.mass_per_length)
 
     def gram(self, values: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """Integrate products of values (n, ..., N) with a weight (..., N)."""
+        """Integrate products of values (n, ..., N) with a weight (..., N): shape (n, n)."""
         flat = values.reshape(len(values), -1)
         scale = np.broadcast_to(self.quadrature.weights * weight, values.shape[1:]).reshape(-1)
         return (flat * scale) @ flat.T
 
     def from_tip(self, values: np.ndarray, rule: ArcQuadrature | None = None) -> np.ndarray:
-        """Integrate from each point to the tip: shape (..., N); small values there keep their digits."""
+        """Integrate from each point to the tip, keeping the digits of small values there: shape (..., N)."""
         cells = (rule or self.quadrature).cells
         inwards = ArcQuadrature(Cells(-cells.ends[::-1], cells.points))
         return inwards.integrate(values[..., ::-1])[..., -2::-1]
@@ -117,23 +118,23 @@ class RitzPart(ABC):
 
 
 def most_functions(beam: Beam) -> int:
-    """Largest number of functions of a Ritz part: on each segment, or of moments in all."""
+    """Find the largest number of functions of a Ritz part: on each segment, or of moments in total."""
     most = MOST_FUNCTIONS - _extra_degrees(beam)
     return most if _bends_by_moments(beam) else min(most, _MOST_IN_ALL // segments_with_functions(beam))
 
 
 def segments_with_functions(beam: Beam) -> int:
-    """Number of segments that have functions of their own."""
+    """Count the segments that have functions of their own."""
     return 1 if _bends_by_moments(beam) else len(beam.breakpoints) - 1
 
 
 def basis(beam: Beam, functions: int) -> Ritz:
-    """The assumed modes of a Ritz part; the number is that on each segment where these have their own."""
+    """Choose the assumed modes of a Ritz part with a number of functions, per segment or of moments."""
     return Ritz(functions, "moments" if _bends_by_moments(beam) else "legendre")
 
 
 def _bends_by_moments(beam: Beam) -> bool:
-    """Whether polynomial curvatures do badly: on many segments, or where the stiffness almost vanishes."""
+    """Whether moments serve better than polynomial curvatures: many segments, or very small stiffness."""
     if len(beam.breakpoints) - 1 > _FEW_SEGMENTS:
         return True
     stiffness = beam.bending_stiffness.at_points(_SAMPLES)
@@ -141,16 +142,16 @@ def _bends_by_moments(beam: Beam) -> bool:
 
 
 def _extra_degrees(beam: Beam) -> int:
-    """Degrees by which moments, of loads or of the curvature, exceed the polynomials of the curvature."""
+    """Find the degree by which moments, of loads or of the curvature, exceed the curvature's polynomials."""
     return max(beam.mass_per_length.degree + 4, beam.bending_stiffness.degree)
 
 
 @dataclass(frozen=True)
 class PlaneRitzPart(RitzPart):
-    """Trial functions in one plane, and the moments that their loads cause.
+    """Trial functions in one plane, with the moments that their loads cause.
 
-    Forms and loads are, in this order, those of the tension N_B per squared speed, of the tension N_A per
-    acceleration of the root, of the mass with point masses and tip body, and of the slope at the tip.
+    Forms and loads are, in this order: the tension N_B per squared speed, the tension N_A per
+    acceleration of the root, the mass with point masses and tip body, and the slope at the tip.
 
     Parameters
     ----------
@@ -174,17 +175,17 @@ class PlaneRitzPart(RitzPart):
 
     @property
     def _degree(self) -> int:
-        """Degree of the curvatures."""
+        """Polynomial degree of the curvatures."""
         return (self.functions if self._ritz.on_each_segment else NODES) - 1
 
     @cached_property
     def quadrature(self) -> ArcQuadrature:
-        """Gauss rule for products of two moments of the highest degree, and of less with properties."""
+        """Gauss rule that is exact for products of two moments, and for lower products with properties."""
         return ArcQuadrature(Cells(self.ends, self._degree + _extra_degrees(self.beam) + 1))
 
     @cached_property
     def bending(self) -> np.ndarray:
-        """Curvatures at the points, shape (n, N)."""
+        """Curvatures of the functions at the points, shape (n, N)."""
         given = self._ritz.spaces(self.beam).functions(_CONDITIONS).samples[2]
         on_cells = given.reshape(len(given), len(self.ends) - 1, -1)
         series = on_cells @ legendre_series(on_cells.shape[-1])[: self._degree + 1].T
@@ -197,17 +198,17 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def _at_lumps(self) -> np.ndarray:
-        """Deflections of the point masses, shape (n, k)."""
+        """Deflections at the point masses, shape (n, k)."""
         return self.slope[:, :-1] @ self.quadrature.integrate_to(self.beam.lumps[0]).T
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """Energies of pairs of functions, shape (n, n): 1 but for rounding."""
+        """Energies of pairs of functions, shape (n, n): the unit matrix to rounding."""
         return self.gram(self.bending, self.at(self.beam.bending_stiffness))
 
     @cached_property
     def forms(self) -> np.ndarray:
-        """The forms as matrices, shape (4, n, n)."""
+        """Matrices of the four forms, shape (4, n, n)."""
         tension_b, tension_a, mass = self.loads
         slope, at_tip, centre = self.slope[:, :-1], self.slope[:, -1], self.centre
         inertia = self.gram(self.deflection[:, :-1], mass) + self.tip.mass * np.outer(centre, centre)
@@ -217,7 +218,7 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """Bending moments at the points that the loads of each function cause, shape (4, n, N)."""
+        """Bending moments at the points by the four loads of each function, shape (4, n, N)."""
         tension_b, tension_a, mass = self.loads
         slope, (xi, lumped) = self.slope[:, :-1], self.beam.lumps
         inertia = self.from_tip(self.from_tip(mass * self.deflection[:, :-1]))
@@ -227,10 +228,10 @@ class PlaneRitzPart(RitzPart):
         return np.array([*by_tension, inertia, np.broadcast_to(self.slope[:, -1:], slope.shape)])
 
     def residuals(self, compliance: np.ndarray) -> np.ndarray:
-        """Integrate products of moments that the functions do not balance, with a compliance of cells (c,).
+        """Integrate products of unbalanced moments with a compliance of cells (c,): shape (4, n, 4, n).
 
-        For the load j of the function i the moment is F_ji - EI p, where the curvature p of the functions is
-        the best answer if they are orthonormal: shape (4, n, 4, n).
+        The moment for the load j of the function i is F_ji - EI p, where the curvature p of the functions is
+        the best answer if they are orthonormal.
         """
         own = self.at(self.beam.bending_stiffness) * self.bending
         left = (self.moments - self.forms @ own).reshape(-1, own.shape[1])
@@ -243,9 +244,9 @@ class PlaneRitzPart(RitzPart):
 
 @dataclass(frozen=True)
 class CoupledRitzPart(RitzPart):
-    """Trial functions in two planes, orthonormal in energy but for interpolation.
+    """Trial functions in two planes, orthonormal in energy to interpolation errors.
 
-    Curvatures are those of smooth bending moments in either direction.
+    Curvatures are caused by smooth bending moments in either direction.
 
     Parameters
     ----------
@@ -282,7 +283,7 @@ class CoupledRitzPart(RitzPart):
         return ends
 
     def _turns(self, ends: np.ndarray) -> np.ndarray:
-        """Bounds of the angles by which sections are turned from the mean of their cell, shape (c,)."""
+        """Bound the angles by which sections are turned from the middle of their cell, shape (c,)."""
         parts = self._twist.split(ends.tolist())
         varying = tuple((0.0, *row[1:]) for row in parts.coefficients)
         return bound_on_cells(Profile(parts.breakpoints, varying), ends)
@@ -294,7 +295,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def ratios(self) -> np.ndarray:
-        """Upper bounds of ratios of two stiffnesses in a cell, in the directions i and j: shape (2, 2)."""
+        """Upper bounds of the ratio of stiffness i to stiffness j within a cell: shape (2, 2)."""
         largest = np.array([bound_on_cells(p, self.ends) for p in self.stiffnesses])
         return (largest[:, None] * self.compliance).max(axis=-1)
 
@@ -304,24 +305,24 @@ class CoupledRitzPart(RitzPart):
 
     @property
     def misfit(self) -> float:
-        """Relative distance of the stiffness from that of the beam of which integrals are exact."""
+        """Relative error of the stiffness when polynomials replace cosine and sine of the twist."""
         return self._turning[1]
 
     @cached_property
     def _nodes(self) -> ArcQuadrature:
-        """Points through which curvatures are interpolated."""
+        """Nodes through which curvatures are interpolated."""
         return ArcQuadrature(Cells(self.ends, NODES))
 
     @cached_property
     def quadrature(self) -> ArcQuadrature:
-        """Gauss rule for products of two moments, in the axes of the section."""
+        """Gauss rule that is exact for products of two moments, in the axes of the section."""
         turns = 2 * self._turning[0] * self._twist.degree
         of_loads = self.beam.mass_per_length.degree + 4 + turns
         of_stiffness = max(p.degree for p in self.stiffnesses)
         return ArcQuadrature(Cells(self.ends, NODES - 1 + max(of_loads, of_stiffness) + 1))
 
     def _both_at(self, rule: ArcQuadrature) -> np.ndarray:
-        """Stiffnesses in the two directions at the points of a rule, shape (2, N)."""
+        """Evaluate both bending stiffnesses at the points of a rule, shape (2, N)."""
         return np.array([self.at(p, rule) for p in self.stiffnesses])
 
     def _turned(self, values: np.ndarray, rule: ArcQuadrature, sign: int) -> np.ndarray:
@@ -335,7 +336,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def curvature(self) -> np.ndarray:
-        """Curvatures in the axes of the section at the points, shape (n, 2, N)."""
+        """Curvatures of the functions in the axes of the section at the points, shape (n, 2, N)."""
         nodes = self._nodes
         moments = self._all_moments
         given = self._turned(moments, nodes, -1) / self._both_at(nodes)
@@ -347,9 +348,9 @@ class CoupledRitzPart(RitzPart):
 
     @property
     def _all_moments(self) -> np.ndarray:
-        """Bending moments along e1, e2 at the nodes (m, 2, N): polynomials, and what the first ones cause.
+        """Bending moments along e1, e2 at the nodes (m, 2, N): polynomials, and moments that these cause.
 
-        That is by inertia and by tension, where the beam vibrates as the first ones bend it.
+        The latter are by inertia and by tension of a beam that vibrates in the first polynomials' shapes.
         """
         first, nodes = self.number // 3, self._nodes
         count = self.number - 2 * first
@@ -365,18 +366,18 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def bending(self) -> np.ndarray:
-        """Curvatures along e1, e2 at the points, shape (n, 2, N)."""
+        """Curvatures of the functions along e1, e2 at the points, shape (n, 2, N)."""
         return self._turned(self.curvature, self.quadrature, 1)
 
     # Forms and loads ------------------------------------------------------------------------------
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """Energies of pairs of functions, shape (n, n): 1 but for interpolation and rounding."""
+        """Energies of pairs of functions, (n, n): the unit matrix to interpolation and rounding errors."""
         return self.gram(self.curvature, self._both_at(self.quadrature))
 
     def forms(self, direction: np.ndarray) -> np.ndarray:
-        """The forms of the tensions N_B, N_A, the mass, and the mass along a direction (2,): (4, n, n)."""
+        """Build the forms of tensions N_B, N_A, mass, and mass along a direction (2,): (4, n, n)."""
         tension_b, tension_a, mass = self.loads
         slope, along = self.slope[..., :-1], direction @ self.deflection
         inertia = self.gram(self.deflection[..., :-1], mass) + self.tip.mass * self.centre @ self.centre.T
@@ -386,21 +387,21 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def twisting(self) -> np.ndarray:
-        """The form of twisting by inertia, int (v' w'' - v'' w'), shape (n, n)."""
+        """Matrix of the form of twisting by inertia, int (v' w'' - v'' w'), shape (n, n)."""
         across = np.stack([-self.bending[:, 1], self.bending[:, 0]], axis=1)
         form = -np.tensordot(self.slope[..., :-1] * self.quadrature.weights, across, ((1, 2), (1, 2)))
         return (form + form.T) / 2
 
     @cached_property
     def twisting_size(self) -> float:
-        """Norm of slopes times norm of curvatures, of all functions together."""
+        """Norm of all functions' slopes times the norm of their curvatures, a size for rounding errors."""
         sizes = (np.sqrt(np.trace(self.gram(u, np.ones(1)))) for u in (self.slope[..., :-1], self.bending))
         return float(math.prod(sizes))
 
     def unbalanced(
         self, answer: np.ndarray, tension: np.ndarray, inertia: np.ndarray, tilt: np.ndarray, twisting: float
     ) -> np.ndarray:
-        """Bending moments in the axes of the section that loads cause, less those of the answer: (n, 2, N).
+        """Compute loads' bending moments in section axes minus those of the answer's curvature: (n, 2, N).
 
         Loads are parts of the tensions N_B, N_A (2,), a tensor (2, 2) times the mass, another times the slope
         at the tip, and a part of the twisting by inertia.  The answer has the curvatures that the functions
@@ -418,14 +419,14 @@ class CoupledRitzPart(RitzPart):
         return self._turned(fixed, rule, -1) - np.tensordot(answer, own, 1)
 
     def residuals(self, unbalanced: np.ndarray) -> np.ndarray:
-        """Integrate products of moments (m, 2, N) with the bounds of the compliance."""
+        """Integrate products of moments (m, 2, N) with the upper bounds of the compliance."""
         return self.gram(unbalanced, np.repeat(self.compliance, self.quadrature.cells.points, axis=1))
 
 
 def twist_degree(turn: float, ratio: float) -> tuple[int, float]:
-    """Degree in the twist of polynomials for its cosine and sine, and how far they change a stiffness.
+    """Find the degree of polynomials for cosine and sine of the twist, and their error of the stiffness.
 
-    Of an angle of at most `turn` from the middle of its range, interpolation in Chebyshev's points has an
+    For an angle of at most `turn` from the middle of its range, interpolation in Chebyshev points has an
     error of at most e = turn^(m+1) / (2^m (m+1)!) in each.  The matrix that turns curvatures is then
     R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy
     E grows at most by the root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.

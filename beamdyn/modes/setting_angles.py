@@ -1,4 +1,4 @@
-"""Setting angles at which the locus of the first frequency changes its shape."""
+"""Setting angles at which the first frequency's locus over speed changes between falling and rising."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from beamdyn._version import __version__
+from beamdyn.accuracy.refinement import THREE_DISCRETIZATIONS, error_of_finest
 from beamdyn.common.inputs.checks import InvalidValue, positive
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance
@@ -27,14 +27,15 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 
 _LINEAR = "the limits are of linear theory: of a bent beam the loci have another shape at every angle"
-_ROUNDING = 1e-12  # rounding of an angle [rad]: the cosine of a limit is a quotient of small differences
+# Rounding error of an angle [rad]: the cosine of a limit is a quotient of small differences.
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
 class SettingAngleLimits(JudgedByRepeating):
-    """Setting angles between which the first frequency rises and then falls with speed; unpacks as two.
+    """Setting angles between which the first frequency rises and then falls with speed (unpacks as two).
 
-    Below `first` it falls from rest on; between the two it rises and then falls below the top speed;
+    Below `first` the frequency falls from rest on; between both it rises and then falls below the top speed;
     above `second` it rises up to the top speed.
 
     `model_error` (2,) and `left_out`, computed when asked for, are what the physics left out would change in
@@ -45,7 +46,7 @@ class SettingAngleLimits(JudgedByRepeating):
     first, second : float
         The limits [rad]; nan where there is none.
     error : float
-        Estimated error of the two [rad].
+        Estimated error of both angles [rad].
     top_speed : float
         The top speed [rad/s].
     static_deflection : float
@@ -53,7 +54,7 @@ class SettingAngleLimits(JudgedByRepeating):
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How it was found.
+        Program version, discretization and computing time.
 
     Examples
     --------
@@ -77,16 +78,16 @@ class SettingAngleLimits(JudgedByRepeating):
     counted = "limit"
 
     def judged(self, found: SettingAngleLimits) -> np.ndarray:
-        """The two angles, of which the model error is stated: shape (2,)."""
+        """Select the two angles whose model error is stated: shape (2,)."""
         return np.array([*found])
 
     @property
     def bending_speed(self) -> float:
-        """Speed [rad/s] at which large deflection is judged."""
+        """Speed [rad/s] at which the change by large deflection is estimated."""
         return self.top_speed
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the one-line summary of the limits; see `Result.headline`."""
         yield f"{listed(np.degrees([*self]), 'deg')} up to {self.say_speed(self.top_speed)}"
         yield from (error_at_most(np.degrees(self.error), "deg"), warned(self.warnings))
 
@@ -102,7 +103,7 @@ def setting_angle_limits(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> SettingAngleLimits:
-    """Setting angles at which the first frequency stops falling, and starts rising up to the top speed.
+    """Compute setting angles past which the first frequency stops falling, and past which it only rises.
 
     Parameters
     ----------
@@ -164,9 +165,10 @@ def setting_angle_limits(
     first, second = _limits(model, top_speed)
     error, coarse = _ROUNDING, model.coarser  # at infinite speed the limits are those of the given basis
     if bounded:
-        distances = np.subtract((first, second), _limits(coarse, top_speed))
-        error += float(np.nanmax([*np.abs(distances), 0.0]))
-    deflection = np.nan  # over the length, at the second limit
+        of_coarse, of_coarsest = (np.array(_limits(each, top_speed)) for each in (coarse, coarse.coarser))
+        errors = error_of_finest(THREE_DISCRETIZATIONS, (first, second) - of_coarse, of_coarse - of_coarsest)
+        error += float(np.nanmax([*errors, 0.0]))
+    deflection = np.nan  # deflection over the length, at the second limit
     if bounded and not np.isnan(second):
         mounted = replace(scene, mount=replace(scene.mount, setting_angle=second))
         tip, _ = static_load(Model(mounted, model.discretization), speeds)
@@ -178,17 +180,19 @@ def setting_angle_limits(
         top_speed=top_speed,
         static_deflection=deflection,
         warnings=tuple(_limit_warnings(first, second, deflection)),
-        provenance=Provenance(
-            __version__, str(model.discretization), str(coarse.discretization), perf_counter() - start
-        ),
+        provenance=Provenance.since(start, str(model.discretization), str(coarse.discretization)),
         scene=chosen,
     )
 
 
 def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
-    """Both limits [rad], from the stiffness per squared speed K2 = A - cos(phi) B with B = r KGA."""
+    """Compute both limits [rad] from the matrix that multiplies the squared speed, A - cos(setting angle) B.
+
+    B is the radius of the root times the stiffness by the tension that a unit acceleration of the root
+    causes.
+    """
     pencil, stiffness = tangential.solver.pencil, tangential.equations.matrices[0]
-    by_tension = stiffness.get("root_axial", np.zeros_like(pencil.K2))  # - KGA
+    by_tension = stiffness.get("root_axial", np.zeros_like(pencil.K2))  # the matrix "root_axial" is minus KGA
     A, B = pencil.K2, -tangential.scene.mount.radius * by_tension
     v = tangential.solver.solve(np.zeros(1), 1).vector[0, :, 0]
     first = _arccos(float(v @ A @ v), float(v @ B @ v))
@@ -196,7 +200,7 @@ def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
         return first, _arccos(float(eigh(A, B, eigvals_only=True)[0]), 1.0) if B.any() else np.nan
 
     def slope(phi: float) -> float:
-        """Slope of the first squared frequency at the top speed."""
+        """Compute the slope of the first squared frequency over squared speed, at the top speed."""
         K2 = A - np.cos(phi) * B
         v = Solver(replace(pencil, K2=K2)).solve(np.array([top_speed]), 1).vector[0, :, 0]
         return float(v @ K2 @ v)
@@ -222,10 +226,6 @@ def _limit_warnings(first: float, second: float, deflection: float) -> Iterator[
     if not deflection <= LARGE_DEFLECTION:
         text = f" (static tip deflection {deflection:.3g} of the length at the top speed)"
         known = "" if np.isnan(deflection) else text
-        yield Statement(
-            f"at such angles the rotation bends the beam, and the limits are {OUTSIDE}{known}",
-            kind=OUTSIDE,
-            quantity="static tip deflection over the length",
-            value=deflection,
-            limit=LARGE_DEFLECTION,
-        )
+        said = f"at such angles the rotation bends the beam, and the limits are {OUTSIDE}{known}"
+        about = {"quantity": "static tip deflection over the length", "value": deflection}
+        yield Statement(said, kind=OUTSIDE, limit=LARGE_DEFLECTION, **about)

@@ -8,10 +8,10 @@ from beamdyn.common.results import published
 
 
 def load(name: str) -> dict[str, Any]:
-    """Load ``beamdyn/published/<name>.toml``; see `beamdyn.common.published.load`."""
+    """Load ``beamdyn/published/<name>.toml``; see `beamdyn.common.results.published.load`."""
     return published.load(__name__, name)
 
 
 def available() -> list[str]:
-    """Names that `load` accepts, sorted."""
+    """Return the names that `load` accepts, sorted."""
     return published.available(__name__)

@@ -1,4 +1,4 @@
-"""Reproduction of the published numbers: each beside ours, with its deviation and a verdict."""
+"""Reproduction of published numbers: each is printed beside ours, with its deviation and a verdict."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def compare_all(screen: Console, folder: Path, tables: bool = False) -> list[Com
     folder : Path
         Folder for the figures.
     tables : bool
-        Whether to compare with the tables of other sources too.
+        Whether to also compare with the tables of other sources.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Blades of wind turbines of the published tables of stations: scenes, and comparison of frequencies."""
+"""Wind turbine blades from published tables of stations: scenes, and comparisons of frequencies."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from beamdyn.reproduce.entries import PrintedValue, compare_modes
 
 
 def stations(name: str) -> dict[str, Any]:
-    """Length and hub radius [m], and arrays: stations x/L, mass [kg/m], stiffnesses [N m2], twist [deg]."""
+    """Load a blade: length, hub radius [m], arrays of x/L, mass [kg/m], stiffnesses [N m2], twist [deg]."""
     given = load(f"blade_{name}")
     arrays = {key: np.array(value) for key, value in given.items() if isinstance(value, list)}
     arrays["mass_per_length"] = arrays["mass_per_length"] * given["mass_factor"]
@@ -24,7 +24,7 @@ def stations(name: str) -> dict[str, Any]:
 
 
 def blade_scene(name: str, physics: bd.Physics | None = None, twisted: bool = True) -> bd.Scene:
-    """The blade on its hub: it points outward and, where the twist is 0, the flap bends out of the plane."""
+    """Build the scene of a blade on its hub: outward, with flap out of plane where the twist is 0."""
     data = stations(name)
 
     def along(values: np.ndarray) -> bd.Table:
@@ -35,16 +35,17 @@ def blade_scene(name: str, physics: bd.Physics | None = None, twisted: bool = Tr
         along(data["mass_per_length"]),
         along(data["flap_stiffness"]),
         second_bending_stiffness=along(data["edge_stiffness"]),
-        twist=along(np.radians(-data["twist_deg"])) if twisted else None,  # docs/decks.md has the signs
+        # The signs are explained in docs/decks.md.
+        twist=along(np.radians(-data["twist_deg"])) if twisted else None,
     )
     mount = bd.Mount(data["hub_radius"], math.pi, math.pi / 2)
     return bd.Scene(beam, mount, physics=physics or bd.Physics(planes=2))
 
 
 def whole_blade_scene(name: str, by_elements: bool = False) -> bd.Scene:
-    """The blade with torsion and the offsets of its sections; as BModes reads it, or by its elements.
+    """Build the blade with torsion and section offsets, as BModes reads it, or by BModes' elements.
 
-    BModes takes each of its elements to have the section that is in its middle; the twist is as it is.
+    Each element of BModes has the section at its middle, but the twist varies along it.
     """
     data, plain = stations(name), blade_scene(name)
     x, ends = data["stations"], data["element_ends"]
@@ -70,7 +71,7 @@ def whole_blade_scene(name: str, by_elements: bool = False) -> bd.Scene:
 
 
 def _compare_blades(key: str, discretization: str = "ritz") -> Iterator[tuple[str, PrintedValue]]:
-    """Compare the frequencies [Hz] that stand under a key with ours, each with the name of its blade."""
+    """Compare the frequencies [Hz] of a key of the published data with ours, each with the blade's name."""
     for row in load("blades")["blade"]:
         if printed := row.get(key):
             whole = key == "frequency_printed_by_bmodes"
@@ -82,14 +83,14 @@ def _compare_blades(key: str, discretization: str = "ritz") -> Iterator[tuple[st
 
 
 def entries_of_blades(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
-    """Compare the frequencies [Hz] of all blades, each under the title of its blade."""
+    """Compare the frequencies [Hz] of all blades, each with the name of its blade."""
     for key in ("frequency", "frequency_without_twist"):
         for name, entry in _compare_blades(key, discretization):
             yield stations(name)["title"], entry
 
 
 def printed_by_bmodes() -> Iterator[Comparison]:
-    """Compare with what BModes prints of its own blade, by the sections of its elements [Hz]."""
+    """Compare with the frequencies [Hz] that BModes prints for its own blade, from its elements' sections."""
     for _, entry in _compare_blades("frequency_printed_by_bmodes"):
         what, decimals = f"{entry.where}, mode {entry.mode}", len(entry.printed.partition(".")[2])
         numbers = float(entry.printed), entry.ours, entry.error, decimals
@@ -97,7 +98,7 @@ def printed_by_bmodes() -> Iterator[Comparison]:
 
 
 def notes() -> Iterator[str]:
-    """Notes on the table of BModes."""
+    """Yield the notes on the table of BModes."""
     yield (
         "(10) With torsion and offsets, by the sections in the middle of the 12 elements of BModes' own "
         "input file, as it takes them.  Those of its stations have frequencies 1.6 to 4.7 % higher: so much "

@@ -1,4 +1,4 @@
-"""Printed values beside ours, errata with their proofs, and summaries of a source."""
+"""Printed values compared with ours, errata with their proofs, and summaries by source."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from beamdyn.common.results.digits import supported
 
 @dataclass(frozen=True)
 class PrintedValue:
-    """A printed value beside ours; where the print errs, with a third computation.
+    """A printed value and our value; for misprints also a value by a third computation.
 
     Parameters
     ----------
     where : str
         Row of the table, such as its speed.
     mode : int
-        From 1.
+        Number of the mode, from 1.
     printed : str
-        The value with all its digits.
+        The printed value with all its digits.
     ours, error : float
         Our value and its estimated absolute error.
     exact : str
-        Where the print errs: the value by a method that shares nothing with ours; else empty.
+        For a misprint, the value by a method that shares nothing with ours; else empty.
     bounds : tuple of float, optional
-        There, too: guaranteed lower and upper bound, where the theorem covers the scene.
+        For a misprint, guaranteed lower and upper bounds, where the theorem covers the scene.
     """
 
     where: str
@@ -44,17 +44,17 @@ class PrintedValue:
 
     @property
     def in_print(self) -> bool:
-        """Whether ours rounds to the printed digits, whatever its error."""
+        """Whether our value rounds to the printed digits, whatever its error."""
         return abs(self.ours - float(self.printed)) <= self.rounding
 
     @property
     def agrees(self) -> bool:
-        """Whether ours differs from the print by no more than rounding and our error."""
+        """Whether our value differs from the print by no more than rounding and our error."""
         return abs(self.ours - float(self.printed)) <= self.rounding + self.error
 
     @property
     def is_erratum(self) -> bool:
-        """Whether the print is proven to err: ours is the third value, which bounds enclose apart from it."""
+        """Whether a misprint is proven: ours equals the third value, and bounds exclude the print."""
         if not self.exact:
             return False
         printed, exact, slack = float(self.printed), float(self.exact), half_unit(self.exact)
@@ -66,21 +66,21 @@ class PrintedValue:
 
     @property
     def off_by(self) -> float:
-        """Deviation of the print from the third value, or else from ours, in units of its last digit."""
+        """Deviation of the print from `exact`, or else from our value, in units of its last digit."""
         return (float(self.printed) - float(self.exact or self.ours)) / (2 * self.rounding)
 
     @property
     def as_expected(self) -> bool:
-        """Whether it agrees, or the print is proven to err where it is said to."""
+        """Whether print and our value agree, or the misprint is proven where one is claimed."""
         return self.is_erratum if self.exact else self.agrees
 
     @property
     def relative_deviation(self) -> float:
-        """Deviation of ours from the print, over the print."""
+        """Deviation of our value from the print, relative to the print."""
         return abs(self.ours / float(self.printed) - 1)
 
     def cells(self) -> list[str]:
-        """Row of the table of errata, without the source."""
+        """List the cells of the value's row in the table of errata, without the source."""
         low, high = self.bounds or (0.0, 0.0)
         enclosed = f"{(high - low) / float(self.exact):.0e}" if self.bounds else "no theorem"
         off = f"{self.off_by:+.2g}" if abs(self.off_by) < 100 else f"{self.off_by:+.0f}"
@@ -89,7 +89,7 @@ class PrintedValue:
 
 
 def half_unit(text: str) -> float:
-    """Half a unit of the last digit of a printed number."""
+    """Compute half a unit of the last digit of a printed number."""
     exponent = Decimal(text).as_tuple().exponent
     assert isinstance(exponent, int), f"{text} is a finite number"
     return 0.5 * 10.0**exponent
@@ -98,14 +98,14 @@ def half_unit(text: str) -> float:
 def compare_modes(
     where: str, printed: Iterable[object], ours: Iterable[float], errors: Iterable[float]
 ) -> list[PrintedValue]:
-    """Compare the printed values of the modes of a row with ours, whose errors are relative."""
+    """Compare the printed values of a row's modes with ours, whose errors are relative."""
     rows = enumerate(zip(map(str, printed), map(float, ours), map(float, errors), strict=False), 1)
     return [PrintedValue(where, mode, text, value, error * abs(value)) for mode, (text, value, error) in rows]
 
 
 @dataclass(frozen=True)
 class Summary:
-    """Comparison of all values of one source with one discretization.
+    """Summary of the comparison of all values of one source with one discretization.
 
     Parameters
     ----------
@@ -116,14 +116,14 @@ class Summary:
     printed : float
         Largest relative rounding of the printed values: half a unit of the last digit.
     deviation, error : float
-        Largest relative deviation, errata apart, and largest estimated relative error.
+        Largest relative deviation, without errata, and largest estimated relative error.
     outside : int
         Number of values that deviate by more than rounding and error together, and are no proven errata.
     errata, last_digits : int
-        Number of values that are proven to be wrong in print, and of those of them that are wrong in the last
-        digit alone: by less than a unit of it.
+        Number of values that are proven to be wrong in print, and number of these that are wrong in the last
+        digit only, by less than one unit.
     in_print : bool
-        Whether all others agree in all printed digits, whatever our error.
+        Whether all other values agree in all printed digits, whatever our error.
     """
 
     source: str
@@ -144,7 +144,7 @@ class Summary:
 
     @property
     def verdict(self) -> str:
-        """Whether all agree, and how many do not, as the table says it."""
+        """Verdict for the table: whether all values agree, or how many do not."""
         if self.outside:
             return f"differs: {self.outside} value(s)"
         if not self.errata:
@@ -154,7 +154,7 @@ class Summary:
         return "agrees but " + ", ".join(part for part in parts if not part.startswith("0 "))
 
     def cells(self) -> list[str]:
-        """Row of the table of summaries."""
+        """List the cells of the row in the table of summaries."""
         numbers = (f"{x:.1e}" for x in (self.printed, self.deviation, self.error))
         return [self.source, self.discretization, str(self.values), *numbers, self.verdict]
 

@@ -1,4 +1,4 @@
-"""Lee and Yoo (2019), the inward beam: every number of the paper beside ours, and notes on the differences.
+"""The inward beam of Lee and Yoo (2019): every number of the paper beside ours, with notes on differences.
 
 The paper's equations are linear about the straight beam. Its numbers stand beside those of the linear model
 and of an inextensible beam that bends by any angle.
@@ -27,23 +27,23 @@ VALUES = values_alone(PAPER)
 KNOWN = VALUES["reference"]
 SPEED: float = VALUES["largest_deflection"]["speed"]
 WINDOW: tuple[float, float] = tuple(VALUES["scene"]["window"])
-TOP = 150.0  # highest speed [rad/s]: the end of Fig. 6; Fig. 8 and 9 do not say where they end
+TOP = 150.0  # highest speed [rad/s], the end of Fig. 6; the ends of Fig. 8 and 9 are not stated
 MM = 1e3  # millimetres in a metre
 
-# Sources of values; the numbers are those of notes.
+# Names of the sources of values; numbers in parentheses refer to notes.
 _PAPER, _ANSYS, _RECURDYN, _OWN = "paper", "ANSYS (4)", "RecurDyn (4)", "independent (5)"
-_BENDS = "large deflection (9)"  # why a beam that bends by any angle differs from the paper's
+_BENDS = "large deflection (9)"  # reason why a beam with large deflection differs from the paper's
 _METHODS = (("Ritz", "ritz"), ("FE", "fem"))
 _MODELS = (("Ritz", "ritz", "bending"), ("FE", "fem", "bending"), ("with stretch", "ritz", "stretch"))
 _MODES = 5  # number of modes of the published run
-_FIGURE_6 = np.linspace(0, TOP, 151)  # speeds [rad/s]
+_FIGURE_6 = np.linspace(0, TOP, 151)  # speeds of Fig. 6 [rad/s]
 _DAMPING = 0.01  # damping ratio with which the ring-down decays before 20 s
 _ROUNDING = 1e-12  # relative error of a value that a basis of given size defines exactly
-_JUDGED = (100.0, 400.0)  # speeds at which Fig. 8 and 9 are judged [rad/s]: that of Table 2, and one beyond
+_JUDGED = (100.0, 400.0)  # speeds at which Fig. 8 and 9 are judged [rad/s]: that of Table 2, and a higher one
 
 
 def inward_scene(setting_angle: float = 0.0, **physics: Any) -> bd.Scene:
-    """The beam of Table 1 at a setting angle [deg], with effects of `Physics` by their names."""
+    """Build the beam of Table 1 at a setting angle [deg], with effects of `Physics` by their names."""
     given = VALUES["input"]
     names = ("length", "width", "thickness", "youngs_modulus", "density")
     beam = bd.Beam.rectangular(**{name: given[name] for name in names})
@@ -52,7 +52,7 @@ def inward_scene(setting_angle: float = 0.0, **physics: Any) -> bd.Scene:
 
 
 def rolling_scene(**physics: Any) -> bd.Scene:
-    """The beam on a wheel that spins up and rolls over the wavy road: Table 3, Fig. 5 to 7."""
+    """Build the beam on a wheel that spins up and rolls over the wavy road: Table 3, Fig. 5 to 7."""
     given = VALUES["input"]
     road = bd.RoadWave(given["road_wavelength"], given["road_velocity_amplitude"])
     motion = bd.RollingWheel(given["rolling_radius"], bd.SpinUp(SPEED, VALUES["scene"]["duration"]), road)
@@ -60,9 +60,9 @@ def rolling_scene(**physics: Any) -> bd.Scene:
 
 
 def _compare(what: str, ours: Iterable[Any], *known: tuple) -> Iterator[Comparison]:
-    """Compare our value and its error with known ones: source, value, and decimals and reason if they matter.
+    """Compare our value and error with known values, given as source, value, and maybe decimals and reason.
 
-    Decimals are those of the value as Python prints it unless they are given.
+    By default the decimals are those with which Python prints the value.
     """
     number, error = map(float, ours)
     for source, value, *more in known:
@@ -75,13 +75,13 @@ def _compare(what: str, ours: Iterable[Any], *known: tuple) -> Iterator[Comparis
 
 
 def _first_frequency(scene: bd.Scene, speed: float, discretization: str = "ritz") -> tuple[float, float]:
-    """First frequency and its estimated error [Hz]."""
+    """Compute the first frequency and its estimated error [Hz]."""
     modes = bd.natural_modes(scene, speed, 1, discretization)
     return float(modes.frequency[0]), float(modes.error[0]) * float(modes.frequency[0])
 
 
 def first_frequencies() -> Iterator[Comparison]:
-    """Compare with Table 2: the first frequency at three speeds, by three models of ours."""
+    """Compare the first frequency at three speeds, by three models of ours, with Table 2 of the paper."""
     for row, exact in zip(PAPER["first_frequency"], KNOWN["first_frequency"], strict=True):
         speed, proposed, ansys = (row[name]["value"] for name in ("speed", "proposed", "ansys"))
         decimals = row["proposed"]["decimals"], row["ansys"]["decimals"]
@@ -98,7 +98,7 @@ def first_frequencies() -> Iterator[Comparison]:
 def limits_of_setting_angle() -> Iterator[Comparison]:
     """Compare with Section 3.3: the two setting-angle limits [deg].
 
-    The second is that of bases of N eigenfunctions without a top speed, then the converged one by top speed.
+    The second limit is given for bases of N eigenfunctions without a top speed, then converged, by top speed.
     """
     printed, scene = VALUES["setting_angle_limits"], inward_scene()
     for name, method in _METHODS:
@@ -127,30 +127,30 @@ def buckling_speed() -> Iterator[Comparison]:
         yield from _compare(f"critical speed, {name}", ours, (_OWN, KNOWN["critical_speed"]))
 
 
-# Motion -----------------------------------------------------------------------------------------------
+# Motion in time ---------------------------------------------------------------------------------------
 
 
 @cache
 def run(modes: int = _MODES, discretization: str = "ritz", *, large_deflection: bool = False) -> bd.Transient:
-    """Run of Table 3; with large deflection, which takes far longer, to a tenth of the accuracy."""
+    """Simulate the run of Table 3; with large deflection, which takes far longer, less accurately."""
     scene, tolerance = rolling_scene(large_deflection=large_deflection), 1e-5 if large_deflection else 1e-6
     return bd.simulate(scene, VALUES["scene"]["t_end"], modes, tolerance, discretization=discretization)
 
 
 def _peak(found: bd.Transient) -> tuple[float, float]:
-    """Largest tip deflection in the window of Table 3, and its error [mm]."""
+    """Find the largest tip deflection in the window of Table 3, and its error [mm]."""
     return MM * found.peak(*WINDOW), MM * found.time_error
 
 
 def _of_table_3(reason: str = "") -> tuple:
-    """The paper's deflection and that of RecurDyn [mm], as rows for `_compare`."""
+    """Return the paper's deflection and that of RecurDyn [mm], as rows for `_compare`."""
     printed = PAPER["largest_deflection"]
     paper, other = (MM * printed[name]["value"] for name in ("proposed", "recurdyn"))
     return (_PAPER, paper, 2, reason), (_RECURDYN, other, 2, "unexplained (6)")
 
 
 def largest_deflections() -> Iterator[Comparison]:
-    """Compare with Table 3: the largest tip deflection [mm] in 20 to 30 s, by 1 to 6 modes and by FE."""
+    """Compare the largest tip deflection [mm] in 20 to 30 s, by 1 to 6 modes and FE, with Table 3."""
     exact = KNOWN["largest_deflection"]
     known = dict(zip(exact["modes"], exact["in_window"], strict=True))
     for modes, name, method in [*((n, "Ritz", "ritz") for n in range(1, 7)), (_MODES, "FE", "fem")]:
@@ -160,7 +160,7 @@ def largest_deflections() -> Iterator[Comparison]:
 
 
 def largest_deflections_of_bent_beam() -> Iterator[Comparison]:
-    """Compare with Table 3: the largest tip deflection [mm] in 20 to 30 s with large deflection."""
+    """Compare the largest tip deflection [mm] in 20 to 30 s, with large deflection, with Table 3."""
     exact = KNOWN["largest_deflection_elastica"]
     for modes, known in zip(exact["modes"], exact["in_window"], strict=True):
         printed = _of_table_3(_BENDS) if modes == _MODES else ()
@@ -184,7 +184,7 @@ def steady_amplitudes() -> Iterator[Comparison]:
 
 
 def crossings(discretization: str = "ritz", gravity: float = 0.0) -> bd.Crossings:
-    """Speeds at which an excited frequency equals the first natural one: Fig. 7."""
+    """Find the speeds at which an excited frequency equals the first natural one: Fig. 7."""
     scene = replace(rolling_scene(), gravity=gravity)
     return bd.resonance_speeds(scene, TOP, 1, discretization=discretization)
 
@@ -250,27 +250,28 @@ def limits_of_bent_beam() -> Iterator[Comparison]:
 
 @cache
 def _bent_limit(speed: float) -> tuple[float, float]:
-    """Angle [deg] at which the slope of the first frequency at a speed changes sign, and its error.
+    """Find the angle [deg] at which the first frequency's slope at a speed changes sign, and its error.
 
-    The slope is that over a small step of speed, extrapolated to none.
+    The slope is taken over a small step of speed, and extrapolated to step 0.
     """
 
     def change(angle: float, step: float) -> float:
-        solver = Model(inward_scene(angle, large_deflection=True), bd.Ritz(16)).solver  # good to 1e-13
+        # The solver is accurate to 1e-13.
+        solver = Model(inward_scene(angle, large_deflection=True), bd.Ritz(16)).solver
         around = np.array([speed - step, speed + step]) if speed else np.array([0.0, step])
         before, after = np.abs(solver.eigenvalues(around, 1)[:, 0]) ** 2
         return after - before
 
-    between = (2.0, 6.0) if speed else (80.0, 89.9)  # angles at which the slopes have two signs [deg]
+    between = (2.0, 6.0) if speed else (80.0, 89.9)  # angles [deg] between which the slope changes its sign
     near, far = (float(brentq(change, *between, (step,), 1e-11)) for step in (0.5, 1.0))  # pyright: ignore
     return near + (near - far) / 3, abs(near - far) / 30
 
 
-# Sections and notes ---------------------------------------------------------------------------------------
+# Sections of the report, and notes ------------------------------------------------------------------------
 
 
 def sections(fig_6_sweep: bd.Sweep) -> dict[str, list[Comparison]]:
-    """All comparisons, by the titles of their tables."""
+    """Collect all comparisons, by the titles of their tables."""
     of_sweep = sweep_peak_comparisons(fig_6_sweep)
     found = {
         "Table 2: first natural frequency, beam pointing inward [Hz]": first_frequencies(),
@@ -290,7 +291,7 @@ def sections(fig_6_sweep: bd.Sweep) -> dict[str, list[Comparison]]:
 
 
 def passage() -> tuple[float, float]:
-    """Time [s] at which the spin-up passes the first resonance, and its speed [rad/s]."""
+    """Find the time [s] at which the spin-up passes the first resonance, and its speed [rad/s]."""
     motion = rolling_scene().motion
     assert motion is not None
     first = next(c.speed for c in crossings() if c.kind == "forced")
@@ -299,7 +300,7 @@ def passage() -> tuple[float, float]:
 
 
 def notes() -> Iterator[str]:
-    """Notes on the tables, in the order of their numbers."""
+    """Yield notes on the tables, in the order of their numbers."""
     limits = bd.setting_angle_limits(inward_scene(), 400.0)
     yield (
         "(1) The paper prints 65.231 Hz at rest; its own input gives "

@@ -18,7 +18,7 @@ _OUTSIDE = "(left and middle: linear equations, outside their range)"
 
 
 def pictures(fig_6_sweep: bd.Sweep) -> dict[str, Callable[[], Axes | Figure]]:
-    """The figures as functions that draw them, by the names of their files."""
+    """Return the functions that draw the figures, by the names of the files."""
     return {
         "fig_4": _fig_4,
         "fig_5": _fig_5,
@@ -30,7 +30,7 @@ def pictures(fig_6_sweep: bd.Sweep) -> dict[str, Callable[[], Axes | Figure]]:
 
 
 def _axes(title: str) -> Axes:
-    """Axes of a figure that has a single picture."""
+    """Make the axes of a figure with a single picture."""
     ax = Figure(figsize=(7.5, 4.8), layout="constrained").subplots()
     ax.set_title(title)
     return ax
@@ -40,7 +40,8 @@ def _fig_4() -> Axes:
     """Draw the first frequency over speed, with the values of ANSYS."""
     ax, scene = _axes("Fig. 4: first natural frequency, setting angle 0"), inward_beam.inward_scene()
     critical = bd.critical_point(scene).speed
-    speeds = critical * np.sin(np.linspace(0, np.pi / 2 - 1e-3, 301))  # dense where the frequency falls to 0
+    # Speeds are dense where the frequency falls to 0.
+    speeds = critical * np.sin(np.linspace(0, np.pi / 2 - 1e-3, 301))
     ax.set_xlim(-4, 204)
     plot_locus(speeds, bd.frequency_locus(scene, speeds, 1).frequency, ax, ["ours (Ritz)"], critical)
     known, ansys = (
@@ -107,7 +108,7 @@ def _fig_9() -> Figure:
 
 
 def _three_panels(angles: Sequence[float], top: float, name: str, limit: str) -> tuple[Figure, Axes, Axes]:
-    """Make Fig. 8 or 9 with its third panel, a beam that bends, drawn; the other two are free."""
+    """Make Fig. 8 or 9 with its third panel (a beam that bends) drawn; return the other two axes, too."""
     figure = Figure(figsize=(16, 4.8), layout="constrained")
     left, right, bent = figure.subplots(1, 3)
     figure.suptitle(f"{name}: first natural frequency on either side of {limit} {_OUTSIDE}")
@@ -130,7 +131,7 @@ def _first_frequencies(
     *,
     bends: bool = False,
 ) -> np.ndarray:
-    """First frequency [Hz] at setting angles [deg] over speeds [rad/s]: shape (angles, speeds)."""
+    """Compute the first frequency [Hz] at setting angles [deg] over speeds [rad/s]: (angles, speeds)."""
     scenes = [inward_beam.inward_scene(angle, large_deflection=bends) for angle in angles]
     tolerance = 1e-4 if bends else None
     loci = [bd.frequency_locus(scene, speeds, 1, discretization, tolerance) for scene in scenes]

@@ -1,4 +1,4 @@
-"""Comparison with the printed tables of other sources: every value, summaries, errata with their proofs."""
+"""Comparison with printed tables of other sources: every value, summaries, and errata with their proofs."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _STRETCHED: dict[str, tuple[Discretization, Discretization]] = {
 }
 _ROUNDING = 1e-13  # relative error of a converged stretch
 
-Entries = Mapping[str, Sequence[PrintedValue]]  # printed values by their source
+Entries = Mapping[str, Sequence[PrintedValue]]  # printed values, by their source
 Errata = Sequence[tuple[str, PrintedValue]]
 
 
@@ -42,17 +42,17 @@ def _by_source(entries: Iterable[tuple[str, PrintedValue]]) -> Entries:
 
 
 def summarize(entries_by: Callable[[str], Entries]) -> list[Summary]:
-    """Summaries of entries by a discretization, for each source and discretization."""
+    """Summarize entries by a discretization, for each source and discretization."""
     found = {name: entries_by(discretization) for name, discretization in _DISCRETIZATIONS.items()}
     sources = next(iter(found.values()))
     return [summarize_entries(source, name, found[name][source]) for source in sources for name in found]
 
 
-# Tables of papers ------------------------------------------------------------------------------------
+# Tables of the papers --------------------------------------------------------------------------------
 
 
 def compare_papers() -> tuple[list[Summary], Errata]:
-    """Compare all values: summaries by source and discretization, and the errata with their sources."""
+    """Compare all values: return summaries by source and discretization, and errata with their sources."""
     found = all_entries(next(iter(_DISCRETIZATIONS.values())))
     errata = [(source, entry) for source, entries in found.items() for entry in entries if entry.exact]
     return summarize(all_entries), errata
@@ -60,7 +60,7 @@ def compare_papers() -> tuple[list[Summary], Errata]:
 
 @cache
 def all_entries(discretization: str) -> Entries:
-    """All values of papers and blades."""
+    """Compare all values of papers and blades by one discretization."""
     rows = ((case, entries_of_case(case, discretization)) for paper in PAPERS for case in cases(paper))
     return _by_source(
         [
@@ -73,9 +73,9 @@ def all_entries(discretization: str) -> Entries:
 
 
 def cases(paper: str) -> Iterator[dict[str, Any]]:
-    """Cases of the tables of a paper: a row each, with what the rows of its table share.
+    """Yield the cases of a paper's tables: one for each row, with the data that rows of a table share.
 
-    Besides the keys of ``rotating_beams.toml`` they have ``where``, which names the row, ``factor`` of the
+    Besides the keys of ``rotating_beams.toml``, cases have ``where``, which names the row, ``factor`` of the
     printed values over the nondimensional ones, and ``exact``, third values by the number of the mode. Mass
     and stiffness are those of a rectangular section that tapers linearly, unless they are given.
     """
@@ -90,7 +90,7 @@ def cases(paper: str) -> Iterator[dict[str, Any]]:
 
 
 def beams() -> dict[str, str]:
-    """Which beam each table of the papers is of, by the name of the table."""
+    """Describe the beam of each table of the papers, by the name of the table."""
     papers = [load(name) for name in PAPERS]
     alone = [paper[key] for paper in papers for key in ("cable", "stretch") if key in paper]
     tables = [table for paper in papers for table in paper.get("table", [])]
@@ -98,9 +98,9 @@ def beams() -> dict[str, str]:
 
 
 def entries_of_case(case: Mapping[str, Any], discretization: str) -> Iterator[PrintedValue]:
-    """Compare the values of a case.
+    """Compare the printed values of a case with ours.
 
-    An erratum has guaranteed bounds too, but with stretch, which their theorem does not cover.
+    An erratum also has guaranteed bounds, except with stretch, which their theorem does not cover.
     """
     scene, printed, factor = nondimensional_scene(case), case["frequency"], case["factor"]
     modes = bd.natural_modes(scene, case["gamma"], len(printed), discretization)
@@ -114,7 +114,7 @@ def entries_of_case(case: Mapping[str, Any], discretization: str) -> Iterator[Pr
 
 
 def _cable(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
-    """Compare the frequencies over speed of a hinged beam of hardly any stiffness with those of a cable."""
+    """Compare the frequencies over speed of a hinged, very flexible beam with those of a cable."""
     cable = load("bir_2009")["cable"]
     speed, printed = cable["gamma"], cable["ratio"]
     scene = bd.Scene(
@@ -129,7 +129,7 @@ def _cable(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
 def _stretch(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
     """Compare the centrifugal stretch [m] with its closed form."""
     given = values_alone(load("code_aster")["stretch"])
-    area = 1e-4  # m2: any, as the stretch does not depend on it
+    area = 1e-4  # any area [m2], as the stretch does not depend on it
     mass, stiffness = given["density"] * area, given["youngs_modulus"] * area
     beam = bd.Beam.from_stiffness(given["length"], mass, 1.0, axial_stiffness=stiffness)
     coarse, fine = (tip_stretch(beam, given["speed"], d) for d in _STRETCHED[discretization])
@@ -138,7 +138,7 @@ def _stretch(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
 
 
 def tip_stretch(beam: bd.Beam, speed: float, discretization: Discretization) -> float:
-    """Stretch of the tip [m] of a beam that points outward from the axis, at a steady speed [rad/s]."""
+    """Compute the tip's stretch [m] for a beam pointing outward from the axis at a steady speed [rad/s]."""
     scene = bd.Scene(beam, bd.Mount(0.0, math.pi), physics=bd.Physics(stretch=True))
     spaces = discretization.spaces(scene.modelled_beam)
     equations = assemble_over(scene, spaces)
@@ -152,19 +152,19 @@ def tip_stretch(beam: bd.Beam, speed: float, discretization: Discretization) -> 
 
 @cache
 def reference_entries(discretization: str) -> Entries:
-    """All values of the tables of rotating beams, their critical speeds, and twisted and stocky beams."""
+    """Compare the tables of rotating beams, their critical speeds, and twisted and stocky beams with ours."""
     data = load("rotating_beams")
     critical = [case | {"source": "critical speeds, computed"} for case in data["critical"]]
     known = [*data["case"], *(case for case in critical if np.isfinite(case["gamma"]))]
     return _by_source(
-        (case["source"], replace(entry, printed=str(float(entry.printed))))  # without the zeros at its end
+        (case["source"], replace(entry, printed=str(float(entry.printed))))  # trailing zeros are removed
         for case in (*known, *load("twisted_beams")["case"])
         for entry in entries_of_reference(case, discretization)
     )
 
 
 def entries_of_reference(case: Mapping[str, Any], discretization: str) -> list[PrintedValue]:
-    """Compare the values of a case of ``rotating_beams.toml`` or ``twisted_beams.toml``."""
+    """Compare the values of a case of ``rotating_beams.toml`` or ``twisted_beams.toml`` with ours."""
     scene = twisted_scene(case) if "planes" in case else nondimensional_scene(case)
     if "frequency" not in case:
         point = bd.critical_point(scene, discretization)
@@ -211,11 +211,11 @@ def twisted_scene(case: Mapping[str, Any]) -> bd.Scene:
     return bd.Scene(beam, bd.Mount(case["radius"], *angles), physics=physics)
 
 
-# As printed on the screen --------------------------------------------------------------------------------
+# Tables as printed on the screen -------------------------------------------------------------------------
 
 
 def summary_table(rows: Iterable[Summary]) -> Group:
-    """Table of summaries."""
+    """Build the table of summaries."""
     heads = ("source", "by", "values", "printed to", "deviation", "error", "verdict")
     title = (
         "Beams and blades of other sources: the worst deviation, errata apart, and estimated error, relative"
@@ -224,7 +224,7 @@ def summary_table(rows: Iterable[Summary]) -> Group:
 
 
 def errata_table(errata: Errata) -> Group:
-    """Table of errata with their proofs."""
+    """Build the table of errata with their proofs."""
     heads = ("source", "at", "mode", "printed", "ours, Ritz", "power series", "bounds", "off by")
     title = (
         "Errata: ours, a third method, the relative width of guaranteed bounds that exclude the print, and\n"
@@ -234,7 +234,7 @@ def errata_table(errata: Errata) -> Group:
 
 
 def sources() -> Iterator[str]:
-    """Where the tables were taken from, a line each."""
+    """Yield the sources of the tables, one line each."""
     yield "Sources of the tables:"
     for paper in PAPERS:
         data = load(paper)

@@ -1,1 +1,1 @@
-"""Input of all analyses: beam, mount, motion and limits of the theory; immutable, validated, in SI units."""
+"""Scenes, the input of all analyses: beam, mount, motion and physics; immutable, validated, in SI units."""

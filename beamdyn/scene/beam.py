@@ -1,29 +1,26 @@
-"""The beam: its length, its properties along it, point masses, and a rigid body at its tip."""
+"""The beam: length, properties along the beam, point masses, and a rigid body at the tip."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import InvalidValue, kind, positive, refuse, set_fields, several, size
+from beamdyn.common.inputs.checks import kind, positive, set_fields, size
 from beamdyn.common.results.one_line import OneLine, counted, number, spanned
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.results.snapshots import ADDED_LATER
+from beamdyn.scene import beam_checks
 from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
 from beamdyn.scene.harvester import Electrodes
-from beamdyn.scene.names_elsewhere import GIVE_IT, GIVE_OR_COMPUTE
 from beamdyn.scene.points import PointMass, PointSpring, TipMass, direction_of
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints, to_profile
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.section_matrices import SectionMatrices
 
-_ROUNDING = 1e-12  # rounding of a position over the length: the distance at which breakpoints merge
-_TURNS_BACK = np.pi / 2  # kink [rad] of the axis by which it runs back
-_GIVE_RADIANS = "is it in degrees? give math.radians(...)"
 _STRAIGHT = 1e-9  # twist [rad] below which a beam is not twisted: it changes nothing by more than 1e-18
 
 
@@ -33,7 +30,7 @@ class Beam(FieldsOnly, OneLine):
 
     Build it by `rectangular`, `from_stiffness` or `from_matrices`.
 
-    Which of its properties a model reads is said by `Physics`.
+    `Physics` says which of the properties a model uses.
 
     Parameters
     ----------
@@ -63,7 +60,7 @@ class Beam(FieldsOnly, OneLine):
     point_springs : sequence of PointSpring
         Springs that hold points of the beam to the carrier; those at one place add up.
     section : rectangle, optional
-        The rectangular section that the properties follow from, by `rectangular`; None where they do not.
+        The rectangular section that the properties were derived from (`rectangular`); else None.
         Its `width`, `thickness`, `youngs_modulus`, `density` and `poissons_ratio` are as given there.
     torsion_stiffness, warping_stiffness : Profile, optional
         Stiffness against torsion G J [N m2], and against warping E Cw [N m4], over x/L; those of a
@@ -79,7 +76,7 @@ class Beam(FieldsOnly, OneLine):
         The 6 x 6 matrices of stiffness and mass that the properties follow from, by `from_matrices`; None
         where they do not.  The properties are then entries of their diagonals.
     electrodes : electrodes, optional
-        Those of piezoelectric layers, which `Harvester.on` puts on a beam with their mass and stiffness.
+        Electrodes of piezoelectric layers, which `Harvester.on` puts on a beam with their mass and stiffness.
 
     References
     ----------
@@ -125,91 +122,38 @@ class Beam(FieldsOnly, OneLine):
             kind(name, getattr(self, name), Profile, "Beam.from_stiffness makes one")
             if name not in OF_ANY_SIGN:
                 check_positive(name, getattr(self, name))
-        if self.twist is not None and self.second_bending_stiffness is None:
-            bound, other = "it turns two directions of bending, and needs {other}", "second_bending_stiffness"
-            said: dict[str, Any] = {"other": other, "where": " at the tip"}
-            raise InvalidValue("twist", self.tip_twist, bound, GIVE_OR_COMPUTE, "rad", **said)
-        if self.warping_stiffness is not None and self.torsion_stiffness is None:
-            bound, remedy = "warping needs {other} as well", "give both, or neither"
-            value = float(self.warping_stiffness(np.zeros(1))[0])
-            raise InvalidValue(
-                "warping_stiffness",
-                value,
-                bound,
-                remedy,
-                "N m4",
-                other="torsion_stiffness",
-                where=" at the root",
-            )
         if self.tip is not None:
             kind("tip", self.tip, TipMass, "TipMass(mass) makes one")
-        self._check_offsets()
-        if self.tip is not None and self.length + self.tip.offset < 0:
-            bound, remedy = "it puts the body behind the root", "give an offset above {limit}"
-            raise InvalidValue("tip.offset", self.tip.offset, bound, remedy, "m", -self.length)
-        for name, wanted in (("point_masses", PointMass), ("point_springs", PointSpring)):
-            set_fields(self, **{name: _check_points(name, getattr(self, name), wanted, self.length)})
+        beam_checks.check_together(self)
+        beam_checks.check_points(self, "point_masses", PointMass)
+        beam_checks.check_points(self, "point_springs", PointSpring)
         if self.electrodes is not None:
             kind("electrodes", self.electrodes, Electrodes, "Harvester.on puts them on a beam")
         if self.section is not None:
             kind("section", self.section, Rectangle, "Beam.rectangular makes one")
-            if not all(_alike(getattr(self, name), made) for name, made in self.section.properties.items()):
-                set_fields(self, section=None)  # a property was replaced
-        if self.has_offsets:  # a rectangle has its centres in one point
+            made = self.section.properties.items()
+            if not all(beam_checks.alike(getattr(self, name), profile) for name, profile in made):
+                set_fields(self, section=None)  # replacing a property detaches the beam from its section
+        if self.has_offsets:  # the centres of a rectangle coincide: offsets exclude it
             set_fields(self, section=None)
-        self._check_matrices()
-        self._check_axis()
-
-    def _check_matrices(self) -> None:
-        """Refuse properties other than those of the 6 x 6 matrices that the sections have."""
-        if self.matrices is None:
-            return
-        kind("matrices", self.matrices, SectionMatrices, "SectionMatrices.at_stations makes them")
-        made = self.matrices.properties
-        for name in (*_REQUIRED, *OPTIONAL_PROPERTIES):
-            said = name in PROPERTY_UNITS and name != "outer_fibre"
-            if said and not _alike(getattr(self, name), made.get(name)):
-                bound = "the 6 x 6 matrices of the sections say it"
-                raise InvalidValue(name, "another", bound, "change the matrices")
-
-    def _check_axis(self) -> None:
-        """Refuse an axis that turns back on itself at a kink."""
-        for name in ("sweep", "prebend"):
-            angle = getattr(self, name)
-            if angle is None:
-                continue
-            left, right = angle.end_values()
-            turned = np.abs(left - np.append(0.0, right[:-1]))
-            if turned.max() >= _TURNS_BACK:
-                k = int(turned.argmax())
-                where = f" turns by {turned[k]:.4g} rad at x/L = {angle.breakpoints[k]:.4g}"
-                bound = "the axis turns back on itself: a kink must be below {limit}"
-                raise InvalidValue(
-                    name, float(left[k]), bound, _GIVE_RADIANS, "rad", _TURNS_BACK, where=where
-                )
-
-    def _check_offsets(self) -> None:
-        """Refuse offsets of a beam that lacks the stiffness against the torsion that they cause."""
-        if self.torsion_stiffness is not None:
-            return
-        bound = "forces beside the shear centre twist the beam, which needs {other}"
-        said: dict[str, Any] = {"other": "torsion_stiffness"}
-        for name in OFFSETS:
-            if (given := getattr(self, name)) is not None and (place := _first_place(given)) is not None:
-                value, where = float(given(np.array(place))), f" at x/L = {place:.3f}"
-                raise InvalidValue(name, value, bound, GIVE_IT, "m", where=where, **said)
-        if self.tip is not None and self.tip.offset_across:
-            raise InvalidValue("tip.offset_across", self.tip.offset_across, bound, GIVE_IT, "m", **said)
+        along = (name for name in (*_REQUIRED, *OPTIONAL_PROPERTIES) if name != "outer_fibre")
+        beam_checks.check_matrices(self, [name for name in along if name in PROPERTY_UNITS])
+        beam_checks.check_axis(self)
 
     @cached_property
     def has_offsets(self) -> bool:
-        """Whether a centre of mass or of tension lies beside the axis, of the sections or of the tip body."""
+        """Whether a centre of mass or of tension, of the sections or of the tip body, lies off the axis."""
         given = (getattr(self, name) for name in OFFSETS)
-        beside = any(each is not None and _first_place(each) is not None for each in given)
+        beside = any(each is not None and beam_checks.first_place(each) is not None for each in given)
         return beside or bool(self.tip and self.tip.offset_across)
 
+    @property
+    def strip(self) -> Rectangle | None:
+        """The rectangle whose deflections may vary across the width, that of layers where it carries them."""
+        return self.section if self.electrodes is None else self.electrodes.laminate
+
     def with_section(self, section: Rectangle) -> Beam:
-        """The beam with another rectangular section, and the properties that follow from it."""
+        """Return the beam with another rectangular section, and the properties derived from that."""
         section.check_thickness(self.length)
         warn_of_material(section.youngs_modulus, section.density)
         return replace(self, section=section, **section.properties)
@@ -253,7 +197,7 @@ class Beam(FieldsOnly, OneLine):
         twist : float, Polynomial, Table or callable, optional
             Angle by which the section is turned [rad], added to the bending angle of the mount.
         poissons_ratio : float, optional
-            Poisson's ratio, above -1 and at most 0.5; without it there is no shear stiffness.  That is
+            Poisson's ratio, above -1 and at most 0.5; needed for the shear stiffness, which is
             kappa G A with kappa = 10 (1 + nu) / (12 + 11 nu): Cowper (1966), Journal of Applied Mechanics 33,
             335-340.
         point_masses : sequence of PointMass
@@ -284,18 +228,10 @@ class Beam(FieldsOnly, OneLine):
         section = Rectangle(b, h, youngs_modulus, density, poissons_ratio)
         section.check_thickness(length)
         warn_of_material(section.youngs_modulus, section.density)
-        angles = {"twist": twist, "sweep": sweep, "prebend": prebend}
-        turned = {n: to_profile(n, a, breakpoints) for n, a in angles.items() if a is not None}
-        warn_of_twist(turned.get("twist"))
-        return cls(
-            length=length,
-            tip=tip,
-            point_masses=point_masses,
-            point_springs=point_springs,
-            section=section,
-            **turned,
-            **section.properties,
-        )
+        angles = _along({"breakpoints": breakpoints, "twist": twist, "sweep": sweep, "prebend": prebend})
+        warn_of_twist(angles.get("twist"))
+        made = {**angles, **section.properties, "section": section}
+        return cls(length, tip=tip, point_masses=point_masses, point_springs=point_springs, **made)
 
     @classmethod
     def from_stiffness(
@@ -382,31 +318,10 @@ class Beam(FieldsOnly, OneLine):
             the section's radius of gyration would exceed the outer fibre or the length; or if the twist seems
             to be in degrees: beyond one turn, or half a turn with at most two decimals.
         """
-        other = shear_stiffness if second_shear_stiffness is None else second_shear_stiffness
-        given: dict[str, Any] = {
-            "mass_per_length": mass_per_length,
-            "bending_stiffness": bending_stiffness,
-            "axial_stiffness": axial_stiffness,
-            "outer_fibre": outer_fibre,
-            "second_bending_stiffness": second_bending_stiffness,
-            "twist": twist,
-            "shear_stiffness": shear_stiffness,
-            "second_shear_stiffness": other,
-            "rotary_inertia": rotary_inertia,
-            "second_rotary_inertia": second_rotary_inertia,
-            "torsion_stiffness": torsion_stiffness,
-            "warping_stiffness": warping_stiffness,
-            "sweep": sweep,
-            "prebend": prebend,
-            "mass_offset": mass_offset,
-            "tension_offset": tension_offset,
-        }
-        length = size("length", length, "m")
-        given = {name: value for name, value in given.items() if value is not None or name in _REQUIRED}
-        made: dict[str, Any] = {
-            name: (to_profile if name in OF_ANY_SIGN else as_profile)(name, value, breakpoints)
-            for name, value in given.items()
-        }
+        given = {**locals()}  # arguments of this method, by name
+        if second_shear_stiffness is None:
+            given["second_shear_stiffness"] = shear_stiffness
+        length, made = size("length", length, "m"), _along(given)
         beam = cls(length, tip=tip, point_masses=point_masses, point_springs=point_springs, **made)
         bending, axial = beam.bending_stiffness, beam.axial_stiffness
         warn_of_stiffness(length, beam.mass_per_length, bending, axial, beam.outer_fibre)
@@ -463,15 +378,13 @@ class Beam(FieldsOnly, OneLine):
             If the twist seems to be in degrees: beyond one turn, or half a turn with at most two decimals.
         """
         kind("matrices", matrices, SectionMatrices, "SectionMatrices.at_stations makes them")
-        angles = {"twist": twist, "sweep": sweep, "prebend": prebend}
-        given = {name: angle for name, angle in angles.items() if angle is not None}
-        made: dict[str, Any] = {name: to_profile(name, angle, breakpoints) for name, angle in given.items()}
-        warn_of_twist(made.get("twist"))
-        made |= matrices.properties | {"length": size("length", length, "m"), "matrices": matrices}
+        angles = _along({"breakpoints": breakpoints, "twist": twist, "sweep": sweep, "prebend": prebend})
+        warn_of_twist(angles.get("twist"))
+        made = {**angles, **matrices.properties, "matrices": matrices, "length": size("length", length, "m")}
         return cls(tip=tip, point_masses=point_masses, point_springs=point_springs, **made)
 
     def headline(self) -> Iterator[str]:
-        """Length, mass per length and bending stiffness from root to tip, and the bodies on the beam."""
+        """Yield length, mass per length and bending stiffness from root to tip, and the bodies, as text."""
         yield number(self.length, "m")
         for name, unit, letters in (("mass_per_length", "kg/m", ""), ("bending_stiffness", "N m2", "EI ")):
             yield letters + spanned(getattr(self, name)(np.linspace(0, 1, 11)), unit)
@@ -490,7 +403,7 @@ class Beam(FieldsOnly, OneLine):
 
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
-        """Fractions x/L where a property may jump or have a kink, or a mass stands, with the ends 0 and 1."""
+        """Fractions x/L where a property may jump or have a kink, or a mass is, with the ends 0 and 1."""
         names = (name for name in (*_REQUIRED, *OPTIONAL_PROPERTIES) if name != "outer_fibre")
         profiles = (getattr(self, name) for name in names)
         ends = {b for p in profiles if p is not None for b in p.breakpoints}
@@ -498,13 +411,13 @@ class Beam(FieldsOnly, OneLine):
 
     @cached_property
     def lumps(self) -> tuple[np.ndarray, np.ndarray]:
-        """Positions x/L (k,) of the point masses that are not 0, and the masses (k,) [kg]."""
+        """Return positions x/L (k,) of the nonzero point masses, and the masses (k,) [kg]."""
         heavy = [(lump.position, lump.mass) for lump in self.point_masses if lump.mass]
         position, mass = np.array(heavy, dtype=float).reshape(-1, 2).T
         return np.minimum(position / self.length, 1.0), mass
 
     def springs(self, direction: int) -> tuple[np.ndarray, np.ndarray]:
-        """Positions x/L (k,) of the point springs in a direction, 0 or 1, and the stiffnesses (k,) [N/m]."""
+        """Return positions x/L (k,) and stiffnesses (k,) [N/m] of point springs in direction 0 or 1."""
         if not self.point_springs:
             return np.empty(0), np.empty(0)
         found = [s for s in self.point_springs if s.stiffness and direction_of(s.direction) == direction]
@@ -523,18 +436,18 @@ class Beam(FieldsOnly, OneLine):
 
     @cached_property
     def is_curved(self) -> bool:
-        """Whether a sweep or a prebend is given by which the axis is not straight."""
+        """Whether sweep or prebend make the axis of the unloaded beam other than straight."""
         angles = (angle for angle in (self.sweep, self.prebend) if angle is not None)
         return any(bool(np.abs(angle.series).max() > _STRAIGHT) for angle in angles)
 
     @property
     def root_twist(self) -> float:
-        """Angle by which the section at the root is turned [rad]."""
+        """Angle by which the twist turns the section at the root [rad]."""
         return 0.0 if self.twist is None else float(self.twist.end_values()[0][0])
 
     @cached_property
     def tip_twist(self) -> float:
-        """Angle by which the section at the tip is turned [rad]."""
+        """Angle by which the twist turns the section at the tip [rad]."""
         return 0.0 if self.twist is None else float(self.twist.end_values()[1][-1])
 
     @property
@@ -543,14 +456,7 @@ class Beam(FieldsOnly, OneLine):
         return 0.0 if self.tension_offset is None else float(self.tension_offset.end_values()[1][-1])
 
 
-def _alike(given: Profile | None, made: Profile | None) -> bool:
-    """Whether a property is that of a section, perhaps on more segments."""
-    return given == made or (
-        given is not None and made is not None and given == made.split(given.breakpoints)
-    )
-
-
-PROPERTY_UNITS = {  # all that varies along a beam, but for its twist
+PROPERTY_UNITS = {  # units of all properties that vary along a beam, but for its angles
     "mass_per_length": "kg/m",
     "bending_stiffness": "N m2",
     "second_bending_stiffness": "N m2",
@@ -566,8 +472,9 @@ PROPERTY_UNITS = {  # all that varies along a beam, but for its twist
     "outer_fibre": "m",
 }
 
-ANGLE_UNITS = {"twist": "rad", "sweep": "rad", "prebend": "rad"}  # of what may have any sign
-OFFSETS = ("mass_offset", "tension_offset")  # from the shear centre
+# Units of the angles along a beam, which may have any sign.
+ANGLE_UNITS = {"twist": "rad", "sweep": "rad", "prebend": "rad"}
+OFFSETS = beam_checks.OFFSETS
 OF_ANY_SIGN = (*ANGLE_UNITS, *OFFSETS)
 _REQUIRED = ("mass_per_length", "bending_stiffness")
 OPTIONAL_PROPERTIES = tuple(
@@ -575,24 +482,10 @@ OPTIONAL_PROPERTIES = tuple(
 )
 
 
-def _first_place(profile: Profile) -> float | None:
-    """The first place x/L of the ends and middles of segments at which a property is not 0; None if none."""
-    ends = np.array(profile.breakpoints)
-    left, right = profile.end_values()
-    at = np.column_stack([ends[:-1], (ends[:-1] + ends[1:]) / 2, ends[1:]]).ravel()
-    values = np.column_stack([left, profile((ends[:-1] + ends[1:]) / 2), right]).ravel()
-    return float(at[np.flatnonzero(values)[0]]) if values.any() else None
-
-
-_MADE = {PointMass: "PointMass(position, mass)", PointSpring: "PointSpring(position, stiffness)"}
-_BEYOND = {PointMass: "a body beyond the tip is a TipMass", PointSpring: "hold the tip itself"}
-
-
-def _check_points(name: str, given: object, wanted: type, length: float) -> tuple[Any, ...]:
-    """Point masses or springs as a tuple; refuse what is none, and one beyond the tip."""
-    points = several(name, given, wanted, f"{_MADE[wanted]} makes one")
-    for k, point in enumerate(points):
-        beyond, field = point.position > length * (1 + _ROUNDING), f"{name}[{k}].position"
-        bound = "it must be at most {limit}, the length"
-        refuse(beyond, field, point.position, "m", bound, _BEYOND[wanted], limit=length)
-    return points
+def _along(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Convert the given arguments of a beam that vary along it to profiles, with its breakpoints."""
+    return {
+        name: (to_profile if name in OF_ANY_SIGN else as_profile)(name, given[name], given["breakpoints"])
+        for name in (*_REQUIRED, *OPTIONAL_PROPERTIES)
+        if given.get(name) is not None or (name in _REQUIRED and name in given)
+    }

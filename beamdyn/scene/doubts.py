@@ -1,6 +1,6 @@
-"""Inputs that are allowed but look like a mistake of units: a warning, when they are given.
+"""Warnings of input that is allowed but looks like a mistake of units.
 
-What makes an answer doubtful is in `beamdyn.scene.validity`, and stands in the results.
+What makes an answer doubtful is checked in `beamdyn.scene.validity`, and reported in the results.
 """
 
 from __future__ import annotations
@@ -14,17 +14,18 @@ from beamdyn.scene.profile import Profile
 
 SLOWEST, FASTEST = 100.0, 20e3  # speeds of waves along a bar [m/s]: hard rubber has 200, diamond 18e3
 _THICKEST = 1 / math.sqrt(12)  # radius of gyration over length, of a rectangle as thick as the beam is long
-_ROUNDING = 1e-9  # relative
+_ROUNDING = 1e-9  # relative rounding error of lengths
 
 
 def warn_of_degrees(name: str, angle: float) -> None:
-    """Warn of an angle [rad] beyond half a turn with few decimals: in radians it would be written by pi."""
+    """Warn of an angle [rad] beyond half a turn with at most two decimals, which suggests degrees."""
     if abs(angle) > math.pi and round(angle, 2) == angle:
-        warnings.warn(f"{name} = {_say_degrees(angle)}", stacklevel=4)  # at the user's call of the class
+        # The warning points at the user's call of the class.
+        warnings.warn(f"{name} = {_say_degrees(angle)}", stacklevel=4)
 
 
 def warn_of_twist(twist: Profile | None) -> None:
-    """Warn of a twist [rad] beyond one turn anywhere, or beyond half a turn with few decimals."""
+    """Warn of a twist [rad] beyond one turn, or beyond half a turn with few decimals."""
     if twist is None:
         return
     values = np.concatenate([*twist.end_values(), twist(np.linspace(0, 1, 33))])
@@ -35,7 +36,7 @@ def warn_of_twist(twist: Profile | None) -> None:
 
 
 def _say_degrees(angle: float) -> str:
-    """Say what an angle [rad] is in degrees, and how degrees are given."""
+    """Word the warning that an angle [rad] may be in degrees, with how degrees are given."""
     return (
         f"{angle:g} rad: angles are in radians, and this is {math.degrees(angle):.4g} degrees; "
         f"if {angle:g} degrees were meant, give math.radians({angle:g})"
@@ -43,7 +44,7 @@ def _say_degrees(angle: float) -> str:
 
 
 def warn_of_material(youngs_modulus: float, density: float) -> None:
-    """Warn of a modulus [Pa] and a density [kg/m3] of no usual material, by the speed of waves in it."""
+    """Warn of a Young's modulus [Pa] and density [kg/m3] that give an unusual speed of sound."""
     speed = math.sqrt(youngs_modulus) / math.sqrt(density)
     if not SLOWEST <= speed <= FASTEST:
         sentence = (
@@ -57,13 +58,14 @@ def warn_of_material(youngs_modulus: float, density: float) -> None:
 def warn_of_stiffness(
     length: float, mass: Profile, bending: Profile, axial: Profile | None, fibre: Profile | None
 ) -> None:
-    """Warn of stiffnesses [N m2, N], mass [kg/m], length [m] and outer fibre [m] that do not fit together.
+    """Warn of inconsistent stiffnesses [N m2, N], mass per length [kg/m], length and outer fibre [m].
 
     Small stiffnesses are not suspected: dimensionless beams have them.
     """
     xi = np.linspace(0, 1, 33)
     EI, m = bending(xi), mass(xi)
-    if axial is None:  # the section is at most as thick as the beam is long: waves are at least so fast
+    # The section is at most as thick as the beam is long, which bounds the speed of waves from below.
+    if axial is None:
         speed = np.sqrt(EI) / np.sqrt(m) / (_THICKEST * length)
         words = f"bending_stiffness = {EI[0]:g} N m2 with length = {length:g} m"
     else:
@@ -81,7 +83,7 @@ def warn_of_stiffness(
 
 
 def _warn_of_gyration(EI: np.ndarray, EA: np.ndarray, most: np.ndarray, name: str) -> None:
-    """Warn of a radius of gyration of a section, sqrt(EI / EA), beyond the outer fibre or that of a cube."""
+    """Warn of a radius of gyration sqrt(EI / EA) beyond the outer fibre or the length of the beam."""
     gyration = np.sqrt(EI) / np.sqrt(EA)
     k = int((gyration / most).argmax())
     if gyration[k] > most[k] * (1 + _ROUNDING):

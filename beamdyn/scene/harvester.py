@@ -28,38 +28,33 @@ Inman (2009), Smart Materials and Structures 18, 025009; unimorph: own derivatio
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import Annotated, Any, Literal, NamedTuple, get_args
+from dataclasses import dataclass, field, replace
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, one_of, real, refuse, set_fields
 from beamdyn.common.inputs.described import Described, descriptions
 from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.words import Words
+from beamdyn.scene.laminate import Coupled, Laminate, Material, composite, couple, laminate
 from beamdyn.scene.names_elsewhere import RECTANGULAR
-from beamdyn.scene.profile import Profile
+from beamdyn.scene.profile import ONE, Profile
+from beamdyn.scene.rectangle import Rectangle
 
 Connection = Literal["series", "parallel", "unimorph"]
 _STRAINED, _STRESSED = ("e31", "c11e", "eps33s"), ("d31", "s11e", "eps33t")
 _SETS = _STRAINED, _STRESSED
-_EVEN = 1e-9  # change of a side along the layers, over it, that is rounding
+_EVEN = 1e-9  # relative change of a side under the layers that is rounding only
 _SHORT: Any = {"least": 0, "infinite": "open circuit", "remedy": "0 is a short circuit, inf an open one"}
-
-
-class Material(NamedTuple):
-    """Constants of a layer strained along one direction: c11E [Pa], e31 [C/m2] and eps33S [F/m]."""
-
-    stiffness: float
-    coupling: float
-    permittivity: float
 
 
 @dataclass(frozen=True)
 class Harvester(FieldsOnly):
     """Piezoelectric layers with electrodes over a part of a rectangular beam, and their load.
 
-    `on` puts them on a beam.
+    The method `on` puts the layers on a beam.
 
     Parameters
     ----------
@@ -71,16 +66,21 @@ class Harvester(FieldsOnly):
         A layer on either side, connected in series or in parallel, or one layer.
     e31, c11e, eps33s : float, optional
         Piezoelectric stress constant [C/m2], of either sign, modulus at constant field [Pa] and permittivity
-        at constant strain [F/m], of a layer that is free across: the reduced constants of a beam.
+        at constant strain [F/m], of a layer that is free across and through its thickness: the reduced
+        constants of a beam, d31/s11E, 1/s11E and eps33T - d31^2/s11E.  Those of a data sheet's matrices of
+        stiffness, of a layer held in both, differ: of PZT-5A c11E is twice as large, and e31 half as large.
+        A wide strip is held across near its clamp, which follows from `poissons_ratio`.
     d31, s11e, eps33t : float, optional
         In their place the strain constant [m/V], compliance at constant field [1/Pa] and permittivity at
-        constant stress [F/m].
+        constant stress [F/m], as data sheets have them.
     start, end : float
         Where layers and electrodes begin and end [m from the root]; an infinite end is the tip.
     resistance : float
         Load resistance R [ohm]: 0 is a short circuit, inf an open one.
     strain_limit : float
         Largest strain that a layer bears; inf where none is known.
+    poissons_ratio : float, optional
+        -s12E/s11E, for camber, which stiffens the section and couples more where a clamp hinders it.
 
     Raises
     ------
@@ -124,13 +124,17 @@ class Harvester(FieldsOnly):
     strain_limit: Annotated[
         float, Described("", "S_max", "largest strain of a layer", above=0, infinite="none")
     ] = math.inf
+    poissons_ratio: Annotated[
+        float | None,
+        Described("", "nu_p", "Poisson's ratio of the layers, -s12E/s11E, for camber", above=-1, most=0.5),
+    ] = None
 
     def __post_init__(self) -> None:
         one_of("harvester.connection", self.connection, get_args(Connection))
         for name, described in descriptions(Harvester).items():
             given = getattr(self, name)
             is_infinite = bool(described.infinite) and isinstance(given, float) and given == math.inf
-            is_left_out = given is None and name in (*_STRAINED, *_STRESSED)
+            is_left_out = given is None and name in (*_STRAINED, *_STRESSED, "poissons_ratio")
             if not (name == "connection" or is_infinite or is_left_out):
                 set_fields(self, **{name: described.check(f"harvester.{name}", given)})
         self._check_material()
@@ -138,7 +142,7 @@ class Harvester(FieldsOnly):
         refuse(bad, "harvester.start", self.start, "m", bound, "are the two swapped?", limit=self.end)
 
     def _check_material(self) -> None:
-        """Refuse constants that are not one set of three, or that no material has."""
+        """Refuse material constants that are not one complete set of three, or that no material can have."""
         strained, stressed = ([n for n in names if getattr(self, n) is not None] for names in _SETS)
         if (strained, stressed) not in (([*_STRAINED], []), ([], [*_STRESSED])):
             missing = [n for n in (_STRAINED if strained else _STRESSED) if getattr(self, n) is None]
@@ -151,10 +155,14 @@ class Harvester(FieldsOnly):
             bound = "it must be above {limit}, d31^2/s11e: no material has more coupling"
             limit = material.coupling * (self.d31 or 0.0)
             raise InvalidValue("harvester.eps33t", self.eps33t, bound, "check all three", "F/m", limit)
+        nu = self.poissons_ratio
+        if nu is not None and material.held_across(nu).permittivity <= 0:
+            bound = "held across, a layer would have no permittivity: no material couples so much"
+            raise InvalidValue("harvester.poissons_ratio", nu, bound, "check all four")
 
     @property
     def material(self) -> Material:
-        """The constants of one strain and one field."""
+        """Stiffness, coupling and permittivity of the layers, for strain along the beam and one field."""
         if self.e31 is not None and self.c11e is not None and self.eps33s is not None:
             return Material(self.c11e, self.e31, self.eps33s)
         assert self.d31 is not None and self.s11e is not None and self.eps33t is not None, "one set is given"
@@ -166,15 +174,15 @@ class Harvester(FieldsOnly):
         Raises
         ------
         ValueError
-            If the beam has no rectangular section, is twisted, carries layers already or ends before them, or
-            its section varies under them.
+            If it is no beam, has no rectangular section, is twisted, carries layers already or ends before
+            them, or its section varies under them.
         """
         span, (b, h) = self._span_on(beam), self._sides_on(beam)
         modulus, density = beam.section.youngs_modulus, beam.section.density
         material, t = self.material, self.thickness
         sides = 1 if self.connection == "unimorph" else 2
-        elastic = _composite(modulus, material.stiffness, h, t, sides)
-        heavy = _composite(density, self.density, h, t, sides)
+        elastic = composite(modulus, material.stiffness, h, t, sides)
+        heavy = composite(density, self.density, h, t, sides)
         fibre = max(h / 2 + t - elastic.centre, elastic.centre - h / 2)
         outer = max(fibre, h / 2 + elastic.centre)
         of_bare = {
@@ -187,17 +195,36 @@ class Harvester(FieldsOnly):
             "outer_fibre": (outer - h / 2) / b,
         }
         made = {name: _added(getattr(beam, name), span, b * step) for name, step in of_bare.items()}
-        arm = b * material.coupling * ((h + t) / 2 - elastic.centre)
-        of_layer = b * material.permittivity / t
-        coupling, capacitance = {
-            "series": (arm, of_layer / 2),
-            "parallel": (2 * arm, 2 * of_layer),
-            "unimorph": (arm, of_layer + b * material.coupling**2 / elastic.area),
-        }[self.connection]
-        return replace(beam, **made, electrodes=Electrodes(self, beam, span, coupling, capacitance, fibre))
+        free = couple(self.connection, b, t, (h + t) / 2 - elastic.centre, material, elastic.area)
+        strip, flat = self._as_plate(beam.section, span, (b, h), elastic.second)
+        electrodes = Electrodes(self, beam, span, free.moment, free.capacitance, fibre, strip, flat)
+        return replace(beam, **made, electrodes=electrodes)
+
+    def _as_plate(
+        self, bare: Rectangle, span: tuple[float, float], sides: tuple[float, float], stiffness: float
+    ) -> tuple[Laminate, Coupled | None]:
+        """Return the strip with layers as a plate, and what its electrodes do where it is held flat.
+
+        The second is None, and the first has no Poisson's ratio, where one of the two is not known; the
+        stiffness per width is that of the beam [N m].
+        """
+        (b, h), t, nu = sides, self.thickness, self.poissons_ratio
+        count = 1 if self.connection == "unimorph" else 2
+        known = None if nu is None else bare.poissons_ratio
+        thicker = _added(bare.thickness, span, count * t)
+        strip = Laminate(bare.width, thicker, bare.youngs_modulus, bare.density, known)
+        if nu is None or known is None:
+            return strip, None
+        ratio, stiffer, both = laminate(bare, self.material, nu, (h, t, count), stiffness)
+        along, free = _added(bare.ratio, span, ratio - known), _added(ONE, span, stiffer - 1)
+        across, arm = self.material.held_across(nu), (h + t) / 2 - both.centre
+        flat = couple(self.connection, b, t, arm, across, both.area / 2)
+        return replace(strip, along=along, free=free), flat
 
     def _span_on(self, beam: Any) -> tuple[float, float]:
         """Begin and end as x/L; refused where the beam cannot carry the layers."""
+        if not hasattr(beam, "electrodes"):
+            raise InvalidValue("beam", beam, "layers stand on a Beam", Words(RECTANGULAR, " makes one"))
         if beam.electrodes is not None:
             bound = "the beam carries layers already, which these would overlap"
             raise InvalidValue("harvester.start", self.start, bound, "put one set on the bare beam", "m")
@@ -214,36 +241,44 @@ class Harvester(FieldsOnly):
         return self.start / beam.length, min(end / beam.length, 1.0)
 
     def _sides_on(self, beam: Any) -> tuple[float, float]:
-        """Width and thickness under the layers [m]; refused where they vary."""
+        """Find the beam's width and thickness under the layers [m]; refuse sides that vary there."""
         found, (first, last) = [], self._span_on(beam)
         inside = np.linspace(first, last, 259)[1:-1]
         for name in ("width", "thickness"):
             side = getattr(beam.section, name)(inside)
             if np.ptp(side) > _EVEN * side[0]:
-                bound = "under the layers it must be constant"
-                raise InvalidValue(name, float(side[-1]), bound, f"{side[0]:.6g} m where they begin", "m")
+                bound = f"it must be constant under the layers, which begin where it is {side[0]:.6g} m"
+                remedy = f"give them a shorter span, or a beam of even {name} there"
+                raise InvalidValue(name, float(side[-1]), bound, remedy, "m")
             found.append(float(side[0]))
         return found[0], found[1]
 
 
 @dataclass(frozen=True)
 class Electrodes(FieldsOnly):
-    """Electrodes of layers on a beam, by what its equations read.
+    """Electrodes of layers on a beam, with the constants that the equations of motion use.
 
     Parameters
     ----------
     harvester : Harvester
         The layers.
     bare : Beam
-        The beam without them.
+        The beam without layers and electrodes.
     span : tuple of float
-        Where they begin and end, as x/L.
+        Begin and end of the electrodes, as x/L.
     coupling : float
-        theta, bending moment per voltage [N m/V].
+        Coupling theta: bending moment per voltage [N m/V].
     capacitance_per_length : float
-        C [F/m], at constant curvature.
+        Capacitance per length C [F/m], at constant curvature.
     fibre : float
         Distance of the outer face of a layer from the neutral axis [m].
+    laminate : Laminate
+        The strip with the layers, whose deflections may vary across.
+    flat : Coupled or None
+        Moment and capacitance of a section that is held flat; None where a Poisson's ratio is not known.
+    across : bool
+        Whether the deflections of the scene vary across the width: then the constants of `flat` hold, and
+        camber is a deflection.
     """
 
     harvester: Harvester
@@ -252,10 +287,32 @@ class Electrodes(FieldsOnly):
     coupling: float
     capacitance_per_length: float
     fibre: float
+    laminate: Laminate | None = field(default=None, repr=False, metadata=ADDED_LATER)
+    flat: Coupled | None = field(default=None, metadata=ADDED_LATER)
+    across: bool = field(default=False, metadata=ADDED_LATER)
+
+    @property
+    def moment(self) -> float:
+        """Bending moment per voltage [N m/V] in the model of the scene."""
+        return self.flat.moment if self.across and self.flat is not None else self.coupling
+
+    @property
+    def held_flat(self) -> Electrodes:
+        """The electrodes of sections that are held flat all along."""
+        assert self.flat is not None, "both Poisson's ratios are given"
+        return replace(self, coupling=self.flat.moment, capacitance_per_length=self.flat.capacitance)
+
+    def with_ratio(self, ratio: float) -> Electrodes:
+        """Return the electrodes with a Poisson's ratio of strip and layers where none is given."""
+        section, layers = self.bare.section, self.harvester
+        of_strip = ratio if section.poissons_ratio is None else section.poissons_ratio
+        of_layers = ratio if layers.poissons_ratio is None else layers.poissons_ratio
+        bare = self.bare.with_section(replace(section, poissons_ratio=of_strip))
+        return replace(layers, poissons_ratio=of_layers).on(bare).electrodes
 
     @property
     def resistance(self) -> float:
-        """Load resistance [ohm]."""
+        """Resistance of the harvester's load [ohm]."""
         return self.harvester.resistance
 
     @property
@@ -264,31 +321,17 @@ class Electrodes(FieldsOnly):
         return 0 < self.resistance < math.inf
 
     def inside(self, fraction: np.ndarray | float) -> Any:
-        """Places x/L at fractions of the layers' length, within them by more than rounding."""
+        """Convert fractions of the layers' length to positions x/L, kept inside the layers' ends."""
         first, last = self.span
         return first + (last - first) * (_EVEN + (1 - 2 * _EVEN) * fraction)
 
     def capacitance(self, length: float) -> float:
-        """Capacitance [F] of the electrodes on a beam of a length [m], at constant curvature."""
-        return self.capacitance_per_length * (self.span[1] - self.span[0]) * length
-
-
-class _Composite(NamedTuple):
-    """Integrals of a property over the thickness: its sum, centre, and second moment about that."""
-
-    area: float
-    centre: float
-    second: float
-
-
-def _composite(inner: float, layer: float, h: float, t: float, sides: int) -> _Composite:
-    """Integrals for a strip of thickness h between layers of thickness t on one side or both."""
-    z, area = (h + t) / 2, inner * h + sides * layer * t
-    centre = layer * t * z / area if sides == 1 else 0.0
-    second = inner * h**3 / 12 + sides * layer * t * (t**2 / 12 + z**2)
-    return _Composite(area, centre, second - area * centre**2)
+        """Compute the capacitance [F] of the electrodes on a beam of a length [m], at constant curvature."""
+        held = self.flat if self.across else None
+        per_length = self.capacitance_per_length if held is None else held.capacitance
+        return per_length * (self.span[1] - self.span[0]) * length
 
 
 def _added(profile: Profile, span: tuple[float, float], step: float) -> Profile:
-    """A property with a constant added over a span of x/L."""
+    """Add a constant to a property over a span of x/L."""
     return profile.stepped(np.array(span), np.array([-step, step]))

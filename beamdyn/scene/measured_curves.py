@@ -1,4 +1,4 @@
-"""Histories, peaks, loads along the span and responses that were measured or computed elsewhere."""
+"""Measured or independently computed data: histories, peaks, loads along the span, frequency responses."""
 
 from __future__ import annotations
 
@@ -16,39 +16,39 @@ from beamdyn.scene.measured_frequencies import set_doubts, table_of
 
 @dataclass(frozen=True)
 class MeasuredCurves(ReadOnlyArrays):
-    """Base of measured values over time, speed, position or frequency.
+    """Base class of measured values over time, speed, position or frequency.
 
     Attributes
     ----------
     along : tuple of str
-        Over what the values are given, and its unit.
+        Name of the abscissa over which the values are given, and its unit.
     """
 
     along: ClassVar[tuple[str, str]]
 
     @property
     def x(self) -> np.ndarray:
-        """Times [s], speeds [rad/s], positions [m] or frequencies [Hz], shape (n,)."""
+        """Abscissa of the data: times [s], speeds [rad/s], positions [m] or frequencies [Hz], shape (n,)."""
         return getattr(self, self.along[0])
 
     @property
     def columns(self) -> np.ndarray:
-        """The values, shape (n, C)."""
+        """The measured values, one column for each name, shape (n, C)."""
         return getattr(self, "value")  # noqa: B009  (of subclasses)
 
     @property
     def allowance(self) -> np.ndarray:
-        """Allowance of each value: half of its last digit and twice its uncertainty, shape (n, C)."""
+        """Allowance of each value: half a unit of its last digit plus twice its uncertainty, shape (n, C)."""
         spread = np.asarray(getattr(self, "uncertainty"))  # noqa: B009  (of subclasses)
         return self.half_digits + 2 * np.nan_to_num(spread).reshape(self.columns.shape)
 
     @property
     def half_digits(self) -> np.ndarray:
-        """Half of the last digit of each value, shape (n, C)."""
+        """Half a unit of the last digit of each value, shape (n, C)."""
         return np.asarray(getattr(self, "rounding")).reshape(self.columns.shape)  # noqa: B009
 
     def _check_columns(self, given: Any, names: Sequence[str], units: dict[str, str]) -> None:
-        """Keep values, names and their doubts, checked."""
+        """Check values, their names and uncertainties, and store them as arrays."""
         names = checks.several("names", names, str, "give names in a list")
         if not names:
             raise InvalidValue("names", names, "it is empty", f"give {', '.join(units)}")
@@ -75,9 +75,9 @@ class MeasuredHistory(MeasuredCurves):
     time : array-like, shape (n,)
         Times [s], ascending, counted from the beginning of the scene's motion.
     value : array-like, shape (n,) or (n, C)
-        The values [m, N m, or a plain number for strain], a column a name.
+        The values [m, N m, or a plain number for strain], one column for each name.
     names : sequence of str, shape (C,)
-        What the columns are: "tip", "tip across", "root moment", "root moment across" or "root strain".
+        Quantities in the columns: "tip", "tip across", "root moment", "root moment across" or "root strain".
     uncertainty : float or array-like, broadcast to (n, C)
         Standard uncertainties [unit of the value]; nan where they are not known.
     rounding : float or array-like, broadcast to (n, C)
@@ -135,7 +135,7 @@ class MeasuredPeaks(MeasuredCurves):
     window : array-like, shape (2,)
         Beginning and end of the window [s], counted from the beginning of the motion.
     names : sequence of str, shape (1,)
-        What the column is: "largest tip".
+        Quantity in the column: "largest tip".
     uncertainty : float or array-like, broadcast to (n, 1)
         Standard uncertainties [m]; nan where they are not known.
     rounding : float or array-like, broadcast to (n, 1)
@@ -183,9 +183,9 @@ class MeasuredLoads(MeasuredCurves):
     position : array-like, shape (n,)
         Distances from the root [m], ascending; one that is given twice stands for both sides of a jump.
     value : array-like, shape (n,) or (n, C)
-        The loads [N m or N], a column a name, with the signs of `SpanLoads`.
+        The loads [N m or N], one column for each name, with the signs of `SpanLoads`.
     names : sequence of str, shape (C,)
-        What the columns are: "moment", "moment across", "shear", "shear across" or "axial".
+        Quantities in the columns: "moment", "moment across", "shear", "shear across" or "axial".
     speed : float, optional
         Speed [rad/s]; if not given, the final speed of the scene's motion, or at rest without one.
     uncertainty : float or array-like, broadcast to (n, C)
@@ -302,16 +302,16 @@ class MeasuredResponse(MeasuredCurves):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Name of the one column, such as "tip by tip force"."""
+        """Name of the single column, such as "tip by tip force"."""
         return (f"{self.output} by {self.input}",)
 
     @property
     def columns(self) -> np.ndarray:
-        """The response, shape (n, 1): complex where the phase is known."""
+        """The response as one column, shape (n, 1): complex where the phase is known."""
         turned = self.magnitude if self.phase is None else self.magnitude * np.exp(1j * self.phase)
         return turned[:, None]
 
 
 def _speed(given: float | None) -> float | None:
-    """The one speed of the data [rad/s], checked; None if it is the scene's own."""
+    """Check the speed of the data [rad/s]; None stands for the speed of the scene."""
     return None if given is None else checks.real("speed", given, "rad/s")

@@ -1,4 +1,4 @@
-"""Natural frequencies over speed, and mode shapes, that were measured or computed elsewhere."""
+"""Measured or independently computed natural frequencies over speed, and mode shapes."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class MeasuredFrequencies(ReadOnlyArrays):
     Parameters
     ----------
     frequency : array-like, shape (S, m) or (m,)
-        Frequencies [Hz], a row a speed; nan where none was found.  Their order in a row is free.
+        Frequencies [Hz], one row for each speed, in any order; nan where none was found.
     speeds : array-like, shape (S,)
         Speeds [rad/s].
     uncertainty : float or array-like, broadcast to (S, m)
@@ -82,7 +82,7 @@ class MeasuredFrequencies(ReadOnlyArrays):
         super().__post_init__()
 
     def _check_shapes(self) -> None:
-        """Keep the shapes as arrays, refused where they are at other points or of other modes."""
+        """Check the mode shapes, and store them as arrays; refuse other numbers of points or modes."""
         if self.positions is None and self.shapes is None:
             return
         if self.positions is None or self.shapes is None:
@@ -95,17 +95,17 @@ class MeasuredFrequencies(ReadOnlyArrays):
 
     @property
     def count(self) -> int:
-        """Number of frequencies."""
+        """Number of measured frequencies, those that are nan not counted."""
         return int(np.isfinite(self.frequency).sum())
 
     @property
     def allowance(self) -> np.ndarray:
-        """Allowance of each value [Hz], shape (S, m): half of its last digit and twice the uncertainty."""
+        """Allowance of each value [Hz], half a last digit's unit plus twice its uncertainty: (S, m)."""
         return self.rounding + 2 * np.nan_to_num(self.uncertainty)
 
 
 def table_of(name: str, values: Any) -> np.ndarray:
-    """Rows of floats, of which some may be nan."""
+    """Convert rows of numbers, some of which may be nan, to an array of floats."""
     array = as_floats(values)
     if array is None or array.ndim > 2 or not array.size or np.isinf(array).any():
         raise InvalidValue(name, values, "it is to be a table of numbers", "give rows of equal lengths")
@@ -113,7 +113,7 @@ def table_of(name: str, values: Any) -> np.ndarray:
 
 
 def set_doubts(data: Any, like: np.ndarray, unit: str) -> None:
-    """Set the fields `uncertainty` and `rounding` of data to arrays of the shape of their values, checked."""
+    """Check `uncertainty` and `rounding` of data, and set both to arrays of the shape of the values."""
     spread = {name: _spread(name, getattr(data, name), like) for name in ("uncertainty", "rounding")}
     _refuse_below("uncertainty", spread["uncertainty"], spread["uncertainty"] <= 0, "above 0", unit)
     _refuse_below("rounding", spread["rounding"], ~(spread["rounding"] >= 0), "0 or more", unit)

@@ -1,4 +1,4 @@
-"""How the beam is mounted on its carrier, and what damps its vibration beyond one ratio for all modes."""
+"""Mounting of the beam on its carrier, and damping of its vibration beyond one ratio for all modes."""
 
 from __future__ import annotations
 
@@ -81,11 +81,11 @@ class Damping:
 
     @property
     def damps(self) -> bool:
-        """Whether anything is damped."""
+        """Whether any damping is given."""
         return any(self.ratios) or bool(self.mass_factor or self.stiffness_factor or self.tip_damper)
 
     def ratios_of(self, modes: int) -> list[float]:
-        """Ratio of each of a number of modes at rest, from the lowest; 0 where none is given."""
+        """List the damping ratios of a number of modes at rest, from the lowest; 0 where none is given."""
         last = self.ratios[-1] if self.ratios else 0.0
         return [*self.ratios[:modes], *[last] * (modes - len(self.ratios))]
 
@@ -94,7 +94,7 @@ NO_DAMPING = Damping()
 
 
 def check_one_kind_of_ratios(ratio: float, damping: Damping) -> None:
-    """Refuse one ratio for all modes beside one for each."""
+    """Refuse a damping ratio for all modes that is given together with one for each."""
     if ratio and damping.ratios:
         bound = "damping.ratios gives one for each mode, too"
         raise InvalidValue("damping_ratio", ratio, bound, "leave one of the two out")
@@ -103,13 +103,13 @@ def check_one_kind_of_ratios(ratio: float, damping: Damping) -> None:
 _SPRING: Any = {"least": 0, "infinite": "clamped", "remedy": "0 is a hinge; left out, the root is clamped"}
 _PRECONE: Any = {"above": -math.pi / 2, "below": math.pi / 2, "remedy": "0 is in the plane of rotation"}
 ROUNDED_ANGLE = 2e-16  # largest cosine of a rounded right angle
-RIGHT_ANGLE = 1e-8  # distance from a multiple of a right angle [rad] up to which an angle counts as that
+RIGHT_ANGLE = 1e-8  # distance from a multiple of a right angle [rad] that is neglected
 _ONE_TURN: Any = {"least": -2 * math.pi, "most": 2 * math.pi, "remedy": "that is one turn either way"}
 
 
 @dataclass(frozen=True)
 class Mount(OneLine):
-    """How the root of the beam is fixed to the carrier.
+    """Mounting of the beam's root on the carrier: radius, angles and springs.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ class Mount(OneLine):
         Stiffness of the root against rotation by bending in the direction of the bending angle [N m/rad]:
         inf is clamped, 0 a hinge; a scene takes finite ones up to 1e16 times EI/L of the beam.
     second_root_stiffness : float
-        Stiffness of the root by bending across, where a second plane is modelled.
+        Stiffness of the root against rotation by bending across [N m/rad], where a second plane is modelled.
     precone : float
         Angle eta by which the beam leaves the plane of rotation, positive towards b3 [rad]: less than pi/2
         either way, and only for a beam that points outward.
@@ -133,7 +133,7 @@ class Mount(OneLine):
     Raises
     ------
     ValueError
-        If the radius or a stiffness is negative, an angle exceeds one turn, or the precone is that of no
+        If the radius or a stiffness is negative, an angle exceeds one turn, or the precone is given for no
         outward beam, or a quarter turn or more.
 
     Warns
@@ -200,7 +200,7 @@ class Mount(OneLine):
             set_fields(self, **{name: _spring(name, getattr(self, name))})
 
     def headline(self) -> Iterator[str]:
-        """Radius, then the angles and springs that were given."""
+        """Yield the radius, and the angles and springs that were given, as text."""
         yield f"radius {number(self.radius, 'm')}"
         for name in ("setting_angle", "bending_angle", "precone"):
             degrees = math.degrees(getattr(self, name))
@@ -226,7 +226,7 @@ def _check_precone(mount: Mount) -> None:
 
 
 def _spring(name: str, value: object) -> float:
-    """A stiffness of zero or more, which may be infinite [N m/rad]."""
+    """Check a stiffness of zero or more, which may be infinite [N m/rad]."""
     if isinstance(value, float) and value == math.inf:
         return value
     try:
@@ -236,18 +236,18 @@ def _spring(name: str, value: object) -> float:
 
 
 def exact_cos_sin(angle: float, least: float = ROUNDED_ANGLE) -> tuple[float, float]:
-    """Cosine and sine of an angle [rad], exactly 0 where it is a rounded multiple of a quarter turn.
+    """Compute cosine and sine of an angle [rad], exactly 0 at rounded multiples of a quarter turn.
 
-    They are 0 where their magnitude is less than the least.
+    Values of a magnitude below `least` are set to 0.
     """
     c, s = cos(angle), sin(angle)
     return (0.0 if abs(c) < least else c), (0.0 if abs(s) < least else s)
 
 
 def aligned_cos_sin(angle: float) -> tuple[float, float]:
-    """Cosine and sine of an angle [rad], 0 within `RIGHT_ANGLE` of a multiple of a quarter turn.
+    """Compute cosine and sine of an angle [rad], 0 within `RIGHT_ANGLE` of a multiple of a quarter turn.
 
-    For bending angles, by which frequencies change by the square of that, and for verdicts: no beam is
+    Used for bending angles, whose square affects frequencies, and for verdicts: no beam is
     mounted more exactly, and whether directions are coupled, or loaded across, hangs on no last digit.
     """
     return exact_cos_sin(angle, RIGHT_ANGLE)

@@ -1,4 +1,4 @@
-"""What refusals call things of a scene that files and commands call differently than Python."""
+"""Names in error messages of arguments that files and commands call differently than Python does."""
 
 from __future__ import annotations
 

@@ -26,14 +26,17 @@ from beamdyn.scene.profile import Profile, as_profile, to_profile
 from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
 from beamdyn.scene.scene import Scene
 
-SPEED = "speed"  # key of the speed at which the scene is analysed: no number of the scene itself
-SCALE = "beam.scale."  # before the names of properties that are multiplied, whatever they are along the beam
-_HARVESTER = "harvester."  # before the numbers of piezoelectric layers
-_ON_ANY_BEAM = "beam.tip.", "beam.point_mass[", "beam.point_spring["  # what a beam with layers has itself
+SPEED = "speed"  # key of the speed at which the scene is analysed, which is not a number of the scene itself
+# Prefix of properties of the beam that are multiplied by a factor, however they vary along it.
+SCALE = "beam.scale."
+_HARVESTER = "harvester."  # prefix of the numbers of piezoelectric layers
+# Numbers that a beam with layers has itself.
+_ON_ANY_BEAM = "beam.tip.", "beam.point_mass[", "beam.point_spring["
 _POINTS = {"point_mass": PointMass, "point_spring": PointSpring}
-# Powers of the sides of a section in its properties, whatever its form.
+# Exponents with which the sides of a section enter its properties, whatever its form.
 _LINEAR = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
-_OF_FIRST = ("bending_stiffness", "rotary_inertia", "torsion_stiffness")  # torsion as of flat sections
+# The exponent of torsion is that of flat sections.
+_OF_FIRST = ("bending_stiffness", "rotary_inertia", "torsion_stiffness")
 _OF_SECOND = ("second_bending_stiffness", "second_rotary_inertia")
 _SIDE_POWERS = {
     "thickness": {"outer_fibre": 1, "warping_stiffness": 3}
@@ -45,19 +48,20 @@ _SIDE_POWERS = {
 }
 
 
-# What there is ------------------------------------------------------------------------------------
+# Which numbers there are --------------------------------------------------------------------------
 
 
 @cache
 def units() -> dict[str, str]:
-    """SI units of the numbers that scenes may have by their paths, of those in lists without an index."""
+    """List the SI units of all numbers that scenes may have, by path; members of lists have no index."""
     of_beam = {"length": "m"} | SECTION_UNITS | PROPERTY_UNITS | ANGLE_UNITS
     found = {f"beam.{name}": unit for name, unit in of_beam.items()}
     found |= {SCALE + name: "" for name in (*SIDES, *PROPERTY_UNITS)} | dict(_numbers(TipMass, "beam.tip"))
     for name, kind in _POINTS.items():
-        found |= dict(reversed([*_numbers(kind, f"beam.{name}[]")]))  # its place stands last
+        found |= dict(reversed([*_numbers(kind, f"beam.{name}[]")]))  # the position comes last
     found |= dict(_numbers(Mount, "mount"))
     found |= {"model.damping_ratio": "", "model.gravity": "m/s2", "damping.ratios[]": ""}
+    found |= {"tip_load.force[]": "N", "tip_load.moment[]": "N m"}
     found |= dict(_numbers(Damping, "damping"))
     found |= dict(_numbers(Harvester, "harvester"))
     found |= {path: unit for kind in KINDS.values() for path, unit in _numbers(kind, "motion")}
@@ -65,32 +69,32 @@ def units() -> dict[str, str]:
 
 
 def unit_of(path: str) -> str | None:
-    """SI unit of a number; None if no scene has such a one."""
+    """Return the SI unit of a number; None if no scene has such a number."""
     return units().get(re.sub(r"\[\d+\]", "[]", path))
 
 
 def is_of_motion(path: str) -> bool:
-    """Whether a path is that of a number of the motion."""
+    """Whether a path names a number of the motion."""
     return path.startswith("motion.")
 
 
 def is_speed(path: str) -> bool:
-    """Whether a path is that of the speed, or of one of the motion, which analyses take in its place."""
+    """Whether a path names the speed, or a speed of the motion, which analyses use in its place."""
     return path == SPEED or (is_of_motion(path) and path.endswith(f".{SPEED}"))
 
 
 def _is_of_a_part(path: str) -> bool:
-    """Whether a path is that of a number of what not every scene has: its motion, or a harvester."""
+    """Whether a path names a number of an optional part of a scene: its motion or a harvester."""
     return is_of_motion(path) or path.startswith(_HARVESTER)
 
 
 def paths_of(scene: Scene) -> list[str]:
-    """Paths of the numbers that a scene has or could have, in lists and of its motion those that it has."""
+    """List the paths of numbers that a scene has or could have; of lists and motion, existing ones only."""
     return [path for each in units() for path in _in_lists_of(scene, each) if _is_there(scene, path)]
 
 
 def check_path(argument: str, path: object) -> str:
-    """The path of a number, that of an argument; refused if no scene has such a number."""
+    """Return the path of a number given by an argument; refuse a path that no scene has."""
     if not isinstance(path, str):
         bound = "the name of an input is a string"
         raise InvalidValue(argument, path, bound, 'give one such as "beam.thickness"')
@@ -101,7 +105,7 @@ def check_path(argument: str, path: object) -> str:
 
 
 def _numbers(made: type, path: str) -> Iterator[tuple[str, str]]:
-    """Yield paths and units of the numbers of a class and of its parts, but for speeds."""
+    """Yield paths and units of the numbers of a class and of its parts, without speeds."""
     if not is_dataclass(made):
         return
     hints = get_type_hints(made, include_extras=True)
@@ -115,7 +119,7 @@ def _numbers(made: type, path: str) -> Iterator[tuple[str, str]]:
 
 
 def _parts(hint: Any) -> Iterator[type]:
-    """Yield the classes that a field may have which have numbers of their own."""
+    """Yield the classes, with numbers of their own, of objects that a field with this type hint may hold."""
     for kind in kinds_of(hint):
         if isinstance(kind, type) and issubclass(kind, Motion):
             yield from (each for each in KINDS.values() if issubclass(each, kind))
@@ -124,7 +128,7 @@ def _parts(hint: Any) -> Iterator[type]:
 
 
 def _in_lists_of(scene: Scene, path: str) -> list[str]:
-    """A path, or those of each member of a list of the scene."""
+    """Expand a path with "[]" to the paths of each member of that list in the scene."""
     table, is_listed, _ = path.partition("[]")
     many = len(part_at(scene, _in_scene(table))) if is_listed else 1
     return [path.replace("[]", f"[{k}]") for k in range(many)]
@@ -138,7 +142,7 @@ def _is_there(scene: Scene, path: str) -> bool:
 
 
 def _in_scene(path: str) -> str:
-    """Where the number of a path stands in a scene."""
+    """Translate the path of a number in scene files to its attribute path in a `Scene`."""
     table, _, key = path.partition(".")
     if table == "model":
         return key
@@ -151,7 +155,7 @@ _POINT_LISTS = {"mass": "beam.point_masses", "spring": "beam.point_springs"}
 
 
 def number_at(scene: Scene, path: str) -> float | None:
-    """The number of a path in a scene: None if it has none, nan if it varies along the beam."""
+    """Get the number of a path in a scene: None if the scene lacks it, nan if it varies along the beam."""
     if path.startswith(SCALE):
         return 1.0
     if path.startswith("beam.tip.") and scene.beam.tip is None:
@@ -164,7 +168,7 @@ def number_at(scene: Scene, path: str) -> float | None:
 
 
 def _holder(scene: Scene, path: str) -> tuple[Any, str]:
-    """What has the number of a path, and its path there: of a beam with layers, these and the bare beam."""
+    """Find the scene, layers or bare beam that holds the number of a path, and the attribute path there."""
     electrodes = scene.beam.electrodes
     if path.startswith(_HARVESTER):
         return electrodes and electrodes.harvester, path.removeprefix(_HARVESTER)
@@ -174,14 +178,14 @@ def _holder(scene: Scene, path: str) -> tuple[Any, str]:
 
 
 def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
-    """The scene with some of its numbers replaced, by the constructors that made the scene itself.
+    """Return the scene with some numbers replaced, rebuilt by the constructors that validate input.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     values : mapping of str to float
-        Numbers by path, in SI; that of the speed is not used.
+        Numbers by path, in SI units; the speed, if given, is not used.
 
     Raises
     ------
@@ -220,7 +224,7 @@ def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
 
 @contextmanager
 def _naming_paths(values: Mapping[str, float]) -> Iterator[None]:
-    """Within it, a refusal of an argument of a constructor names the path."""
+    """Name the path, not the constructor's argument, in refusals raised within this context."""
     try:
         yield
     except InvalidValue as error:
@@ -229,7 +233,7 @@ def _naming_paths(values: Mapping[str, float]) -> Iterator[None]:
 
 
 def _layered(beam: Beam, values: Mapping[str, float], of_layers: Mapping[str, float]) -> Beam:
-    """The beam with numbers replaced, and with layers that follow it."""
+    """Replace numbers of a beam, and put its piezoelectric layers, if any, on the new beam."""
     if beam.electrodes is None:
         return _beam_with(beam, values)
     harvester = replace(beam.electrodes.harvester, **of_layers)
@@ -238,7 +242,7 @@ def _layered(beam: Beam, values: Mapping[str, float], of_layers: Mapping[str, fl
 
 
 def _beam_with(beam: Beam, values: Mapping[str, float]) -> Beam:
-    """The beam with numbers replaced, and then with what is multiplied."""
+    """Replace numbers of a beam, then multiply the properties that have a scale factor."""
     section = {name: value for name, value in values.items() if name in SECTION_UNITS}
     own: dict[str, Any] = {
         _in_scene(f"beam.{name}").removeprefix("beam."): _as_property(name, value)
@@ -264,7 +268,7 @@ def _as_property(name: str, value: float) -> float | Profile:
 
 
 def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str, float]) -> None:
-    """Refuse sides or the material of a section beside what follows from them, or where there are none."""
+    """Refuse a section's sides or material given together with derived properties, or without a rectangle."""
     if not section:
         return
     name, value = next(iter(section.items()))
@@ -278,7 +282,7 @@ def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str
 
 
 def _scaled(beam: Beam, name: str, factor: float) -> Beam:
-    """The beam with a property multiplied, or with its sections stretched in the direction of a side."""
+    """Multiply a property of the beam, or stretch its sections in the direction of one side."""
     if name in PROPERTY_UNITS and getattr(beam, name) is None:
         raise InvalidValue(SCALE + name, factor, "the beam has no such property", "give it one")
     factor = positive(SCALE + name, factor)

@@ -1,4 +1,4 @@
-"""What a model includes beyond the slender beam that bends in one plane."""
+"""Physical effects that a model includes beyond the slender beam that bends in one plane."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from beamdyn.common.words import Words
 
 @dataclass(frozen=True)
 class Physics:
-    """Effects that a model includes; what is off costs nothing.
+    """Physical effects that a model includes; effects that are off cost nothing.
 
     Parameters
     ----------
@@ -37,13 +37,13 @@ class Physics:
         torsion, shear or stretch a geometrically exact beam in space.  It is not combined with camber, and
         torsion is then that of sections by their constants, with all of their rotary inertia.
     branch : {"straight", "bent"}
-        With large deflection, the equilibria that are meant: those that follow from rest as the speed rises,
-        or those that stand beside them at high speed, bent to the other side.
+        Branch of equilibria under large deflection: "straight" follows from rest as the speed rises,
+        "bent" exists beside it at high speed, bent to the other side.
     camber : bool
         Change of shape of a rectangular section (anticlastic curvature by Poisson's ratio), which a clamped
         root hinders.
     torsion : bool
-        Torsion, which a clamped root hinders from warping.  With both, a strip is a Kirchhoff plate.
+        Torsion, whose warping a clamped root hinders.  With camber and torsion, a strip is a Kirchhoff plate.
 
     Raises
     ------
@@ -90,12 +90,12 @@ class Physics:
             self._check_combination()
 
     def with_large_deflection(self, **chosen: Any) -> Physics:
-        """The physics of an analysis that models large deflection in any case, with what else is chosen.
+        """Return the physics with large deflection, as analyses need that model it in any case.
 
         Raises
         ------
         ValueError
-            If an effect that is included cannot be combined with it.
+            If an included effect cannot be combined with large deflection.
         """
         try:
             return replace(self, large_deflection=True, **chosen)
@@ -104,7 +104,7 @@ class Physics:
             raise replace(refusal, bound=bound, remedy="leave it out") from None
 
     def _check_combination(self) -> None:
-        """Refuse what large deflection is not combined with: sections that change their form."""
+        """Refuse camber with large deflection, which assumes sections of unchanging shape."""
         if self.camber:
             bound = "it cannot be combined with large_deflection"
             raise InvalidValue("physics.camber", True, bound, "leave one of the two out")
@@ -112,7 +112,7 @@ class Physics:
 
 @dataclass(frozen=True, repr=False)
 class AutomaticPhysics(Physics):
-    """Physics that each analysis chooses; what does not choose reads it as the plain beam."""
+    """Physics that each analysis chooses; code that does not choose reads it as the plain beam."""
 
     def __repr__(self) -> str:
         return repr(AUTO_NAME)
@@ -122,26 +122,26 @@ AUTO_NAME = "auto"
 AUTO = AutomaticPhysics()
 
 
-_WORTH_SAYING = 0.1  # of a tolerance: a smaller share of what exceeds it is not named
+_WORTH_SAYING = 0.1  # effects smaller than this fraction of the tolerance are not named
 
 # Physics that was chosen for a scene --------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class JudgedEffect:
-    """An effect beyond the plain beam, and whether it was included.
+    """An effect beyond the plain beam, its estimated size, and whether it was included.
 
     Parameters
     ----------
     name : str
         Name of the effect.
     size : float
-        Largest relative change that it makes in the answer; inf where it turns modes into others, nan where
-        that is not known.
+        Largest relative change that the effect makes in the answer; inf where it changes which modes there
+        are, nan where it is not known.
     included : bool
         Whether the physics includes it.
     reason : str
-        Why it is left out, or its size not known; empty if its size alone decided.
+        Why the effect is left out or its size is not known; empty if its size alone decided.
     time, coordinates : float
         Time of the eigenproblem and number of coordinates with this effect alone, relative to the plain
         beam; nan where it is left out, or was added for a deflection that was found.
@@ -164,12 +164,12 @@ class JudgedEffect:
 
 @dataclass(frozen=True)
 class PhysicsChoice:
-    """How the physics of a scene was chosen, where it was given as "auto".
+    """Choice of a scene's physics that was given as "auto", with the sizes of all effects.
 
     Parameters
     ----------
     physics : Physics
-        The physics.
+        The physics that was chosen.
     tolerance : float
         Relative change of the answer that may be left out.
     speeds : tuple of float
@@ -183,8 +183,8 @@ class PhysicsChoice:
     not_modelled : tuple of str
         Effects that no model here has.
     beyond_models : float
-        Relative change that no model here has, as far as it is known: a share of each effect included, found
-        beside solids, and the strain by rotation.
+        Relative error that all models here share, where it is known: a part of each effect included, from
+        comparisons with solid bodies, and the strain by rotation.
 
     Examples
     --------
@@ -211,30 +211,30 @@ class PhysicsChoice:
 
     @property
     def not_known(self) -> dict[str, str]:
-        """Effects left out whose size is not known, and why."""
+        """Effects that are left out although their size is not known, and why it is not."""
         left_out = (effect for effect in self.effects if not effect.included)
         return {effect.name: effect.reason for effect in left_out if math.isnan(effect.size)}
 
     @property
     def is_met(self) -> bool:
-        """Whether what is left out, and what no model here has, is within the tolerance, as far as known."""
+        """Whether the effects left out, and those of no model here, are within the tolerance, where known."""
         return self.model_error + self.beyond_models <= self.tolerance
 
     @property
     def _plain(self) -> str:
-        """The beam without the effects included; a curved one bends and twists in space from the start."""
+        """Name the beam without the included effects: straight, or curved (then it twists in any case)."""
         is_curved = self.physics.large_deflection and "large deflection" not in self.included
         return "the curved beam in space" if is_curved else "the plain beam"
 
     def sentence(self) -> str:
-        """One line: what was included, its size and cost, and what was not."""
+        """Summarize in one line which effects were included, with size and cost, and which were not."""
         included = [_say_included(effect) for effect in self.effects if effect.included]
         several = len(included) > 1 and not math.isnan(self.time)
         cost = f"; in all {self.time:.2g} times the time of {self._plain}" if several else ""
         return f'physics "auto", for {self.tolerance:g}: {", ".join(included) or self._plain}{cost}'
 
     def warnings(self) -> Iterator[Statement]:
-        """Yield a warning if the tolerance is not met, or if it is not known whether it is."""
+        """Yield a warning if the tolerance is not met, or if it is not known whether it is met."""
         large = [e for e in self.effects if not e.included and e.reason and e.size > self.tolerance / 2]
         each = (Words(f"{e.name}, left out, is worth {_say_size(e.size)}: ", e.reason) for e in large)
         if not self.is_met:
@@ -273,16 +273,16 @@ def _say_size(size: float) -> str:
 
 
 class OfChosenPhysics(Result):
-    """Base of results of a scene, the physics of which may have been chosen; see `Result`."""
+    """Base class of results of a scene whose physics may have been chosen automatically; see `Result`."""
 
     scene: Any
 
     @property
     def physics_choice(self) -> PhysicsChoice | None:
-        """How the physics was chosen, where it was given as "auto"; None where it was given."""
+        """How the physics was chosen, where it was "auto"; None where it was given."""
         return self.scene.physics_choice
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with the choice of physics where there was one."""
+        """Convert the result to numbers, lists and strings, with the choice of physics if there was one."""
         choice = self.physics_choice
         return super().to_dict() | ({} if choice is None else {"physics_choice": plain(choice)})

@@ -1,11 +1,23 @@
-"""What stands on the beam or holds it at a point: a body at the tip, point masses, point springs."""
+"""What acts on the beam at a point: a body and a load at the tip, point masses, point springs."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Final, Literal, get_args
 
-from beamdyn.common.inputs.checks import amount, one_of, positive, real, refuse, set_fields
+from beamdyn.common.inputs.checks import (
+    InvalidValue,
+    amount,
+    flag,
+    moderate,
+    one_of,
+    positive,
+    real,
+    real_array,
+    refuse,
+    set_fields,
+)
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.snapshots import ADDED_LATER
 
@@ -15,25 +27,25 @@ ACROSS: Final = "across"
 
 
 def direction_of(direction: str) -> int:
-    """0 for the direction of the bending angle, 1 for that across."""
+    """Convert "bending" (direction of the bending angle) to the index 0, and "across" to 1."""
     return 1 if direction == ACROSS else 0
 
 
-# What stands on the beam or holds it at a point ---------------------------------------------------
+# Objects at a point of the beam ---------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class TipMass:
-    """A rigid body at the tip.
+    """A rigid body at the tip of the beam.
 
     Parameters
     ----------
     mass : float
         Mass [kg].
     offset : float
-        Distance of its centre of gravity beyond the end of the beam [m]; negative is inboard.
+        Distance of the centre of gravity beyond the end of the beam [m]; negative is inboard.
     inertia : float
-        Moment of inertia about its centre of gravity, about the axis of bending [kg m2].
+        Moment of inertia about the axis of bending through the centre of gravity [kg m2].
     transverse_inertia : float, optional
         Moment of inertia about the direction in which the beam bends [kg m2]; `inertia` if not given,
         as for a body slender along the beam.
@@ -106,7 +118,7 @@ class TipMass:
         return self.inertia if self.transverse_inertia is None else self.transverse_inertia
 
     def about(self, across: float) -> TipMass:
-        """The body with its moments of inertia about a line beside the axis, in the direction across [m]."""
+        """Return the body with moments of inertia about a line at a distance across from the axis [m]."""
         if self.offset_across == across:
             return self
         more = self.mass * (self.offset_across - across) ** 2
@@ -191,3 +203,63 @@ class PointSpring:
         position = positive("point_spring.position", self.position, "m", remedy)
         stiffness = amount("point_spring.stiffness", self.stiffness, "N/m")
         set_fields(self, position=position, stiffness=stiffness)
+
+
+_NOTHING = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class TipLoad:
+    """A constant force and a moment at the end of the beam, dead or following the tip.
+
+    Parameters
+    ----------
+    force : sequence of 3 floats
+        Force [N] along b1, b2, b3: along the beam at its root, in the plane of rotation, and along the axis.
+    moment : sequence of 3 floats
+        Moment about b1, b2, b3 [N m].
+    follows : bool
+        Whether the load turns with the section at the tip, from the directions that it has on the unloaded
+        beam; else it turns with the carrier alone (a dead load).
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, or a force or moment has other than three components.
+
+    References
+    ----------
+    Beck (1952), Zeitschrift fuer angewandte Mathematik und Physik 3, 225-228: a load that follows the tip.
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> bent = bd.Physics(large_deflection=True)
+    >>> scene = bd.Scene(strip, physics=bent, tip_load=bd.TipLoad(force=(0.0, 1.0, 0.0)))
+    >>> bd.equilibrium(scene, speed=0.0).tip[:2].round(5)  # m, along the beam and across
+    array([0.04262, 0.02375])
+    """
+
+    force: Sequence[
+        Annotated[float, Described("N", "F", "force at the tip along b1, b2, b3, of large deflection")]
+    ] = _NOTHING
+    moment: Sequence[Annotated[float, Described("N m", "M", "moment at the tip about b1, b2, b3")]] = _NOTHING
+    follows: Annotated[bool, Described(meaning="whether the load turns with the section at the tip")] = False
+
+    def __post_init__(self) -> None:
+        for name, unit in (("force", "N"), ("moment", "N m")):
+            of, given = f"tip_load.{name}", real_array(f"tip_load.{name}", getattr(self, name))
+            if len(given) != 3:
+                raise InvalidValue(of, getattr(self, name), "give its three components along b1, b2, b3")
+            set_fields(
+                self, **{name: tuple(moderate(f"{of}[{k}]", each, unit) for k, each in enumerate(given))}
+            )
+        flag("tip_load.follows", self.follows)
+
+    @property
+    def acts(self) -> bool:
+        """Whether there is a load."""
+        return any((*self.force, *self.moment))
+
+
+NO_LOAD = TipLoad()

@@ -23,17 +23,17 @@ from beamdyn.common.words import Named, Words
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
 _SHORTEST_SEGMENT = 1e-12  # length in x/L below which breakpoints differ by rounding only
-_FIT_TOLERANCE = 1e-13  # relative to the largest value: rounding error of the user's function
-_ZERO = 5e-13  # value over the largest on a segment below which a property is 0: less hangs on rounding
+_FIT_TOLERANCE = 1e-13  # rounding error of the user's function, relative to its largest value
+_ZERO = 5e-13  # a property is 0 below this fraction of its largest value on a segment: results depend on less
 _NOISE = 8 * float(np.finfo(float).eps)  # noise of the coefficients of a fit, relative to the largest
 _SPACING = 2.5e-5  # distance in x/L of the samples of a user's function: no wider feature is missed
-_FEW = 513  # samples denser towards the ends of a segment, where a fit is compared first
-_AT_ONCE = 4096  # samples compared at once, which fit into the processor's cache
+_FEW = 513  # number of samples, denser towards the ends of a segment, at which a fit is compared first
+_AT_ONCE = 4096  # number of samples compared at once, which fit into the processor's cache
 
 
 @dataclass(frozen=True)
 class Table:
-    """A property tabulated at stations, linear between them.
+    """A property of the beam tabulated at stations, and linear between them.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ Property: TypeAlias = "float | Polynomial | Table | Callable[[np.ndarray], np.nd
 
 @dataclass(frozen=True)
 class Profile(FieldsOnly):
-    """A piecewise polynomial of the fraction x/L on [0, 1].
+    """A property along the beam: a piecewise polynomial of the fraction x/L on [0, 1].
 
     Parameters
     ----------
@@ -82,11 +82,11 @@ class Profile(FieldsOnly):
         return self._hash
 
     @cached_property
-    def _hash(self) -> int:  # hashed once: it has many segments, and caches ask often
+    def _hash(self) -> int:  # hashed once, as profiles may have many segments and caches ask often
         return hash((self.breakpoints, self.coefficients))
 
     def __call__(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate at fractions `xi` of the length, of any shape; at a jump, the value on its right."""
+        """Evaluate the property at fractions `xi` of the length, of any shape; at a jump, right of it."""
         xi = np.asarray(xi, dtype=float)
         segment = np.searchsorted(self._ends[1:-1], xi, side="right")
         if not self.degree:
@@ -101,16 +101,16 @@ class Profile(FieldsOnly):
 
     @cached_property
     def series(self) -> np.ndarray:
-        """Legendre coefficients of each segment in columns, those of high degree 0 where there are none."""
+        """Legendre coefficients of each segment, in columns, padded with 0 to the highest degree."""
         return np.array(list(zip_longest(*self.coefficients, fillvalue=0.0)))
 
     @cached_property
     def degree(self) -> int:
-        """Largest polynomial degree of a segment."""
+        """Largest polynomial degree over all segments."""
         return max(map(len, self.coefficients)) - 1
 
     def end_values(self) -> tuple[np.ndarray, np.ndarray]:
-        """Values at the left and at the right end of each segment: two arrays, which differ at jumps."""
+        """Evaluate the property at the left and right end of each segment: two arrays, different at jumps."""
         even, odd = self.series[::2].sum(axis=0), self.series[1::2].sum(axis=0)
         return even - odd, even + odd
 
@@ -140,7 +140,7 @@ class Profile(FieldsOnly):
         return _of_series(a.breakpoints, series)
 
     def at_points(self, points: int) -> np.ndarray:
-        """Values at Gauss points of each segment, shape (segments, points)."""
+        """Evaluate the property at Gauss points of each segment, shape (segments, points)."""
         return (numerics.legendre_values(points, self.degree) @ self.series).T
 
     def scaled(self, factor: float) -> Profile:
@@ -148,19 +148,20 @@ class Profile(FieldsOnly):
         return _of_series(self.breakpoints, factor * self.series)
 
     def outboard_integral(self) -> Profile:
-        """Integrate from xi to 1: of a mass per length, the mass outboard of each section, for instance."""
+        """Integrate from xi to 1: for a mass per length, this is the mass outboard of each section."""
         inner = numerics.integrate_series(-np.diff(self._ends) / 2 * self.series)
-        of_segments = inner[::2].sum(axis=0) - inner[1::2].sum(axis=0)  # values at the left ends
+        # Integrals over each segment, as values at the left ends.
+        of_segments = inner[::2].sum(axis=0) - inner[1::2].sum(axis=0)
         inner[0, :-1] += np.cumsum(of_segments[:0:-1])[::-1]
         return _of_series(self.breakpoints, inner)
 
     def derivative(self) -> Profile:
-        """Derivative by x/L on each segment; jumps are left out."""
+        """Differentiate the property by x/L on each segment; jumps are left out."""
         series = legendre.legder(self.series) if self.degree else np.zeros_like(self.series)
         return _of_series(self.breakpoints, 2 / np.diff(self._ends) * series)
 
     def stepped(self, xi: np.ndarray, steps: np.ndarray) -> Profile:
-        """Add to the property at all places inboard of each xi (k,) the step (k,) there."""
+        """Add a step (k,) to the property everywhere inboard of each xi (k,)."""
         if not len(xi):
             return self
         parts = self.split(xi.tolist())
@@ -170,26 +171,26 @@ class Profile(FieldsOnly):
 
 
 def _of_series(ends: tuple[float, ...], series: np.ndarray) -> Profile:
-    """The piecewise polynomial of Legendre coefficients, those of each segment in a column."""
+    """Build the piecewise polynomial of Legendre coefficients that are given in a column for each segment."""
     profile = Profile(ends, tuple(map(tuple, series.T.tolist())))
-    profile.__dict__["series"] = series  # it is there already
+    profile.__dict__["series"] = series  # caches the series, which is known already
     return profile
 
 
 def combine(function: Callable[..., np.ndarray], *profiles: Profile) -> list[Profile]:
-    """Apply an analytic function of some properties that gives others; exact to rounding.
+    """Apply an analytic function to properties, and represent its results as properties, exact to rounding.
 
     Parameters
     ----------
     function : callable
-        Takes the values (c, n) of each property and returns those of the k others: shape (k, c, n).
+        Function of the values (c, n) of each property that returns the values of k results: shape (k, c, n).
     *profiles : Profile
-        The properties.
+        The properties that `function` takes.
 
     Raises
     ------
     ValueError
-        If the others vary too quickly between breakpoints.
+        If a result varies too quickly between breakpoints.
     """
     ends = merge_breakpoints(np.concatenate([profile.breakpoints for profile in profiles]))
     parts, unresolved = [profile.split(ends) for profile in profiles], np.array([0])
@@ -220,11 +221,11 @@ def _project(f: Callable, a: float, b: float, t: np.ndarray, w: np.ndarray) -> t
 
 
 def mean(profile: Profile) -> float:
-    """Mean over the length."""
+    """Compute the mean of a property over the length of the beam."""
     return float(profile.outboard_integral()(np.zeros(1))[0])
 
 
-FRACTION = Profile((0.0, 1.0), ((0.5, 0.5),))  # x/L itself
+FRACTION = Profile((0.0, 1.0), ((0.5, 0.5),))  # the fraction x/L itself, as a property
 ONE = Profile((0.0, 1.0), ((1.0,),))
 
 
@@ -260,7 +261,7 @@ def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
         If the property is not finite everywhere, or a callable is not vectorised or not smooth between
         breakpoints.
     """
-    # Validate inner breakpoints and add the ends 0 and 1.
+    # Validate inner breakpoints, and add the ends 0 and 1.
     inner = real_array("breakpoints", breakpoints)
     if inner.size and not (inner.min() > 0 and inner.max() < 1):
         bound = Words("give fractions x/L between 0 and 1, ends excluded", _OR_LENGTHS)
@@ -275,7 +276,7 @@ def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
             raise ValueError(
                 f"{name}: the polynomial {value} has coefficients that are complex or not finite"
             )
-        _check_largest(name, value.coef)  # a small one may stand beside others
+        _check_largest(name, value.coef)  # a small coefficient may be beside larger ones
         t, w = legendre.leggauss(value.degree() + 1)
         profile = Profile((0.0, 1.0), (_project(value, 0.0, 1.0, t, w),))
     elif callable(value):
@@ -287,7 +288,7 @@ def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
     return profile.split(ends)
 
 
-_OR_LENGTHS = Named("", ", or lengths with their unit")  # which files may give in place of fractions
+_OR_LENGTHS = Named("", ", or lengths with their unit")  # files may give lengths in place of fractions
 _SIZES = f"give sizes from {1 / MOST:g} to {{limit}} in SI units"
 
 
@@ -322,7 +323,7 @@ def _from_table(name: str, table: Table) -> Profile:
 
 
 def _without_rounding(x: np.ndarray) -> np.ndarray:
-    """Stations x/L of which those that differ by rounding are one, and the first and last the ends."""
+    """Merge stations x/L that differ by rounding, and set the first and last to the ends 0 and 1."""
     x = x.copy()
     for k in np.flatnonzero(np.abs(np.diff(x)) < _SHORTEST_SEGMENT):
         x[k + 1] = x[k]
@@ -332,7 +333,7 @@ def _without_rounding(x: np.ndarray) -> np.ndarray:
 
 
 def _check_stations(name: str, x: np.ndarray, values: int) -> None:
-    """Refuse stations that do not ascend from 0 to 1, one for each value; two at one place are a jump."""
+    """Check that stations ascend from 0 to 1, one for each value; a repeated station is a jump."""
 
     def refuse_station(k: int, bound: str) -> None:
         raise InvalidValue(f"{name}[{k}]", float(x[k]), bound, Words("give fractions x/L", _OR_LENGTHS))
@@ -354,7 +355,7 @@ def _check_stations(name: str, x: np.ndarray, values: int) -> None:
 
 def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]:
     """Fit a Legendre series to a user's function on [a, b], with as few nodes as are exact to rounding."""
-    # Points between a and b: some denser towards the ends, then all that no feature falls between two.
+    # Points between a and b: first a few that are denser towards the ends, then so many that none is missed.
     s = np.linspace(0, np.pi, _FEW + 2)[1:-1]
     uniform = np.linspace(a, b, max(8, int(np.ceil((b - a) / _SPACING))) + 1)[1:-1]
     xi = np.concatenate([a + (b - a) * (1 - np.cos(s)) / 2, uniform])
@@ -364,11 +365,12 @@ def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]
     for nodes in _FIT_NODES:
         t, _ = legendre.leggauss(nodes)
         values = _sample(name, function, (a + b) / 2 + (b - a) / 2 * t)
-        row = np.linalg.solve(legendre.legvander(t, nodes - 1), values)  # a weighted sum loses digits
+        # Solving is more accurate than a weighted sum, which loses digits.
+        row = np.linalg.solve(legendre.legvander(t, nodes - 1), values)
         short = legendre.legtrim(row, 0.01 * bound)
         if all(_misfit(short, a, b, *part).max() <= bound for part in samples):
             return tuple(legendre.legtrim(row, 1e-17 * np.abs(row).max()).tolist())
-    where = xi[_FEW + 1 + np.abs(np.diff(exact[_FEW:], 2)).argmax()]  # the largest change of slope
+    where = xi[_FEW + 1 + np.abs(np.diff(exact[_FEW:], 2)).argmax()]  # place of the largest change of slope
     raise ValueError(
         f"{name}: the function is not smooth near x/L = {where:.4g}; "
         f"if it jumps or has a kink there, pass breakpoints=({where:.4g},) with the exact place; "
@@ -379,17 +381,17 @@ def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]
 def _misfit(
     row: Sequence[float] | np.ndarray, a: float, b: float, xi: np.ndarray, exact: np.ndarray
 ) -> np.ndarray:
-    """Distances of a Legendre series on [a, b] from exact values at xi."""
+    """Compute the distance of a Legendre series on [a, b] from exact values at xi."""
     return np.abs(legendre.legval(((xi - a) - (b - xi)) / (b - a), row) - exact)
 
 
 def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
-    """Evaluate a user's function, with a ValueError if it fails, is not vectorised or not finite."""
+    """Evaluate a user's function; raise a ValueError if it fails, is not vectorised or not finite."""
     try:
-        with np.errstate(all="ignore"):  # what is not finite is refused below
+        with np.errstate(all="ignore"):  # values that are not finite are refused below
             values = np.asarray(function(x))
         values = values if np.iscomplexobj(values) else values.astype(float)
-    except Exception as error:  # whatever a user's function may raise
+    except Exception as error:  # any exception that a user's function may raise
         raise ValueError(
             f"{name}: the function failed on an array of x/L ({error}); it must take and return arrays"
         ) from error
@@ -408,13 +410,13 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
 
 
 def check_positive(name: str, profile: Profile, power: int = 1) -> None:
-    """Refuse a property that is not positive and finite everywhere, naming it and the place.
+    """Refuse a property that is not positive and finite everywhere; the message names it and the place.
 
     A value counts as zero where its `power` is less than 5e-13 of the largest power on the segment.
     """
     ends, zero = np.array(profile.breakpoints), _ZERO ** (1 / power)
     values, where = np.stack(profile.end_values()), np.stack([ends[:-1], ends[1:]])
-    if profile.degree > 1:  # a linear one is least at an end
+    if profile.degree > 1:  # a linear property is least at an end
         inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1]
         where, values = np.concatenate([inner, where]), np.concatenate([profile(inner), values])
     least = zero * np.abs(profile.series).sum(axis=0)

@@ -12,16 +12,17 @@ from beamdyn.common.inputs.checks import real, refuse, set_fields, size
 from beamdyn.common.numerics import gauss_rule
 from beamdyn.common.words import Words
 from beamdyn.scene.names_elsewhere import FROM_STIFFNESS
-from beamdyn.scene.profile import Profile, as_profile, combine
+from beamdyn.scene.profile import ONE, Profile, as_profile, combine
 
-# How much less a clamp stiffens thick sections than a plate, fitted to CalculiX's solids of random
-# cantilevers, with which `benchmarks.solids` compares.  The squared Poisson's ratio has the factor
+# Reduction of a clamp's stiffening in thick sections compared with a plate, fitted to solids of random
+# cantilevers (CalculiX, see `benchmarks.solids`).  The squared Poisson's ratio has the factor
 # 1 + a r + b r^2 of the ratio r of thickness and width; the warping constant 1/(1 + c r^2).
 _THICK_CAMBER, _THICK_WARPING = (-0.975, 0.826), 7.0
 # Length of the root on which the clamp stiffens bending in the direction of the width, in widths and in
 # thicknesses; fitted to the same solids.
 _REACH_OF_WIDTH, _REACH_OF_THICKNESS = 0.195, 0.54
-_LONGEST_REACH = 0.7  # of the length
+# Largest length of the root on which the clamp stiffens bending, over the length of the beam.
+_LONGEST_REACH = 0.7
 _POINTS_OF_WARPING, _TERMS_OF_WARPING = 40, 12
 _ZETA_5 = 1.036927755143369926  # 1 + 1/2^5 + 1/3^5 + ...; scipy.special is slow to import
 SIDES = {"width": "m", "thickness": "m"}
@@ -53,12 +54,12 @@ class Rectangle:
     def __post_init__(self) -> None:
         modulus = size("youngs_modulus", self.youngs_modulus, "Pa")
         set_fields(self, youngs_modulus=modulus, density=size("density", self.density, "kg/m3"))
-        for name in SIDES:  # each stands in the stiffness of bending with this power
+        for name in SIDES:  # each side enters the bending stiffness with this power
             set_fields(self, **{name: as_profile(name, getattr(self, name), power=3)})
 
     @cached_property
     def properties(self) -> dict[str, Any]:
-        """Stiffness, mass and outer fibre of a `Beam` along x/L, by the names of its fields."""
+        """Compute stiffness, mass and outer fibre of a `Beam` along x/L, by the names of its fields."""
         b, h, e, rho = self.width, self.thickness, self.youngs_modulus, self.density
         area = b * h
         flat, edge = area * h * h, area * b * b
@@ -78,33 +79,42 @@ class Rectangle:
 
     @cached_property
     def torsion_factor(self) -> Profile:
-        """Torsional constant J of the section over b t^3/3, that of an infinitely wide one (Saint-Venant)."""
+        """Torsional constant J of the section over b t^3/3, its value for infinite width (Saint-Venant)."""
         return combine(_torsion_factor, self.width, self.thickness)[0]
 
     @cached_property
     def torsion_stiffness(self) -> Profile:
-        """Torsional stiffness G J [N m2] of the section (Saint-Venant); it needs Poisson's ratio."""
+        """Torsional stiffness G J [N m2] of the section (Saint-Venant); Poisson's ratio must be given."""
         assert self.poissons_ratio is not None, "torsion of a rectangle has its Poisson's ratio"
         shear_modulus, t = self.youngs_modulus / (2 * (1 + self.poissons_ratio)), self.thickness
         return (self.width * t * t * t * self.torsion_factor).scaled(shear_modulus / 3)
 
     @cached_property
+    def twist_factor(self) -> Profile:
+        """Factor of E I in the stiffness of a plate against twist, 4 G I by the torsional constant."""
+        return self.torsion_factor.scaled(2 / (1 + (self.poissons_ratio or 0.0)))
+
+    @cached_property
+    def ratio(self) -> Profile:
+        """Poisson's ratio along the beam; 0 where none is given."""
+        return ONE.scaled(self.poissons_ratio or 0.0)
+
+    @cached_property
     def camber_ratio(self) -> Profile:
         """Effective Poisson's ratio for camber, less than nu in thick sections.
 
-        It is nu (1 - 0.975 r + 0.826 r^2)^(1/2), r = t/b, as fitted to solids: docs/conventions.md.
+        The formula nu (1 - 0.975 r + 0.826 r^2)^(1/2), r = t/b, was fitted to solids: docs/conventions.md.
         """
-        nu = self.poissons_ratio or 0.0
 
-        def ratio(b: np.ndarray, t: np.ndarray) -> np.ndarray:
+        def ratio(b: np.ndarray, t: np.ndarray, nu: np.ndarray) -> np.ndarray:
             r, (linear, quadratic) = t / b, _THICK_CAMBER
             return (nu * np.sqrt(1 + linear * r + quadratic * r**2))[None]
 
-        return combine(ratio, self.width, self.thickness)[0]
+        return combine(ratio, self.width, self.thickness, self.ratio)[0]
 
     @cached_property
     def camber_stiffening(self) -> Profile:
-        """Bending stiffness of the section that cannot camber over that of one that does: 1/(1 - nu^2)."""
+        """Ratio of the bending stiffness of a section that cannot camber to one that does, 1/(1 - nu^2)."""
         return combine(lambda nu: 1 / (1 - nu**2)[None], self.camber_ratio)[0]
 
     @cached_property
@@ -114,9 +124,9 @@ class Rectangle:
         return _REACH_OF_WIDTH * b + _REACH_OF_THICKNESS * t
 
     def stiffening_across(self, length: float) -> Profile:
-        """Stiffness of bending in the direction of the width at a clamped root, over that of a free section.
+        """Compute the ratio of stiffness along the width near a clamped root to a free section's.
 
-        It is 1 + nu^2 (1 - x/c)^2 within the reach c of the clamp, at most 0.7 of the given length [m] of the
+        The ratio is 1 + nu^2 (1 - x/c)^2 within the clamp's reach c, at most 0.7 of the length [m] of the
         beam, by the sides at the root.  The profile is one over x/L.
         """
         nu, reach = self.poissons_ratio or 0.0, min(self.reach_of_clamp / length, _LONGEST_REACH)
@@ -125,16 +135,16 @@ class Rectangle:
 
     @cached_property
     def warping_factor(self) -> Profile:
-        """Warping constant over b^3 t^3/144, that of a thin one; fitted to solids by 1/(1 + 7 (t/b)^2)."""
+        """Warping constant over its thin-section value b^3 t^3/144, and over 1 + 7 (t/b)^2 (fitted)."""
         return combine(_warping_factor, self.width, self.thickness)[0]
 
     def kinks_of_width(self, length: float) -> np.ndarray:
-        """Changes of the slope of the width at its inner breakpoints, for a length [m] of the beam."""
+        """Compute changes of the width's slope at inner breakpoints, for a beam of this length [m]."""
         left, right = self.width.derivative().end_values()
         return np.abs(left[1:] - right[:-1]) / length
 
     def sides(self) -> tuple[np.ndarray, np.ndarray]:
-        """Width and thickness (n,) [m] at places along the beam, among them both sides of each breakpoint."""
+        """Return width and thickness (n,) [m] at many places along the beam, on both sides of breakpoints."""
         ends = np.union1d(self.width.breakpoints, self.thickness.breakpoints)
         xi = np.union1d(np.linspace(0, 1, 257), [*(ends[:-1] + 1e-12), *(ends[1:] - 1e-12)])
         return self.width(xi), self.thickness(xi)
@@ -151,7 +161,7 @@ class Rectangle:
 
 
 def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """The series of 3 J/(b t^3) of sides (c, n) with b >= t, as shape (1, c, n).
+    """Compute the series of 3 J/(b t^3) for sides (c, n) with b >= t, as shape (1, c, n).
 
     With tanh = 1 its terms add up to a multiple of zeta(5); what is left falls as exp(-n pi b/t).
     """
@@ -161,9 +171,9 @@ def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
 
 
 def _warping_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """The mean square of the warping function of sides (c, n) with b >= t, over b^2 t^2/144: (1, c, n).
+    """Compute the warping function's mean square for sides (c, n), b >= t, over b^2 t^2/144: (1, c, n).
 
-    It is divided by 1 + 7 (t/b)^2, which was fitted to solids.
+    The result is divided by 1 + 7 (t/b)^2, which was fitted to solids.
 
     With y along the width and z along the thickness, Saint-Venant's warping function is y z minus
     8 t^2/pi^3 sum over odd n of (-1)^((n-1)/2) sin(n pi z/t) sinh(n pi y/t)/(n^3 cosh(n pi b/2t)).
@@ -183,7 +193,7 @@ def _warping_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
 
 
 def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float) -> Profile:
-    """Shear stiffness kappa G A [N] of rectangular sections of the axial stiffness E A, by Cowper (1966)."""
+    """Compute shear stiffness kappa G A [N] of rectangles by Cowper (1966) from axial stiffness E A."""
     nu = real("poissons_ratio", poissons_ratio)
     bad, bound = not -1 < nu <= 0.5, "it must be above -1 and at most 0.5"
     refuse(bad, "poissons_ratio", nu, "", bound, "steel has 0.3, rubber 0.5")

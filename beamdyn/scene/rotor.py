@@ -1,31 +1,28 @@
-"""The rotor drawn: axis of rotation, radius, and the beam at its angles, undeformed."""
+"""Drawing of the rotor: axis of rotation, radius, and the undeformed beam at its angles."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from time import perf_counter
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.drawing.layout import length_text, round_below
 from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol, arc
 from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.drawing.svg import svg_of
 from beamdyn.common.results.one_line import number, warned
+from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.scene.scene import Scene, check_scene
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 _STATIONS = 41  # number of positions along the beam at which its edge is drawn
-_SEEN = 0.03  # depth over length that is large enough to be seen
-_UNKNOWN = 0.03  # drawn depth over length where the section is not known
-_SHORT = 0.2  # length over radius below which the beam is also drawn by itself
+_SEEN = 0.03  # smallest visible ratio of depth to length
+_UNKNOWN = 0.03  # ratio of depth to length as drawn, where the section is not known
+_SHORT = 0.2  # ratio of length to radius below which the beam is also drawn by itself
 _SECTION = 290.0  # height of the section's view [pt]
 _DOTTED = (1.5, 2.5)
 _DASHED = (5.0, 3.0)
@@ -37,7 +34,7 @@ Part: TypeAlias = DrawnShape | Label
 
 @dataclass(frozen=True)
 class RotorDrawing(Result):
-    """A scene's rotor as it is drawn: turned by 180 deg, which puts the root right of the axis.
+    """Drawing of a scene's rotor, turned by 180 deg so that the root is right of the axis.
 
     Parameters
     ----------
@@ -48,7 +45,7 @@ class RotorDrawing(Result):
     length : float
         Length of the beam [m].
     magnification : float
-        By how much depth and width of the beam are drawn larger than its length.
+        Factor by which depth and width of the beam are drawn larger than its length.
     section_known : bool
         Whether depth and width are those of a rectangular section; else the beam is drawn as a strip.
     outline : ndarray, shape (82, 2)
@@ -56,7 +53,7 @@ class RotorDrawing(Result):
     section : ndarray, shape (4, 2)
         Corners of the root's section as drawn, in the plane of rotation and along its axis [m].
     provenance : Provenance
-        How it was made.
+        Program version and computing time.
 
     Examples
     --------
@@ -78,7 +75,7 @@ class RotorDrawing(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Radius, length and angles in one line; see `Result.headline`."""
+        """Yield radius, length and angles for the one-line summary; see `Result.headline`."""
         yield f"radius {self.say_length(self.radius)}, length {self.say_length(self.length)}"
         for name in ("setting angle", "bending angle", "precone"):
             yield f"{name} {number(_DEGREES * getattr(self, name.replace(' ', '_')), 'deg')}"
@@ -86,24 +83,24 @@ class RotorDrawing(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings of parts that are not as drawn."""
+        """A warning if the beam's section is not known, and is drawn as a strip."""
         return () if self.section_known else ("the beam's section is not known: it is drawn as a strip",)
 
     def drawings(self) -> list[list[Drawing]]:
-        """The views as data: along the axis of rotation, the section seen from the tip below it.
+        """Return views as data: along the axis of rotation, and below it the section seen from the tip.
 
-        Between them the beam by itself, to a scale of its own, where it is short beside the radius.
+        A beam that is short relative to the radius is also drawn by itself, between the two.
         """
         apart = [[_beam_alone(self)]] if self.length < _SHORT * self.radius else []
         return [[_plan(self)], *apart, [_section_view(self)]]
 
     def svg(self) -> str:
-        """The text of an SVG file, whose colours follow the reader's preference for light or dark."""
+        """Return the drawing as SVG text, whose colours follow the reader's preference for light or dark."""
         rows = self.drawings()
         return svg_of(rows, _paper(rows))
 
     def figure(self) -> Figure:
-        """Draw both views by matplotlib."""
+        """Draw all views by matplotlib."""
         rows = self.drawings()
         return figure_of(rows, _paper(rows))
 
@@ -135,7 +132,7 @@ def draw(scene: Scene) -> RotorDrawing:
     start = perf_counter()
     check_scene(scene)
     beam, mount = scene.beam, scene.mount
-    inner = np.array(beam.breakpoints[1:-1])  # at these sections may jump: both sides are drawn
+    inner = np.array(beam.breakpoints[1:-1])  # sections may jump at breakpoints: both sides are drawn
     xi = np.unique(np.concatenate([np.linspace(0, 1, _STATIONS), inner, np.nextafter(inner, 0)]))
     if beam.section is None:
         sides = np.full((len(xi), 2), _UNKNOWN * beam.length)
@@ -159,15 +156,13 @@ def draw(scene: Scene) -> RotorDrawing:
         section_known=beam.section is not None,
         outline=np.vstack([axis + edge, (axis - edge)[::-1]]),
         section=np.array([thick + wide, wide - thick, -thick - wide, thick - wide]),
-        provenance=Provenance(
-            __version__, "undeformed", "none: it is drawn from the scene", perf_counter() - start
-        ),
+        provenance=Provenance.since(start, "undeformed", "none: it is drawn from the scene"),
         scene=scene,
     )
 
 
 def _paper(rows: list[list[Drawing]]) -> Paper:
-    """Paper on which the section takes less room than the rotor."""
+    """Make the paper, on which the section takes less room than the rotor."""
     made = Paper.of(rows)
     return Paper(made.width, (*made.heights[:-1], _SECTION))
 
@@ -185,7 +180,7 @@ def _drawing(parts: Iterable[Part], title: str, words: str) -> Drawing:
 
 
 def _directions(setting_angle: float) -> tuple[np.ndarray, np.ndarray]:
-    """Axes b1 and b2 of the beam on paper, where a1 points left and a2 down, shapes (2,)."""
+    """Compute the beam's directions b1 and b2 (2,) on paper, where a1 points left and a2 down."""
     c, s = np.cos(setting_angle), np.sin(setting_angle)
     return np.array([-c, s]), np.array([-s, -c])
 
@@ -194,7 +189,7 @@ def _directions(setting_angle: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _plan(rotor: RotorDrawing) -> Drawing:
-    """The rotor in the plane of rotation: axis, radius and beam."""
+    """Draw the rotor in the plane of rotation: axis, radius and beam."""
     seen = f"; depth and width drawn {rotor.magnification:g} times larger" if rotor.magnification > 1 else ""
     seen = seen if rotor.section_known else "; section not known"
     parts = _rotor_parts(rotor)
@@ -202,7 +197,7 @@ def _plan(rotor: RotorDrawing) -> Drawing:
 
 
 def _rotor_parts(rotor: RotorDrawing) -> Iterator[Part]:
-    """Axis of rotation with the sense of rotation, radius, and the beam."""
+    """Yield the axis of rotation with its sense, the radius, and the beam."""
     r, size = rotor.radius, max(rotor.radius, rotor.length)
     turn = 0.12 * size
     turned = arc((0, 0), turn, 2.4, 0.75)
@@ -220,19 +215,16 @@ def _rotor_parts(rotor: RotorDrawing) -> Iterator[Part]:
 
 
 def _beam_alone(rotor: RotorDrawing) -> Drawing:
-    """The beam of the plane of rotation, to a scale of its own."""
+    """Draw the beam alone in the plane of rotation, to a scale of its own."""
     title = "The beam by itself, to a larger scale"
     return _drawing(_beam_parts(rotor, 0.12 * rotor.length), title, "The beam of the rotor by itself")
 
 
 def _beam_parts(rotor: RotorDrawing, half: float) -> Iterator[Part]:
-    """The beam with its root, clamped in a wall of this half length or hinged, its angles, and its bodies."""
+    """Yield the beam with its root (hinge, or wall of half length `half`), its angles and bodies."""
     along, aside = _directions(rotor.setting_angle)
-    root, phi, stiffness = (
-        np.array([rotor.radius, 0.0]),
-        rotor.setting_angle,
-        rotor.scene.mount.root_stiffness,
-    )
+    root, phi = np.array([rotor.radius, 0.0]), rotor.setting_angle
+    stiffness = rotor.scene.mount.root_stiffness
     yield Outline(rotor.outline, "beam", 1.2, closed=True, filled=True)
     if np.isfinite(stiffness):
         yield Symbol("pin", root, "pin", 8.0)
@@ -264,7 +256,7 @@ def _beam_parts(rotor: RotorDrawing, half: float) -> Iterator[Part]:
 
 
 def _bodies(rotor: RotorDrawing, root: np.ndarray, along: np.ndarray) -> Iterator[Part]:
-    """Point masses, springs and tip body, as signs without scale."""
+    """Yield point masses, springs and tip body as symbols without scale."""
     beam, c = rotor.scene.beam, np.cos(rotor.precone)
     for mass in beam.point_masses:
         at = root + mass.position * c * along
@@ -288,7 +280,7 @@ def _bodies(rotor: RotorDrawing, root: np.ndarray, along: np.ndarray) -> Iterato
 
 
 def _section_view(rotor: RotorDrawing) -> Drawing:
-    """The root's section with the direction of bending, between the plane and the axis of rotation."""
+    """Draw the root's section with the direction of bending, and the plane and axis of rotation."""
     known = "" if rotor.section_known else " (not known: a square)"
     title = f"Section of the root, from the tip{known}"
     return _drawing(_section_parts(rotor), title, "The section and its bending angle")

@@ -1,4 +1,4 @@
-"""The scene: a beam, how it is mounted on its carrier, and how the carrier moves."""
+"""The scene: a beam, its mounting on the carrier, and the motion of the carrier."""
 
 from __future__ import annotations
 
@@ -13,13 +13,20 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, kind, moderate, not_negative, refuse, set_fields
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.results.one_line import OneLine, given_fields, number
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.words import Named, Setting, Words
 from beamdyn.scene.beam import OFFSETS, Beam
+from beamdyn.scene.loads_and_springs import (
+    ROOT_SPRINGS,
+    check_point_springs,
+    check_root_springs,
+    check_tip_load,
+)
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import NO_DAMPING, Damping, Mount, aligned_cos_sin, check_one_kind_of_ratios
 from beamdyn.scene.names_elsewhere import GIVE_OR_COMPUTE, GIVE_OR_RATIO, RECTANGULAR
 from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics, PhysicsChoice
-from beamdyn.scene.points import ACROSS
+from beamdyn.scene.points import NO_LOAD, TipLoad
 from beamdyn.scene.profile import Profile, mean
 
 _SLENDER = Physics(), Physics(stretch=True)  # physics of a slender beam in one plane
@@ -51,8 +58,10 @@ class Scene(OneLine):
     label : str
         Name of the scene in pictures that show several.
     units : DisplayUnits or dict
-        Units in which its results are shown, such as {"speed": "rpm", "length": "mm"}; all numbers are SI
+        Units in which results are shown, such as {"speed": "rpm", "length": "mm"}; all numbers are SI
         nevertheless.  A scene from a file has those of the file.
+    tip_load : TipLoad
+        Force and moment at the tip, which a scene with large deflection takes.
 
     Raises
     ------
@@ -80,8 +89,9 @@ class Scene(OneLine):
     damping: Damping = NO_DAMPING
     label: str = field(default="", repr=False, compare=False)
     units: DisplayUnits = field(default=SI_UNITS, repr=False, compare=False)
+    tip_load: TipLoad = field(default=NO_LOAD, metadata=ADDED_LATER)
 
-    if TYPE_CHECKING:  # the word "auto" is accepted, but what is read is a Physics
+    if TYPE_CHECKING:  # the word "auto" is accepted, but the attribute is always a Physics
 
         def __init__(
             self,
@@ -95,6 +105,7 @@ class Scene(OneLine):
             damping: Damping = NO_DAMPING,
             label: str = "",
             units: DisplayUnits | Mapping[str, str] = SI_UNITS,
+            tip_load: TipLoad = NO_LOAD,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -110,23 +121,31 @@ class Scene(OneLine):
         set_fields(self, units=DisplayUnits.of(self.units))
         kind("damping", self.damping, Damping, "Damping(tip_damper=0.1) sets a damper at the tip")
         check_one_kind_of_ratios(ratio, self.damping)
+        kind("tip_load", self.tip_load, TipLoad, "TipLoad(force=(0, 1, 0)) is 1 N across the beam")
         if isinstance(self.physics, str) and self.physics == AUTO_NAME:
             set_fields(self, physics=AUTO)
         elif isinstance(self.physics, AutomaticPhysics) and self.physics != AUTO:
-            set_fields(self, physics=Physics(**vars(self.physics)))  # an effect was set: it is given
+            # An effect was set explicitly, which ends the automatic choice.
+            set_fields(self, physics=Physics(**vars(self.physics)))
         remedy = 'give "auto", or such as Physics(planes=2, shear=True), both planes and shear deformation'
         kind("physics", self.physics, Physics, remedy)
         if self.physics_choice is not None and self.physics_choice.physics != self.physics:
-            set_fields(self, physics_choice=None)  # the choice was that of another physics
+            set_fields(self, physics_choice=None)  # the choice was made for another physics
         _check_layers(self.beam, self.physics)
+        electrodes = self.beam.electrodes
+        # Camber decides which constants hold.
+        if electrodes is not None and electrodes.across != self.physics.camber:
+            beam = replace(self.beam, electrodes=replace(electrodes, across=self.physics.camber))
+            set_fields(self, beam=beam)
         _check_properties(self.beam, self.physics)
         _check_width(self.beam, self.physics)
         _check_matrices(self.beam, self.physics)
         if not self.chooses_physics:
             check_axis(self.beam, self.physics)
         _check_large_deflection(self)
-        _check_springs(self.mount, self.modelled_beam)
-        _check_point_springs(self)
+        check_tip_load(self.tip_load, self.mount, self.physics)
+        check_root_springs(self.mount, self.modelled_beam)
+        check_point_springs(self.beam, self.physics)
         # Refuse a damper that rounding does not tell from a support.
         beam, damper = self.beam, self.damping.tip_damper
         mass = mean(beam.mass_per_length) * beam.length + float(beam.lumps[1].sum())
@@ -136,7 +155,7 @@ class Scene(OneLine):
         refuse(damper > most, "damping.tip_damper", damper, "N s/m", bound, "reduce it", limit=most)
 
     def headline(self) -> Iterator[str]:
-        """Label, beam, mount, motion, and what else was given."""
+        """Yield label, beam, mount, motion, and all else that was given, as text."""
         unit = self.units.length_unit("mm" if self.beam.length < 1 else "m")
         yield repr(self.label) if self.label else ""
         yield f"beam of {number(self.beam.length * unit.per_si, unit.name)}"
@@ -144,10 +163,11 @@ class Scene(OneLine):
         yield self._say_motion()
         yield "damped" if self.is_damped else ""
         yield f"gravity {number(self.gravity, 'm/s2')}" if self.gravity else ""
+        yield "load at the tip" if self.tip_load.acts else ""
         yield "physics 'auto'" if self.chooses_physics else ", ".join(given_fields(self.physics))
 
     def _say_motion(self) -> str:
-        """Kind of motion and final speed."""
+        """Describe the kind of motion and its final speed."""
         if self.motion is None:
             return ""
         speed, unit = getattr(self.motion, "final_speed", math.nan), self.units.speed_unit()
@@ -156,19 +176,19 @@ class Scene(OneLine):
 
     @property
     def final_speed(self) -> float:
-        """Final speed of the motion [rad/s]; 0 without a motion, or of one that does not settle."""
+        """Final speed of the motion [rad/s]; 0 without a motion, or if the motion does not settle."""
         final = 0.0 if self.motion is None else self.motion.final_speed
         return final if math.isfinite(final) else 0.0
 
     @property
     def is_damped(self) -> bool:
-        """Whether anything damps the vibration, the load of a harvester included."""
+        """Whether anything damps the vibration, including the load of a harvester."""
         electrodes = self.beam.electrodes
         return bool(self.damping_ratio) or self.damping.damps or bool(electrodes and electrodes.is_loaded)
 
     @property
     def undamped(self) -> Scene:
-        """The scene without damping."""
+        """Return the scene without damping."""
         return replace(self, damping_ratio=0.0, damping=NO_DAMPING)
 
     @property
@@ -178,12 +198,12 @@ class Scene(OneLine):
 
     @property
     def modelled_beam(self) -> Beam:
-        """The beam without the properties that the physics leaves out."""
+        """The beam without the properties that the physics does not use."""
         return _without_unmodelled(self.beam, self.physics)
 
     @property
     def bends_in_space(self) -> bool:
-        """Whether large deflection leaves the one plane, in or out of that of rotation, of the elastica."""
+        """Whether large deflection goes beyond one plane, in or out of that of rotation (elastica)."""
         chosen, mount = self.physics, self.mount
         is_oblique = mount.precone or min(map(abs, aligned_cos_sin(mount.bending_angle))) != 0
         others = self.beam.is_curved or chosen.planes == 2 or chosen.shear or chosen.stretch or chosen.torsion
@@ -191,15 +211,21 @@ class Scene(OneLine):
 
     @property
     def twists_in_space(self) -> bool:
-        """Whether sections twist and tilt in space, by any angle: with all of their rotary inertia."""
+        """Whether sections twist and tilt by any angle in space, so that all their rotary inertia counts."""
         return self.physics.torsion and self.bends_in_space
 
     @property
-    def straightened(self) -> Scene:
-        """The scene with small deflections of a straight axis: no large deflection, sweep or prebend.
+    def may_flutter_by_load(self) -> bool:
+        """Whether the load at the tip has no potential: it follows the tip, or is a moment in two planes."""
+        load = self.tip_load
+        return load.acts and (load.follows or (self.physics.planes == 2 and any(load.moment)))
 
-        What couples strains in the matrices of sections is left out, and torsion of a twisted strip, which
-        large deflection alone has.
+    @property
+    def straightened(self) -> Scene:
+        """The scene with small deflections of a straight axis: no large deflection, sweep, prebend, tip load.
+
+        Coupling of strains in section matrices, and torsion of a twisted strip, are left out, which
+        only large deflection models.
         """
         torsion = self.physics.torsion and not (self.beam.is_twisted and self.beam.section is not None)
         straight = replace(
@@ -211,14 +237,14 @@ class Scene(OneLine):
         )
         if self.beam.is_curved or self.beam.matrices is not None:
             beam = replace(self.beam, sweep=None, prebend=None, matrices=None)
-            return replace(self, beam=beam, physics=straight)
-        return replace(self, physics=straight)
+            return replace(self, beam=beam, physics=straight, tip_load=NO_LOAD)
+        return replace(self, physics=straight, tip_load=NO_LOAD)
 
     @property
     def models_width(self) -> bool:
-        """Whether deflections vary across the width: rectangular sections camber or twist."""
+        """Whether deflections vary across the width, as rectangular sections camber or twist."""
         chosen = self.physics
-        return (chosen.camber or chosen.torsion) and _with_constants(self.beam, chosen).section is not None
+        return (chosen.camber or chosen.torsion) and _with_constants(self.beam, chosen).strip is not None
 
     @property
     def is_slender_beam_in_one_plane(self) -> bool:
@@ -229,7 +255,7 @@ class Scene(OneLine):
 
 
 def check_scene(scene: object) -> None:
-    """Refuse what is no scene, such as a beam, as an argument of an analysis."""
+    """Refuse an argument of an analysis that is not a scene."""
     remedy = "Scene(beam, mount) makes one of a beam, load_scene(path) reads one from a file"
     kind("scene", scene, Scene, remedy)
 
@@ -251,7 +277,7 @@ _OF_MATRICES = ("shear", "stretch", "torsion", "large_deflection")  # effects th
 
 
 def _check_matrices(beam: Beam, physics: Physics) -> None:
-    """Refuse sections whose matrices couple all strains in equations that lack some of them."""
+    """Refuse section matrices that couple all strains, in equations that lack some of the strains."""
     if beam.matrices is None or isinstance(physics, AutomaticPhysics):
         return
     lacking = [name for name in _OF_MATRICES if not getattr(physics, name)]
@@ -262,14 +288,11 @@ def _check_matrices(beam: Beam, physics: Physics) -> None:
         raise InvalidValue(f"physics.{name}", getattr(physics, name), bound, Words("give ", wanted))
 
 
-_SPRINGS = "root_stiffness", "second_root_stiffness"
-
-
 def _check_large_deflection(scene: Scene) -> None:
-    """Refuse large deflection without an equilibrium at rest, and what is defined for small ones alone."""
+    """Refuse large deflection without an equilibrium at rest, and options for small deflections only."""
     if not scene.physics.large_deflection:
         return
-    for name, spring in zip(_SPRINGS[: scene.physics.planes], scene.mount.root_stiffnesses, strict=False):
+    for name, spring in zip(ROOT_SPRINGS[: scene.physics.planes], scene.mount.root_stiffnesses, strict=False):
         if spring == 0:
             bound = "with physics.large_deflection the root needs a spring: a hinge is at rest at any angle"
             raise InvalidValue(f"mount.{name}", spring, bound, "give a soft one", "N m/rad")
@@ -290,42 +313,6 @@ def _check_large_deflection(scene: Scene) -> None:
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
 
 
-# Springs at the root ------------------------------------------------------------------------------
-
-_STIFFEST = 1e16  # spring over EI/L of the beam: its turn is then below the rounding of the beam's bending
-
-
-def _check_springs(mount: Mount, beam: Beam) -> None:
-    """Refuse springs beside which the stiffness of the beam is lost to rounding, where they are modelled."""
-    bending = [EI for EI in (beam.bending_stiffness, beam.second_bending_stiffness) if EI is not None]
-    for name, spring in zip(_SPRINGS, mount.root_stiffnesses, strict=True):
-        modelled = name == "root_stiffness" or beam.second_bending_stiffness is not None
-        if modelled and spring < math.inf and spring > 0:
-            stiffest = _STIFFEST * max(map(mean, bending)) / beam.length
-            bound = "it must be at most {limit}, 1e16 EI/L of the beam: rounding hides the turn beyond"
-            remedy = "leave it out: the root is clamped"
-            refuse(spring > stiffest, f"mount.{name}", spring, "N m/rad", bound, remedy, limit=stiffest)
-
-
-# Springs along the beam ---------------------------------------------------------------------------
-
-_STIFFEST_POINT = 1e9  # spring over EI/L^3 of the beam: beyond, rounding hides the deflection that it allows
-
-
-def _check_point_springs(scene: Scene) -> None:
-    """Refuse springs that rounding does not tell from supports, and those in a rigid direction."""
-    beam = scene.beam
-    for k, spring in enumerate(beam.point_springs):
-        stiffest = _STIFFEST_POINT * mean(beam.bending_stiffness) / beam.length**3
-        bound = "it must be at most {limit}, 1e9 EI/L^3 of the beam"
-        name = f"point_springs[{k}].stiffness"
-        refuse(spring.stiffness > stiffest, name, spring.stiffness, "N/m", bound, "soften it", limit=stiffest)
-        if spring.direction == ACROSS and scene.physics.planes == 1:
-            bound = "a beam of one plane is rigid in this direction"
-            remedy = Words("give ", Setting("physics", planes=2))
-            raise InvalidValue(f"point_springs[{k}].direction", ACROSS, bound, remedy)
-
-
 # Damper at the tip --------------------------------------------------------------------------------
 
 # Damper over sqrt(EI m / L^3): with more, rounding errors exceed the decay rate of the tip.
@@ -334,7 +321,7 @@ _MOST_DAMPING = 1e6
 
 # Properties that the physics needs ----------------------------------------------------------------
 
-_SECOND = "second_"  # prefix of the properties of bending in the second direction of the section
+_SECOND = "second_"  # prefix of properties of bending in the second direction of the section
 _BENDING = "bending_stiffness"
 # Properties of the beam for each effect, of bending in either direction.
 _NEEDED = {"shear": "shear_stiffness", "rotary_inertia": "rotary_inertia"}
@@ -347,11 +334,12 @@ _REMEDIES = {
 }
 
 
-_OF_TORSION = ("torsion_stiffness", "rotary_inertia", "second_rotary_inertia")  # where no rectangle says them
+# Needed where no rectangular section determines them.
+_OF_TORSION = ("torsion_stiffness", "rotary_inertia", "second_rotary_inertia")
 
 
 def _needed_properties(beam: Beam, physics: Physics) -> dict[str, str]:
-    """The properties of the beam that a model reads beyond the usual ones, each with the effect it is for."""
+    """List the beam's optional properties that a model needs, each with the effect that needs it."""
     directions = ("", _SECOND) if physics.planes == 2 else ("",)
     needed = {direction + name: effect for effect, name in _NEEDED.items() for direction in directions}
     needed = {name: effect for name, effect in needed.items() if getattr(physics, effect)}
@@ -363,15 +351,14 @@ def _needed_properties(beam: Beam, physics: Physics) -> dict[str, str]:
 
 
 def _check_layers(beam: Beam, physics: Physics) -> None:
-    """Refuse camber and torsion of sections with piezoelectric layers, which are those of no rectangle."""
-    for name, lacks in (("camber", beam.section is None), ("torsion", beam.torsion_stiffness is None)):
-        if beam.electrodes is not None and lacks and getattr(physics, name):
-            bound = "it is not modelled of sections with piezoelectric layers"
-            raise InvalidValue(f"physics.{name}", True, bound, "leave it out")
+    """Refuse torsion of sections with piezoelectric layers, unless the beam has its stiffness."""
+    if beam.electrodes is not None and beam.torsion_stiffness is None and physics.torsion:
+        bound = "it is not modelled of sections with piezoelectric layers"
+        raise InvalidValue("physics.torsion", True, bound, "leave it out")
 
 
 def _check_properties(beam: Beam, physics: Physics) -> None:
-    """Refuse physics for which the beam lacks properties: name all of them that one effect needs."""
+    """Refuse physics for which the beam lacks properties; the message names all that one effect needs."""
     beam = _with_constants(beam, physics)
     needed = _needed_properties(beam, physics)
     lacking = [name for name in needed if getattr(beam, name) is None]
@@ -384,22 +371,26 @@ def _check_properties(beam: Beam, physics: Physics) -> None:
     raise InvalidValue(f"physics.{effect}", getattr(physics, effect), bound, remedy, other=first)
 
 
-# Length over the local width of the parts at a clamped root in which a plate's corners are resolved.
+# Length over local width of the parts at a clamped root in which a plate's corners are resolved.
 _CORNERS = 0.2, 1.2
-_LAST_CORNER = 0.7  # of the length
-_SHARPEST = 1.0  # change of the slope of the width beyond which camber is several percent off
-_JUMP = 1e-9  # of the width: a smaller one is rounding
+# End of the last part in which a plate's corners are resolved, over the length of the beam.
+_LAST_CORNER = 0.7
+_SHARPEST = 1.0  # change of the slope of the width beyond which camber is several percent wrong
+_JUMP = 1e-9  # fraction of the width: a smaller jump is rounding
 
 
 def _check_width(beam: Beam, physics: Physics) -> None:
-    """Refuse camber of sections that are not rectangular, and of a twisted strip; its torsion, too."""
+    """Refuse camber of sections that are not rectangular, and camber and torsion of twisted strips."""
     if not (physics.camber or physics.torsion):
         return
-    section, name = beam.section, "physics.camber" if physics.camber else "physics.torsion"
+    section, name = beam.strip, "physics.camber" if physics.camber else "physics.torsion"
     if (section is None and physics.camber) or (section is not None and section.poissons_ratio is None):
         lacking = "the sides of a rectangular section" if section is None else "poissons_ratio"
         given = Named("(..., poissons_ratio=0.3)", ", with poissons_ratio = 0.3,")
         remedy = Words(RECTANGULAR, given, " makes one of steel")
+        if section is not None and beam.electrodes is not None:
+            remedy = Words("give that of the beam and harvester.poissons_ratio")
+            lacking = "poissons_ratio of the beam and of its layers"
         raise InvalidValue(name, True, "it needs {other}", remedy, other=lacking)
     if beam.is_twisted and section is not None and not physics.large_deflection:
         bound, remedy = "camber and torsion of a twisted strip are not modelled", "leave one of the two out"
@@ -423,7 +414,7 @@ def _check_width(beam: Beam, physics: Physics) -> None:
 
 
 def _with_constants(beam: Beam, physics: Physics) -> Beam:
-    """The beam as large deflection with torsion models it: a rectangle by its torsional stiffness alone."""
+    """Replace a rectangle by its torsional stiffness, as large deflection with torsion models it."""
     section = beam.section
     if (
         section is None
@@ -435,12 +426,12 @@ def _with_constants(beam: Beam, physics: Physics) -> Beam:
 
 
 def _with_corners(beam: Beam, planes: int) -> Profile:
-    """Mass per length with breakpoints near the root, where stresses in the corners of a plate vary."""
-    assert beam.section is not None
-    part = float(beam.section.width(np.zeros(1))[0]) / beam.length
+    """Add breakpoints near the root to the mass per length, where stresses in a plate's corners vary."""
+    assert beam.strip is not None
+    part = float(beam.strip.width(np.zeros(1))[0]) / beam.length
     places = tuple(part * each for each in _CORNERS)
     if planes == 2:  # end where the clamp no longer stiffens bending in the direction of the width
-        reach = beam.section.stiffening_across(beam.length).breakpoints[1]
+        reach = beam.strip.stiffening_across(beam.length).breakpoints[1]
         places = reach / 2, reach, places[1]
     places = [each for each in places if each <= _LAST_CORNER]
     return beam.mass_per_length.split((0.0, *places, 1.0))
@@ -448,7 +439,7 @@ def _with_corners(beam: Beam, planes: int) -> Profile:
 
 @lru_cache(maxsize=256)
 def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
-    """The beam without the properties that a model with this physics does not read."""
+    """Remove the properties of the beam that a model with this physics does not use."""
     beam = _with_constants(beam, physics)
     optional = {direction + name for direction in ("", _SECOND) for name in _NEEDED.values()}
     unread = (optional | {_SECOND + _BENDING, "torsion_stiffness"}) - _needed_properties(beam, physics).keys()
@@ -457,6 +448,6 @@ def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     given: dict[str, Any] = {name: None for name in unread if getattr(beam, name) is not None}
     if beam.tip is not None and beam.tip.offset_across and not physics.torsion:
         given["tip"] = replace(beam.tip, offset_across=0.0)
-    if beam.section is not None and (physics.camber or physics.torsion):  # deflections vary across the width
+    if beam.strip is not None and (physics.camber or physics.torsion):  # deflections vary across the width
         given["mass_per_length"] = _with_corners(beam, physics.planes if physics.camber else 1)
     return replace(beam, **given) if given else beam

@@ -1,6 +1,6 @@
-"""Sections by their 6 x 6 matrices of stiffness and of mass, with all that couples their strains.
+"""Sections given by 6 x 6 matrices of stiffness and of mass, which may couple all strains.
 
-Rows and columns are those of the forces and moments (F1, F2, F3, M1, M2, M3) about the axis of the beam: 1
+Rows and columns belong to the forces and moments (F1, F2, F3, M1, M2, M3) about the axis of the beam: 1
 along it, 2 in the direction of bending and 3 across, in the axes of the section, which the twist turns.  The
 stiffness gives them by stretch, the shears, twist rate and the curvatures about 2 and 3; the mass matrix,
 per length, by accelerations.
@@ -20,14 +20,14 @@ from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.scene.profile import Profile, Table, merge_breakpoints, to_profile
 
 SIZE = 6
-UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # entries that are given
-_FORCES = 3  # rows of forces; the others are of moments
-LEAST = 1e-10  # eigenvalue of a matrix with a diagonal of 1 below which it is not positive definite
+UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # indices of the entries that are given
+_FORCES = 3  # number of rows of forces; the others are of moments
+LEAST = 1e-10  # smallest eigenvalue of a positive definite matrix that is scaled to a diagonal of 1
 MOST_ASYMMETRY = (
     1e-4  # difference of two entries that should be equal, over the root of their diagonal entries
 )
-MOST_STRANGENESS = 1e-4  # the same, of entries that no rigid section has
-# Diagonal entries of the stiffness, by the name of the property of the beam that they are.
+MOST_STRANGENESS = 1e-4  # largest accepted difference, scaled, of a mass matrix from that of a rigid section
+# Properties of the beam that are diagonal entries of the stiffness.
 _DIAGONAL = {
     "axial_stiffness": 0,
     "shear_stiffness": 1,
@@ -39,7 +39,7 @@ _DIAGONAL = {
 
 
 def entry_units() -> dict[str, str]:
-    """Units of the entries in files: K11 to K66 of the stiffness, M11 to M66 of the mass, upper triangles."""
+    """List the units of the entries in files: K11 to K66 of the stiffness, M11 to M66 of the mass."""
     units = {}
     for letter, by_moments in (("K", ("N", "N m", "N m2")), ("M", ("kg/m", "kg", "kg m"))):
         units |= {entry_name(letter, i, j): by_moments[(i >= _FORCES) + (j >= _FORCES)] for i, j in UPPER}
@@ -47,13 +47,13 @@ def entry_units() -> dict[str, str]:
 
 
 def entry_name(letter: str, i: int, j: int) -> str:
-    """Name of an entry, such as K16, by its row and column from 0."""
+    """Return the name of an entry, such as K16, by its row and column from 0."""
     return f"{letter}{i + 1}{j + 1}"
 
 
 @dataclass(frozen=True)
 class SectionMatrices(FieldsOnly):
-    """Matrices of the sections along a beam.
+    """Stiffness and mass matrices of the sections along a beam.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class SectionMatrices(FieldsOnly):
 
     @classmethod
     def at_stations(cls, stations: Any, stiffness: Any, mass: Any) -> SectionMatrices:
-        """Matrices that are linear between stations.
+        """Build matrices that are linear between stations.
 
         Parameters
         ----------
@@ -125,7 +125,7 @@ class SectionMatrices(FieldsOnly):
         return merge_breakpoints(np.concatenate([each.breakpoints for each in (*self.stiffness, *self.mass)]))
 
     def _at_breakpoints(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Positions x/L (N,) of both ends of each segment between breakpoints, and the matrices (6, 6, N)."""
+        """Evaluate one matrix at both ends of each segment: positions x/L (N,) and matrices (6, 6, N)."""
         ends = self._breakpoints
         found = np.empty((SIZE, SIZE, 2 * (len(ends) - 1)))
         for (i, j), entry in zip(UPPER, getattr(self, name), strict=True):
@@ -141,7 +141,7 @@ class SectionMatrices(FieldsOnly):
 
     @cached_property
     def properties(self) -> dict[str, Profile]:
-        """Properties of `Beam` that the matrices say: diagonal entries, mass, inertia about its centre."""
+        """Properties of `Beam` from the matrices: diagonal entries, mass, inertia about its centre."""
         found = {name: self.stiffness[UPPER.index((k, k))] for name, k in _DIAGONAL.items()}
         xi, mass = self._at_breakpoints("mass")
         _, _, inertia = split_mass(mass)
@@ -150,7 +150,7 @@ class SectionMatrices(FieldsOnly):
         return found | {"mass_per_length": self.mass[0]}
 
     def _check(self, name: str) -> None:
-        """Refuse matrices that are not positive definite on a side of a breakpoint, and odd masses."""
+        """Refuse matrices that are not positive definite at segment ends, and mass no section can have."""
         xi, matrices = self._at_breakpoints(name)
         least = least_eigenvalues(matrices)
         if (bad := np.flatnonzero(least <= LEAST)).size:
@@ -172,14 +172,14 @@ def _profile(name: str, stations: Sequence[float] | np.ndarray, values: np.ndarr
 
 
 def _scaled(matrices: np.ndarray) -> np.ndarray:
-    """Matrices (n, 6, 6) with a diagonal of 1; one that is not positive stays as it is."""
+    """Scale matrices (n, 6, 6) to a diagonal of 1; rows with a diagonal that is not positive stay."""
     diagonal = np.einsum("nii->ni", matrices)
     roots = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
     return matrices / (roots[:, :, None] * roots[:, None, :])
 
 
 def least_eigenvalues(matrices: np.ndarray) -> np.ndarray:
-    """Least eigenvalue (N,) of matrices (6, 6, N), scaled to a diagonal of 1."""
+    """Compute the smallest eigenvalue (N,) of matrices (6, 6, N), scaled to a diagonal of 1."""
     return np.linalg.eigvalsh(_scaled(np.moveaxis(matrices, 2, 0)))[:, 0]
 
 
@@ -194,13 +194,13 @@ def _check_symmetry(name: str, stations: Any, matrices: np.ndarray) -> None:
 
 
 def asymmetry(matrices: np.ndarray) -> np.ndarray:
-    """Largest difference (n,) of two entries of matrices (n, 6, 6), over the root of their diagonal ones."""
+    """Compute the largest asymmetry (n,) of matrices (n, 6, 6), over the root of their diagonal entries."""
     scaled = _scaled(matrices)
     return np.abs(scaled - scaled.swapaxes(1, 2)).max(axis=(1, 2))
 
 
 def split_mass(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mass per length (N,), its centre (3, N) from the axis and inertia (3, 3, N) about it, of (6, 6, N)."""
+    """Split mass matrices (6, 6, N) into mass per length (N,), centre (3, N) and its inertia (3, 3, N)."""
     m = matrices[0, 0]
     c2, c3 = -matrices[0, 5] / m, matrices[0, 4] / m
     none = np.zeros_like(m)
@@ -210,7 +210,7 @@ def split_mass(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def strangeness(matrices: np.ndarray) -> np.ndarray:
-    """Largest difference (N,) of mass matrices (6, 6, N) from those of rigid sections, scaled."""
+    """Compute the largest scaled difference (N,) of mass matrices (6, 6, N) from those of rigid sections."""
     m, (_, c2, c3), _ = split_mass(matrices)
     rigid = matrices.copy()
     rigid[:3, :3], rigid[:3, 3:] = m * np.eye(3)[..., None], 0.0

@@ -1,4 +1,4 @@
-"""Tensors of the sections: their stiffnesses and inertias in directions that do not turn with the twist.
+"""Tensors of section stiffness and inertia in directions that do not turn with the twist.
 
 A section with the values f (bending in the direction of the bending angle) and g (in the direction across)
 that is turned by beta has, along the directions e1, e2 at the root,
@@ -17,17 +17,18 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.beam import OFFSETS, Beam, TipMass
 from beamdyn.scene.profile import Profile, combine
 
-# Orders of the derivatives of a deflection whose products a property of the sections multiplies.
+# Orders of the derivatives of deflections whose products a property of the sections multiplies.
 _ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "rotary_inertia": 1}
 
-Tensor: TypeAlias = "dict[tuple[int, int], Profile]"  # entries by direction; those that vanish are missing
+# Entries by pair of directions; those that vanish are missing.
+Tensor: TypeAlias = "dict[tuple[int, int], Profile]"
 
 
 @lru_cache(maxsize=256)
 def section_tensor(beam: Beam, name: str) -> Tensor:
-    """Tensor of a property of the sections, such as "bending_stiffness", in the directions e1, e2.
+    """Compute the tensor of a section property, such as "bending_stiffness", in the directions e1, e2.
 
-    That of the rotary inertia is about the centre of tension, where that differs from the centre of mass: a
+    Rotary inertia is about the centre of tension where that differs from the centre of mass, because a
     section tilts about the line that keeps its length.
 
     Parameters
@@ -53,8 +54,8 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
         return {(0, 0): first}
     if beam.twist is None or not any(any(row) for row in beam.twist.coefficients):
         return {(0, 0): first, (1, 1): second}
-    # Turn the values in the axes of the sections by the twist; refuse by name one that is not resolved.
-    excess = first + second.scaled(-1.0)  # series of the difference: differences of values may lose digits
+    # Turn the values in the axes of the sections by the twist; refuse a twist that is not resolved.
+    excess = first + second.scaled(-1.0)  # a series of the difference: a difference of values may lose digits
     try:
         along, oblique, across = combine(_turned_values, first, second, excess, beam.twist)
     except ValueError as error:
@@ -66,7 +67,7 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
 
 
 def _from_tension_to_mass(beam: Beam) -> Profile | None:
-    """Distance of the centre of mass from that of tension, across [m]; None where there are no offsets."""
+    """Compute the mass centre's distance from the centre of tension, across [m]; None without offsets."""
     if beam.tension_offset is None:
         return beam.mass_offset
     back = beam.tension_offset.scaled(-1.0)
@@ -76,14 +77,14 @@ def _from_tension_to_mass(beam: Beam) -> Profile | None:
 def _turned_values(
     first: np.ndarray, second: np.ndarray, excess: np.ndarray, twist: np.ndarray
 ) -> np.ndarray:
-    """Entries 11, 12 and 22 of the tensor."""
+    """Compute entries 11, 12 and 22 of a tensor turned by the twist."""
     c, s = np.cos(twist), np.sin(twist)
     return np.stack([first * c**2 + second * s**2, excess * (c * s), first * s**2 + second * c**2])
 
 
 @lru_cache(maxsize=64)
 def offset_components(beam: Beam) -> tuple[Profile | None, ...]:
-    """Components along e1, e2 of the offset of the centre of mass, then of tension [m]; None for 0."""
+    """Compute components along e1, e2 of the offsets of mass centre, then tension centre [m]; None for 0."""
     offsets = (getattr(beam, name) for name in OFFSETS)
     given = [offset if offset is not None and offset.series.any() else None for offset in offsets]
     if beam.twist is None:
@@ -99,14 +100,14 @@ def offset_components(beam: Beam) -> tuple[Profile | None, ...]:
 
 
 def tilting_inertia(tip: TipMass, twist: float) -> np.ndarray:
-    """Inertia [kg m2] of a tip body against tilting towards e1 and e2, shape (2, 2)."""
+    """Compute a tip body's inertia [kg m2] against tilting towards e1 and e2, shape (2, 2)."""
     return _turned(tip.inertia, tip.inertia_about_bending_direction, twist)
 
 
 def centrifugal_inertia(tip: TipMass, twist: float) -> np.ndarray:
-    """Inertia [kg m2] of a tip body by which rotation resists its tilt out of the plane, shape (2, 2).
+    """Compute a tip body's inertia [kg m2] by which rotation resists its tilt out of plane, shape (2, 2).
 
-    In the axes of the section it is diag(J_e - J_1, J_n - J_1): of the body about the axis of rotation,
+    In the axes of the section, this is diag(J_e - J_1, J_n - J_1): with respect to the axis of rotation,
     tilting towards a direction exchanges the moment about that direction for the one about the beam.
     """
     bending, across = tip.inertia_about_bending_direction, tip.inertia
@@ -121,9 +122,9 @@ def _turned(first: float, second: float, angle: float) -> np.ndarray:
 
 
 def weight_degree(beam: Beam) -> int:
-    """Largest polynomial degree, in integrals over a segment, beyond that of products of deflections.
+    """Find the highest polynomial degree that section properties add to integrals of deflections' products.
 
-    That is the degree of a property less the order of the derivatives that it multiplies; tension is of the
+    Each adds its degree less the order of the derivatives that it multiplies; tension is of the
     degree of the mass and two more.
     """
     degrees = [beam.mass_per_length.degree + 1]

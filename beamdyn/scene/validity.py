@@ -1,4 +1,4 @@
-"""What makes an answer doubtful: limits of the theory, and input that the model leaves out."""
+"""Reasons why an answer is doubtful: limits of the theory, and input that the model leaves out."""
 
 from __future__ import annotations
 
@@ -22,35 +22,45 @@ from beamdyn.common.results.statements import (
 from beamdyn.common.words import Setting, Words
 from beamdyn.scene.scene import Scene
 
-LARGE_DEFLECTION = 0.1  # relative to the length: beyond it a linear theory errs by several percent
+LARGE_DEFLECTION = 0.1  # fraction of the length beyond which a linear theory has errors of several percent
 LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch matters
-STANDARD_GRAVITY = 9.81  # m/s2: a road that accelerates a wheel by more loses contact with it
-_NARROW = 5.0  # thicknesses: a narrower section is no plate
-_WORTH_OF_NARROW = 0.01  # largest difference of such sections' frequencies from solids: benchmarks.solids
-# Relative error of frequencies over the change of the slope of the width: the largest of 36 tapered strips
-# beside strips with a rounded kink was 0.037, of bending; and the error that is said.
+# Acceleration of gravity [m/s2]: a road that accelerates a wheel by more loses contact with it.
+STANDARD_GRAVITY = 9.81
+_NARROW = 5.0  # width over thickness below which a section is no plate
+_WORTH_OF_NARROW = 0.01  # largest difference of narrow sections' frequencies from solids: benchmarks.solids
+# Relative error of frequencies over the change of the width's slope (0.037 at most, in 36 tapered strips
+# compared with strips with a rounded kink, in bending), and the error from which a warning is given.
 _WORTH_OF_KINKS, _SMALL_WORTH = 0.04, 1e-3
-_ROUNDING_OF_SIDES = 1e-9  # relative: a width that is no nearer to a bound is at it
-_MOST_RANGES = 4  # ranges of speeds in a sentence
+# Relative distance of a width from a bound, up to which the width counts as at the bound.
+_ROUNDING_OF_SIDES = 1e-9
+_MOST_RANGES = 4  # largest number of ranges of speeds in a sentence
 FASTEST = MOST  # largest accepted speed [rad/s]: its fourth power is far from overflow
 
 
 def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:
-    """Raise an `InvalidValue` for speeds [rad/s], the argument of that name, whose powers would overflow."""
+    """Refuse speeds [rad/s], the argument `name`, whose powers would overflow (an `InvalidValue`)."""
     bound = "give at most {limit} either way"
     refuse(np.abs(speeds) > FASTEST, name, speeds, "rad/s", bound, limit=FASTEST)
 
 
 def refuse_bending_in_space(scene: Scene) -> None:
-    """Refuse what is computed of beams that bend far in one plane, and not of others: an `InvalidValue`."""
+    """Refuse large deflection in space in analyses that model it in one plane only (an `InvalidValue`)."""
     if scene.bends_in_space:
         bound = "this analysis has large deflection in one plane alone, in the plane of rotation or out of it"
         remedy = "leave large_deflection out where the deflection is small, or model one such plane"
         raise InvalidValue("physics.large_deflection", True, bound, remedy)
 
 
+def refuse_tip_load(scene: Scene) -> None:
+    """Refuse a load at the tip in an analysis that knows only what rotation does: an `InvalidValue`."""
+    if scene.tip_load.acts:
+        bound = "this analysis knows loads by the motion of the carrier alone"
+        remedy = "equilibria, modes, loci and transients have it"
+        raise InvalidValue("tip_load.force", scene.tip_load.force, bound, remedy)
+
+
 def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
-    """Yield warnings of what is given and not modelled, of a narrow section, and of what a choice leaves."""
+    """Yield warnings of input that is not modelled, of narrow sections, and of a physics choice's limits."""
     yield from _warn_of_narrow_section(scene)
     yield from _warn_of_kinks(scene)
     if scene.physics_choice is not None:
@@ -74,7 +84,7 @@ def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
 
 def _warn_of_narrow_section(scene: Scene) -> Iterator[Statement]:
     """Yield a warning if the width is modelled of a section that is too narrow for a plate."""
-    section = scene.beam.section
+    section = scene.beam.strip
     if section is None or not scene.models_width:
         return
     width, thickness = section.sides()
@@ -92,7 +102,7 @@ def _warn_of_narrow_section(scene: Scene) -> Iterator[Statement]:
 
 def _warn_of_kinks(scene: Scene) -> Iterator[Statement]:
     """Yield a warning if camber is modelled of a width with kinks, which its functions do not have."""
-    section = scene.beam.section
+    section = scene.beam.strip
     if section is None or not scene.physics.camber:
         return
     sharpest = float(section.kinks_of_width(scene.beam.length).max(initial=0.0))
@@ -110,7 +120,7 @@ def warn_of_strain(strain: float) -> Iterator[Statement]:
 
 
 def warn_of_elastic_limit(strain: np.ndarray) -> Iterator[Statement]:
-    """Yield a warning if strains, of which there may be none (nan), pass what linear elasticity describes."""
+    """Yield a warning if strains (nan if unknown) exceed the range of linear elasticity."""
     largest = np.abs(strain[np.isfinite(strain)]).max(initial=0.0)
     if largest > LARGE_STRAIN:
         said = f"strain reaches {largest:.2g}: past {LARGE_STRAIN:g} few materials are linearly elastic"
@@ -120,18 +130,14 @@ def warn_of_elastic_limit(strain: np.ndarray) -> Iterator[Statement]:
 def warn_of_static_deflection(
     deflection: np.ndarray, length: float, speeds: np.ndarray
 ) -> Iterator[Statement]:
-    """Yield a warning if the static tip deflection [m] at a speed [rad/s] exceeds linear theory."""
+    """Yield a warning if the static tip deflection [m] at speeds [rad/s] exceeds linear theory."""
     bent = np.abs(deflection) > LARGE_DEFLECTION * length
     if bent.any():
         first, worst = np.abs(speeds[bent]).argmin(), np.abs(deflection[bent]).argmax()
         ratio, at = abs(deflection[bent][worst]) / length, Speeds(speeds[bent][worst])
         most = _say_lengths(ratio)
-        begin = (
-            "from ",
-            Speeds(speeds[bent][first]),
-            f" on the rotation bends the tip by up to {most}, at ",
-            at,
-        )
+        on = f" on the rotation bends the tip by up to {most}, at "
+        begin = "from ", Speeds(speeds[bent][first]), on, at
         said = begin if bent.sum() > 1 else ("at ", at, f" the rotation bends the tip by {most}")
         end = f": past {LARGE_DEFLECTION:g} of the length the answer is {OUTSIDE}"
         yield _bent_too_far(ratio, *said, end)
@@ -145,7 +151,7 @@ def _bent_too_far(ratio: float, *words: str) -> Statement:
 def warn_of_deflection(
     deflection: np.ndarray, length: float, speeds: np.ndarray | None = None
 ) -> Iterator[Statement]:
-    """Yield a warning if a tip deflection [m], at some speed if speeds are given, exceeds linear theory."""
+    """Yield a warning if the tip deflection [m], at any of the speeds if given, exceeds linear theory."""
     large = deflection > LARGE_DEFLECTION * length
     if large.any():
         ratio, at = deflection[large].max() / length, _at_speeds(speeds, large)
@@ -154,12 +160,12 @@ def warn_of_deflection(
 
 
 def _say_lengths(ratio: float) -> str:
-    """A deflection over the length in words: "0.12 of the length", "79 lengths"."""
+    """Word the ratio of a deflection to the length: "0.12 of the length", "79 lengths"."""
     return f"{ratio:.2g} of the length" if ratio < 1 else f"{ratio:.{1 if ratio < 10 else 0}f} lengths"
 
 
 def warn_of_road(acceleration: np.ndarray, speeds: np.ndarray | None = None) -> Iterator[Statement]:
-    """Yield a warning if the road accelerates the wheel [m/s2] by more than gravity, as above."""
+    """Yield a warning if the road accelerates the wheel [m/s2] by more than gravity."""
     excessive = acceleration > STANDARD_GRAVITY
     if excessive.any():
         largest = acceleration.max()
@@ -175,14 +181,14 @@ def warn_of_road(acceleration: np.ndarray, speeds: np.ndarray | None = None) -> 
 
 
 def _at_speeds(speeds: np.ndarray | None, selected: np.ndarray) -> str:
-    """The words " at ..." for the selected speeds; empty if there are no speeds."""
+    """Word " at ..." for the selected speeds; empty if no speeds are given."""
     return "" if speeds is None else Words(" at ", list_speeds(speeds, selected))
 
 
 def list_speeds(speeds: np.ndarray, selected: np.ndarray) -> Words:
-    """Text of the selected speeds [rad/s], of which there is one: "20 to 35 rad/s and 50 rad/s".
+    """Word the selected speeds [rad/s], at least one: "20 to 35 rad/s and 50 rad/s".
 
-    Neighbours in ascending order make a range; of many ranges the first are named, and how many follow up
+    Neighbours in ascending order form a range.  Of many ranges the first are named, then how many follow, up
     to which speed.
     """
     ascending = np.argsort(speeds, kind="stable")

@@ -1,1 +1,1 @@
-"""Motion that repeats: excitation by rotation and road, harmonic balance, steady response, resonances."""
+"""Steady motion: excitation by rotation and road, harmonic balance, response, resonances and stability."""

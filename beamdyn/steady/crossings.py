@@ -1,16 +1,16 @@
-"""Crossings of lines of the excitation with natural frequencies, and the list of them that is the result."""
+"""Crossings of excitation lines with natural frequencies, and the list of them as a result."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.results.one_line import error_at_most, listed, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words
@@ -22,18 +22,14 @@ from beamdyn.modes.model_error.unlisted_modes import find_unlisted
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-
 KINDS = ("forced", "parametric")
-_STEP = 1e-4  # of the speed, relative, for the slope of the frequencies
-_FURTHER_MODES = 2  # modes with which those that are sought may exchange their order
+_STEP = 1e-4  # relative step of the speed for the slope of the frequencies
+_FURTHER_MODES = 2  # number of further modes, with which the modes that are sought may exchange their order
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """Speed at which a line of the excitation equals a natural frequency.
+    """Crossing of an excitation line with a natural frequency, at one speed.
 
     Parameters
     ----------
@@ -79,21 +75,21 @@ class Crossing:
 
 
 def label_crossing(line: Line, kind: str, mode: int, second_mode: int | None = None) -> str:
-    """Label of a crossing for tables and pictures: its modes, line and kind."""
+    """Label a crossing for tables and pictures by its modes, line and kind."""
     modes = f"mode {mode}" if second_mode is None else f"modes {mode} and {second_mode}"
     return f"{modes}, {line.name} ({kind})"
 
 
 @dataclass(frozen=True)
 class Crossings(StatesModelError, Sequence[Crossing]):
-    """Sequence of crossings, by ascending speed.
+    """List of crossings of excitation lines with natural frequencies, by ascending speed.
 
     Parameters
     ----------
     crossings : tuple of Crossing
         The crossings.
     lines : tuple of Line
-        The lines that force the beam.
+        Excitation lines that force the beam.
     speeds : ndarray, shape (S,)
         Speeds of the locus [rad/s], up to the top speed or the critical one.
     frequency : ndarray, shape (S, m)
@@ -104,7 +100,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
         Number of crossings of the next order, which are weaker and not listed; those of still higher
         order are not counted.
     may_peak : int
-        Number of those that are forced: near each of them the steady response may have a peak.  Parametric
+        Number of unlisted forced crossings: near each the steady response may have a peak.  Parametric
         ones make no peak of their own: where damping is too weak, free motion grows there.
     warnings : tuple of str
         Limitations of the result, and why there is no crossing.
@@ -132,7 +128,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Number, speeds and error of the crossings in one line; see `Result.headline`."""
+        """Yield number, speeds and error of the crossings for a one-line summary; see `Result.headline`."""
         yield f"{len(self)} up to {self.say_speed(self.speeds[-1])}"
         unit, factor = self.display_units.speed_unit()
         yield listed([c.speed * factor for c in self], unit)
@@ -146,7 +142,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the speed of each crossing by effects left out, shape (k,)."""
+        """Changes of each crossing's speed by the effects left out of the model, shape (k,)."""
         if not self.crossings:
             return nothing_known(self.scene)
         speeds, modes = np.array([c.speed for c in self]), self.frequency.shape[1]
@@ -159,7 +155,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 
     @property
     def extent(self) -> str:
-        """Extent of the search, and crossings left out, as a sentence."""
+        """Sentence on the extent of the search and the crossings left out."""
         sought = f"Sought to order {self.order} up to ", Speeds(self.speeds[-1])
         if not self.unlisted:
             return Words(*sought, f"; there are none of order {self.order + 1}.")
@@ -186,7 +182,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 def left_out_of_crossings(
     model: Model, speeds: np.ndarray, frequencies: np.ndarray, modes: int
 ) -> LeftOutEffects:
-    """Estimate what each effect changes in speeds of resonance (k,) [rad/s], to first order.
+    """Estimate changes of resonance speeds (k,) [rad/s] by each effect left out, to first order.
 
     A speed of resonance moves by the relative change of the frequency, over 1 - (speed/frequency) times the
     slope of the frequency over speed.
@@ -194,9 +190,9 @@ def left_out_of_crossings(
     Parameters
     ----------
     model : Model
-        The model with which they were found.
+        The model with which the speeds were found.
     speeds : ndarray, shape (k,)
-        The speeds [rad/s].
+        Resonance speeds [rad/s].
     frequencies : ndarray, shape (k, 2)
         Angular frequencies of the two modes that resonate [rad/s]; of a single mode twice.
     modes : int
@@ -219,5 +215,5 @@ def left_out_of_crossings(
 
 
 def _nearest(eigenvalue: np.ndarray, frequency: np.ndarray) -> np.ndarray:
-    """Indices (k, 2) of the eigenvalues (k, m) nearest to angular frequencies (k, 2)."""
+    """Find the indices (k, 2) of eigenvalues (k, m) nearest to angular frequencies (k, 2)."""
     return np.abs(np.imag(eigenvalue)[:, None, :] - frequency[:, :, None]).argmin(axis=2)

@@ -26,14 +26,16 @@ import numpy as np
 
 from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, list_harmonics, select_harmonics
 
-_MOST_ENTRIES = 10**7  # entries of the matrices that are solved at once: 80 MB
-_MOST_TERMS = 12  # each then shrinks the error to a twentieth; where it does not, the series is given up
-_SETTLED = 4 * np.finfo(float).eps  # change by a term, over the response
-_WORTH_LEAVING_OUT = 0.25  # share of rates that have settled: fewer cost less than new arrays
+_MOST_ENTRIES = 10**7  # number of matrix entries that are solved at once: 80 MB
+# Largest number of terms of the series, which is given up unless each term shrinks the error to a twentieth.
+_MOST_TERMS = 12
+_SETTLED = 4 * np.finfo(float).eps  # relative change by a term at which the series has settled
+# Fraction of rates that have settled, below which new arrays cost more than they save.
+_WORTH_LEAVING_OUT = 0.25
 
 
 def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:
-    """Solve for some harmonics of the response: by interaction after interaction, else all at once.
+    """Solve for given harmonics of the response: as a series of interactions, or else all at once.
 
     Parameters
     ----------
@@ -45,7 +47,7 @@ def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) ->
     Returns
     -------
     ndarray of complex, shape (S, H, n)
-        q_h; nan where the equations are singular.
+        Harmonics q_h of the response; nan where the equations are singular.
     """
     response, settled = sum_interactions(system, harmonics)
     others, entries = np.flatnonzero(~settled), (system.size * len(harmonics)) ** 2
@@ -56,7 +58,7 @@ def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) ->
 
 
 def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:
-    """Solve for some harmonics of the response by one matrix over all of them, at each pair of rates."""
+    """Solve for given harmonics of the response by one matrix over all of them, at each pair of rates."""
     T = _real_basis(harmonics)
     A, b = _assemble(system, harmonics, T)
     try:
@@ -70,16 +72,16 @@ def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarr
 
 
 def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: Pair = (0, 0)) -> np.ndarray:
-    """Matrices of the product with a function of the phases that is given by its spectrum.
+    """Build the matrices that multiply harmonics by a function of the phases with a given spectrum.
 
     Parameters
     ----------
     spectrum : ndarray of complex, shape (S, N, N)
         Harmonics of the function.
     harmonics : sequence of pair, length H
-        Harmonics of what it is multiplied with, and of the product.
+        Harmonics of the other factor, and of the product.
     shift : pair
-        Added to the harmonic h - h' of the spectrum that stands at (h, h').
+        Offset of the harmonic h - h' of the spectrum that is the entry (h, h').
 
     Returns
     -------
@@ -90,7 +92,7 @@ def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: P
 
 
 def _real_basis(harmonics: Sequence[Pair]) -> np.ndarray:
-    """Unitary T with (q_h) = T y, where y is real for real q: cosine and sine parts of each pair h, -h."""
+    """Build the unitary matrix T from real cosine and sine parts of pairs h, -h to complex harmonics."""
     index = {h: i for i, h in enumerate(harmonics)}
     T = np.zeros((len(index), len(index)), dtype=complex)
     for h, i in index.items():
@@ -106,7 +108,10 @@ def _real_basis(harmonics: Sequence[Pair]) -> np.ndarray:
 def _assemble(
     system: PeriodicSystem, harmonics: Sequence[Pair], T: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Assemble real equations A y = b: K - Omega_h^2 M, i Omega_h C, and the periodic coefficients."""
+    """Assemble real equations of harmonic balance for the cosine and sine parts of all harmonics.
+
+    Blocks of a harmonic are K - Omega_h^2 M and i Omega_h C; the periodic coefficients couple harmonics.
+    """
     h = np.array(harmonics)
     S, H, n = len(system.rates), len(h), system.size
     K, C, M = system.mean
@@ -132,11 +137,11 @@ def _assemble(
     return A, np.real(T.conj().T @ load).reshape(S, H * n)
 
 
-# The series ---------------------------------------------------------------------------------------
+# Series of interactions ----------------------------------------------------------------------------
 
 
 def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple[np.ndarray, np.ndarray]:
-    """Sum the series for some harmonics of the response.
+    """Sum the series of interactions for given harmonics of the response.
 
     Parameters
     ----------
@@ -148,9 +153,9 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     Returns
     -------
     response : ndarray of complex, shape (S, H, n)
-        q_h; nan where the series has not settled.
+        Harmonics q_h of the response; nan where the series has not settled.
     settled : ndarray of bool, shape (S,)
-        Whether it has, to rounding error.
+        Whether the series has settled to rounding error.
     """
     S, n = len(system.rates), system.size
     response, settled = np.full((S, len(harmonics), n), np.nan, dtype=complex), np.zeros(S, dtype=bool)
@@ -158,8 +163,8 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
         mean = MeanModes.of_system(system)
     except np.linalg.LinAlgError:
         return response, settled
-    half = [h for h in harmonics if h >= (0, 0)]  # those of the others are conjugate
-    with np.errstate(all="ignore"):  # it may diverge, or a harmonic be in resonance
+    half = [h for h in harmonics if h >= (0, 0)]  # the harmonics of the other half are complex conjugates
+    with np.errstate(all="ignore"):  # the series may diverge, or a harmonic be in resonance
         series = _Series.of_system(system, mean, half)
         y = series.load * series.compliance
         found, left = np.full_like(y, np.nan), np.arange(S)
@@ -181,24 +186,24 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
 
 
 def _size(y: np.ndarray) -> np.ndarray:
-    """Size (S,) of responses (H, n, S)."""
+    """Compute the magnitudes (S,) of responses (H, n, S)."""
     return (np.abs(np.real(y)) + np.abs(np.imag(y))).sum(axis=(0, 1))
 
 
 @dataclass(frozen=True)
 class _Products:
-    """Products of the response with periodic coefficients of one matrix.
+    """Products of the response with the periodic coefficients of one matrix of the equations.
 
     Parameters
     ----------
     order : int
-        Derivative of the response: 0 or 1.
+        Order of the response's derivative: 0 or 1.
     matrix : ndarray, shape (n, n, S)
-        Matrix, in modes.
+        Matrix in modal coordinates.
     factors : tuple of ndarray, shape (S,)
         Harmonics of the coefficients.
     places : tuple of (ndarray, ndarray)
-        For each, where products go among the H harmonics, and where they come from among these and their
+        For each factor, indices of products among the H harmonics, and of their sources among these and the
         conjugates.
     """
 
@@ -211,7 +216,7 @@ class _Products:
     def of(
         cls, order: int, spectrum: np.ndarray, matrix: np.ndarray, mean: MeanModes, harmonics: list[Pair]
     ) -> _Products:
-        """Products with periodic coefficients, by their spectrum and matrices, among some harmonics."""
+        """Build the products of a spectrum and its matrices with given harmonics of the response."""
         index = {h: i for i, h in enumerate(harmonics)}
         for (j, k), i in tuple(index.items()):
             index.setdefault((-j, -k), len(harmonics) + i)
@@ -229,7 +234,7 @@ class _Products:
         return replace(self, matrix=self.matrix[..., chosen], factors=factors)
 
     def sum(self, both: np.ndarray, count: int) -> np.ndarray:
-        """Forces (H, n, S) by the harmonics of the response and their conjugates (2 H, n, S)."""
+        """Sum the forces (H, n, S) by harmonics of the response and their conjugates (2 H, n, S)."""
         product = np.zeros((count, *both.shape[1:]), dtype=complex)
         for factor, (to, source) in zip(self.factors, self.places, strict=True):
             product[to] += factor * both[source]
@@ -238,16 +243,16 @@ class _Products:
 
 @dataclass(frozen=True)
 class _Series:
-    """Parts of the terms, for H harmonics, n modes and S pairs of rates, these last.
+    """Quantities from which the series is summed, for H harmonics, n modes and S pairs of rates.
 
     Parameters
     ----------
     load : ndarray of complex, shape (H, n, S)
-        Load.
+        Harmonics of the modal load.
     compliance : ndarray of complex, shape (H, n, S)
-        Response of each mode to a load of each harmonic, by itself.
+        Response of each uncoupled mode to a load of each harmonic.
     rate : ndarray of complex, shape (H, 1, S)
-        i Omega_h [1/s].
+        Factor i Omega_h [1/s] of a time derivative.
     damping : ndarray, shape (n, n, S), or None
         Damping between different modes; None if there is none.
     products : tuple of _Products
@@ -262,7 +267,7 @@ class _Series:
 
     @classmethod
     def of_system(cls, system: PeriodicSystem, mean: MeanModes, harmonics: list[Pair]) -> _Series:
-        """Series for harmonics of which none is the opposite of another."""
+        """Build the series for harmonics of which none is the opposite of another."""
         h, C = np.array(harmonics), system.mean[1]
         rate = 1j * (h @ system.rates.T)[:, None]
         damping = mean.transform(C) if C.any() else None
@@ -288,7 +293,7 @@ class _Series:
         return _Series(load, compliance, rate, damping, products)
 
     def respond(self, y: np.ndarray) -> np.ndarray:
-        """Response (H, n, S) to the load, and to what the last response y couples."""
+        """Compute the response (H, n, S) to the load, and to the coupling by the last response y."""
         force, both = self.load.copy(), np.concatenate([y, y.conj()])
         for products in self.products:
             of_rate = np.concatenate([self.rate, -self.rate]) if products.order else 1.0
@@ -299,7 +304,7 @@ class _Series:
 
 
 def _multiply(matrix: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Products (H, n, S) of matrices (n, n, S) with y (H, n, S)."""
+    """Multiply matrices (n, n, S) with y: shape (H, n, S)."""
     total = np.empty_like(y)
     for row, out in zip(matrix, np.moveaxis(total, 1, 0), strict=True):
         out[:] = (row * y).sum(axis=1)

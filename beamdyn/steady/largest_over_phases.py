@@ -1,4 +1,4 @@
-"""Largest value, over two phases, of a sum of lines.
+"""Largest value over two phases of a sum of lines (harmonics of the phases).
 
 The sum is sampled at as many phases as its strong lines need; the largest maxima of the samples are refined
 by Newton's method with all lines.
@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-_MAXIMA = 16  # largest local maxima of the samples over the phases, which are refined
-_LEAST_SAMPLE = 0.5  # share of the largest, by Riesz' inequality: lower samples lie beside lower maxima
-_MOST_STEPS = 20  # steps of Newton: each squares the error, but some begin near a saddle
-_CONVERGED = 1e-15  # gain by a step, over the value
-_WEAK = 0.02  # sum of the weak lines, over that of all: they shift maxima, but hardly make any
-_OFFSET = np.array([0.21, 0.37])  # steps to the samples: symmetric sums have saddles at round phases
-_MOST_SAMPLES = 2**20  # samples at once: 8 MB
+_MAXIMA = 16  # number of largest local maxima of the samples that are refined
+_LEAST_SAMPLE = 0.5  # fraction of the largest, by Riesz' inequality: lower samples are beside lower maxima
+_MOST_STEPS = 20  # largest number of Newton's steps: each squares the error, but some begin near a saddle
+_CONVERGED = 1e-15  # relative gain by a step at which the maximum has converged
+_WEAK = 0.02  # ratio of weak lines' sum to that of all: they shift maxima, but hardly cause any
+# Offset of the samples in steps: symmetric sums have saddles at round phases.
+_OFFSET = np.array([0.21, 0.37])
+_MOST_SAMPLES = 2**20  # number of samples evaluated at once: 8 MB
 
 
 def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
@@ -23,9 +24,9 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
     Parameters
     ----------
     amplitude : ndarray of complex, shape (S, d, H)
-        a_h, of d components.
+        Complex amplitudes a_h of the lines, of d components.
     harmonics : ndarray of int, shape (H, 2)
-        The harmonics h.
+        Harmonics h of the lines.
 
     Returns
     -------
@@ -36,7 +37,7 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
         return largest
     strong = _find_strong(np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1), harmonics)
     degrees = np.stack([(strong * np.abs(h)).max(axis=1) for h in harmonics.T], axis=1)
-    for degree in np.unique(degrees, axis=0):  # the highest |h| of strong lines, by which they are sampled
+    for degree in np.unique(degrees, axis=0):  # highest |h| of strong lines, by which the sum is sampled
         rows = np.flatnonzero((degrees == degree).all(axis=1))
         for part in np.array_split(rows, 1 + len(rows) * int(np.prod(_grid(degree))) // _MOST_SAMPLES):
             largest[part] = _find_largest(amplitude[part], harmonics, degree)
@@ -44,7 +45,7 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
 
 
 def _find_strong(size: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
-    """Whether lines of a size (S, H) are strong, among all or among those not parallel to the strongest.
+    """Tell which lines of given sizes (S, H) are strong among all, or among those across the strongest.
 
     Along the crests of the strongest line the others alone decide, however weak they are.
     """
@@ -55,12 +56,12 @@ def _find_strong(size: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
 
 
 def _grid(degree: np.ndarray) -> np.ndarray:
-    """Numbers of samples of each phase, of sums whose lines have |h| up to a degree (2,)."""
+    """Choose the numbers of samples of each phase for sums of lines of harmonics up to a degree (2,)."""
     return np.where(degree > 0, 6 * (degree.max() + 1), 1)
 
 
 def _find_largest(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) -> np.ndarray:
-    """Largest |u| (S,), from samples of the lines with |h| up to a degree (2,)."""
+    """Find the largest magnitude (S,) of sums of lines, sampled with harmonics up to a degree (2,)."""
     grid = _grid(degree)
     sampled = _sample(amplitude, harmonics, degree)
     owner, place = _find_maxima(sampled)
@@ -78,7 +79,7 @@ def _find_largest(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarr
 
 
 def _sample(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) -> np.ndarray:
-    """Samples of |u| over both phases (S, N, N), of the lines with |h| up to a degree (2,)."""
+    """Sample the magnitude of sums of lines over both phases (S, N, N), harmonics up to a degree (2,)."""
     S, d, _ = amplitude.shape
     kept, grid = np.flatnonzero((np.abs(harmonics) <= degree).all(axis=1)), _grid(degree)
     theta, chi = (2 * np.pi / N * (np.arange(N) + offset) for N, offset in zip(grid, _OFFSET, strict=True))
@@ -92,7 +93,7 @@ def _sample(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) ->
 def _find_maxima(sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Find the largest local maxima of samples (S, N, N): rows (R,) of each, and its indices (R, 2)."""
     highest = sampled
-    for axis in (1, 2):  # periodic
+    for axis in (1, 2):  # the samples are periodic
         beside = np.roll(highest, 1, axis), np.roll(highest, -1, axis)
         highest = np.maximum(np.maximum(highest, beside[0]), beside[1])
     flat = np.where(sampled >= highest, sampled, -1.0).reshape(len(sampled), -1)
@@ -103,7 +104,10 @@ def _find_maxima(sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, longest: float) -> np.ndarray:
-    """Newton's step (R, 2) towards larger |u|: with magnitudes of curvatures, so that it avoids saddles."""
+    """Compute Newton's step (R, 2) of the phases towards a larger magnitude.
+
+    It takes the absolute values of the curvatures, so that it does not end at saddles.
+    """
     k, axes = np.linalg.eigh(curvature)
     size = np.abs(k)
     inverse = np.where(size > 1e-8 * size.max(axis=-1, keepdims=True), 1 / np.where(size > 0, size, 1), 0)
@@ -114,7 +118,10 @@ def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, lo
 def _evaluate_size(
     a: np.ndarray, h: np.ndarray, phases: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate |u| (R,), with the sign of the first component, its gradient and second derivatives."""
+    """Evaluate the magnitude (R,) of sums of lines, with the first component's sign, and derivatives.
+
+    The derivatives are the gradient and the second derivatives by the two phases.
+    """
     u, slope, curvature = _evaluate(a, h, phases)
     if u.shape[1] == 1:
         return u[:, 0], slope[:, 0], curvature[:, 0]
@@ -122,14 +129,18 @@ def _evaluate_size(
     divisor = np.where(size == 0, 1.0, size)
     direction = u / divisor[:, None]
     along = np.einsum("rd,rda->ra", direction, slope)
-    turning = slope - direction[..., None] * along[:, None]  # the slope that changes the direction only
+    # Part of the slope that only changes the direction of u.
+    turning = slope - direction[..., None] * along[:, None]
     bending = np.einsum("rd,rdab->rab", direction, curvature)
     sideways = turning / divisor[:, None, None]
     return size, along, bending + np.einsum("rda,rdb->rab", turning, sideways)
 
 
 def _evaluate(a: np.ndarray, h: np.ndarray, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate u (R, d) of a (R, d, H), its gradient and its second derivatives at phases (R, 2)."""
+    """Evaluate sums of lines of amplitudes a (R, d, H) at phases (R, 2), and their derivatives.
+
+    The derivatives are the gradient and the second derivatives by the two phases.
+    """
     first = h.astype(float)
     second = np.concatenate(
         [np.ones((len(h), 1)), -(first[:, :, None] * first[:, None]).reshape(-1, 4)], axis=1

@@ -1,4 +1,4 @@
-"""Linear equations whose coefficients are periodic in two phases, as harmonics, and those of a scene.
+"""Linear equations with coefficients periodic in two phases, as harmonics, and how a scene gives them.
 
     M q'' + C(theta, chi) q' + K(theta, chi) q = f(theta, chi),   theta' = nu_1,  chi' = nu_2
 
@@ -20,10 +20,11 @@ from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.scene.motion import Line, Motion, MotionSample, SteadyRotation
 from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 
-Pair = tuple[int, int]  # a harmonic (j, k)
+Pair = tuple[int, int]  # harmonic (j, k)
 
 _EPS = np.finfo(float).eps
-_STEADY_STATE = ("lines", "road_multiple", "road_acceleration", "steady_acceleration")  # of a motion
+# Attributes that a motion needs to have a steady state.
+_STEADY_STATE = ("lines", "road_multiple", "road_acceleration", "steady_acceleration")
 _GRIDS = (8, 16, 32, 64)  # numbers of samples of each phase, tried in turn
 
 
@@ -51,7 +52,7 @@ class PeriodicSystem:
     loads: tuple[tuple[np.ndarray, np.ndarray], ...]
 
     def __getitem__(self, chosen: np.ndarray | slice) -> PeriodicSystem:
-        """System at the chosen pairs of rates."""
+        """Select the equations at the chosen pairs of rates."""
         return PeriodicSystem(
             self.rates[chosen],
             self.mean[:, chosen],
@@ -60,7 +61,7 @@ class PeriodicSystem:
         )
 
     def part(self, coordinates: np.ndarray) -> PeriodicSystem:
-        """Equations of some coordinates, which no term couples with others."""
+        """Extract the equations of some coordinates, which no term couples with others."""
         rows = coordinates[:, None]
         varying = ((order, spectrum, A[:, rows, coordinates]) for order, spectrum, A in self.varying)
         loads = ((spectrum, vector[:, coordinates]) for spectrum, vector in self.loads)
@@ -78,33 +79,33 @@ class PeriodicSystem:
 
     @cached_property
     def without_stiffness(self) -> np.ndarray:
-        """Whether a coordinate acts by its rate alone, as the flux of a circuit: (n,)."""
+        """Whether each coordinate acts only by its rate, as the flux of a circuit does: shape (n,)."""
         stiff = self.mean[0].any(axis=(0, 1))
         for order, _, matrix in self.varying:
             stiff = stiff | (matrix.any(axis=(0, 1)) & (order == 0))
         return ~stiff
 
     def is_free(self, harmonics: np.ndarray) -> np.ndarray:
-        """Whether a coordinate without stiffness has a static part, which may be any and is taken as 0.
+        """Tell which coordinates have an arbitrary static part, as they lack stiffness; it is taken as 0.
 
-        For harmonics (H, 2): shape (S, H, n).
+        The result for harmonics (H, 2) has the shape (S, H, n).
         """
         return (self.rates @ harmonics.T == 0)[..., None] & self.without_stiffness
 
     @property
     def load_harmonics(self) -> set[Pair]:
-        """Harmonics of the load."""
+        """Harmonics (j, k) of the load."""
         return set().union(*(list_harmonics(spectrum) for spectrum, _ in self.loads))
 
     @property
     def coupling(self) -> set[Pair]:
-        """Harmonics of the periodic coefficients."""
+        """Harmonics (j, k) of the periodic coefficients."""
         return set().union(*(list_harmonics(spectrum) for _, spectrum, _ in self.varying))
 
 
 @dataclass(frozen=True)
 class MeanModes:
-    """Modes of the mean equations without damping, of unit mass.
+    """Undamped modes of the mean equations, normalized to unit mass.
 
     Parameters
     ----------
@@ -119,19 +120,19 @@ class MeanModes:
 
     @classmethod
     def of_system(cls, system: PeriodicSystem) -> MeanModes:
-        """Modes at S pairs of rates; raises a LinAlgError if the mass is singular."""
+        """Compute the modes at S pairs of rates; raise a LinAlgError if the mass is singular."""
         K, _, M = system.mean
         inverse = np.linalg.inv(np.linalg.cholesky(M))
         squared, vectors = np.linalg.eigh(inverse @ K @ np.swapaxes(inverse, 1, 2))
         return cls(squared, np.swapaxes(inverse, 1, 2) @ vectors)
 
     def transform(self, matrix: np.ndarray) -> np.ndarray:
-        """Matrices (S, n, n) in these modes, with the rates last: shape (n, n, S)."""
+        """Transform matrices (S, n, n) to modal coordinates, with the rates last: shape (n, n, S)."""
         return np.ascontiguousarray(np.moveaxis(np.swapaxes(self.shapes, 1, 2) @ matrix @ self.shapes, 0, 2))
 
 
 def _fourier_coefficients(samples: np.ndarray) -> np.ndarray:
-    """Harmonics of samples (S, N, N) on a uniform grid of the phases; rounding error is set to 0."""
+    """Compute the harmonics of samples (S, N, N) on a grid of the phases; rounding is set to 0."""
     if (samples == samples[:, :1, :1]).all():
         constant = np.zeros(samples.shape, dtype=complex)
         constant[:, 0, 0] = samples[:, 0, 0]
@@ -147,7 +148,7 @@ def list_harmonics(spectrum: np.ndarray) -> set[Pair]:
 
 
 def _indices(spectrum: np.ndarray) -> np.ndarray:
-    """Harmonic number at each index of an axis of a spectrum."""
+    """List the harmonic number at each index of an axis of a spectrum."""
     N = spectrum.shape[-1]
     return (np.arange(N) + N // 2) % N - N // 2
 
@@ -160,7 +161,7 @@ def select_harmonics(spectrum: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     return np.where(inside, spectrum[:, j, k], 0)
 
 
-# Which harmonics to keep --------------------------------------------------------------------------
+# Choice of harmonics ------------------------------------------------------------------------------
 
 
 def generate_harmonics(start: Iterable[Pair], coupling: set[Pair], interactions: int) -> list[list[Pair]]:
@@ -190,7 +191,7 @@ def generate_harmonics(start: Iterable[Pair], coupling: set[Pair], interactions:
     return levels
 
 
-# The equations of a scene at steady speed -----------------------------------------------------------
+# Equations of a scene at steady speed ---------------------------------------------------------------
 
 
 def periodic_system(
@@ -201,7 +202,7 @@ def periodic_system(
     Parameters
     ----------
     equations : Equations, or sequence of them, length S
-        The equations of motion; or those at each speed, with the same terms, such as about equilibria.
+        Equations of motion, or one set for each speed with the same terms, such as about equilibria.
     motion : Motion or None
         A motion with `steady_acceleration` and `road_multiple`; None for rotation about a fixed centre.
     speeds : ndarray, shape (S,)
@@ -237,7 +238,7 @@ def periodic_system(
 
 
 def _stack(arrays: list[np.ndarray]) -> np.ndarray:
-    """Stack the arrays of all speeds; a view if they are one and the same array."""
+    """Stack the arrays of all speeds; return a view if they are the same array."""
     if all(array is arrays[0] for array in arrays):
         return np.broadcast_to(arrays[0], (len(arrays), *arrays[0].shape))
     return np.array(arrays)
@@ -274,7 +275,7 @@ def expand_quantities(
     Parameters
     ----------
     equations : Equations
-        The equations of motion, which know mount and gravity.
+        The equations of motion, which contain mount and gravity.
     used : iterable of str
         Names of the quantities: fields of `RootMotion`.
     motion : Motion
@@ -285,7 +286,7 @@ def expand_quantities(
     Returns
     -------
     dict of str to ndarray of complex, shape (S, N, N)
-        Spectra, as `PeriodicSystem` has them.
+        Spectrum of each quantity, as in `PeriodicSystem`.
 
     Raises
     ------
@@ -298,7 +299,8 @@ def expand_quantities(
         carrier = motion.steady_acceleration(omega, angle, road)
         root = equations.root(MotionSample(angle, omega, np.zeros(omega.shape), carrier))
         spectra = {name: _fourier_coefficients(getattr(root, name)) for name in used}
-        high = np.minimum(np.arange(N), N - np.arange(N)) > N // 4  # upper half of what the grid resolves
+        # Upper half of the harmonics that the grid resolves.
+        high = np.minimum(np.arange(N), N - np.arange(N)) > N // 4
         if not any(each[:, high].any() or each[:, :, high].any() for each in spectra.values()):
             return spectra
     raise ValueError(
@@ -308,7 +310,7 @@ def expand_quantities(
 
 
 def name_line(motion: Motion, harmonic: Pair) -> Line:
-    """Line of a harmonic (j, k), with the motion's name for it or else one such as "2 road - rotation"."""
+    """Make the line of a harmonic (j, k), named by the motion, or else like "2 road - rotation"."""
     multiple = abs(harmonic[0] + harmonic[1] * (motion.road_multiple or 0.0))
     for line in motion.lines:
         if abs(line.multiple - multiple) <= 1e-12 * (1 + multiple):
@@ -323,7 +325,7 @@ def name_line(motion: Motion, harmonic: Pair) -> Line:
 def excitation_lines(
     system: PeriodicSystem, motion: Motion | None, order: int
 ) -> tuple[list[Line], list[Line]]:
-    """List the lines of the load and of the stiffness, up to an order.
+    """List the excitation lines of the periodic load and of the periodic stiffness, up to an order.
 
     Parameters
     ----------
@@ -332,7 +334,7 @@ def excitation_lines(
     motion : Motion or None
         The motion, which names the lines.
     order : int
-        1: lines of the load and of the stiffness; n: also those of up to n - 1 interactions.
+        1: lines of the load and of the stiffness; n: also lines of up to n - 1 interactions.
 
     Returns
     -------
@@ -349,7 +351,7 @@ def excitation_lines(
 
 
 def distinct_lines(lines: Iterable[Line]) -> list[Line]:
-    """One line of each frequency, ascending, without the static one."""
+    """Select one line of each frequency, ascending, without the static one."""
     distinct: dict[float, Line] = {}
     for line in lines:
         if line.multiple > 1e-12:

@@ -1,4 +1,4 @@
-"""Resonance speeds: speeds at which a line of the excitation equals a natural frequency."""
+"""Resonance speeds, at which an excitation line equals a natural frequency."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from time import perf_counter
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, positive
 from beamdyn.common.results import statements
 from beamdyn.common.results.result import Provenance
@@ -29,14 +28,16 @@ from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.motion import Line
 from beamdyn.scene.names_elsewhere import WITH_WHEEL
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection
+from beamdyn.scene.validity import check_speeds, refuse_tip_load, warn_of_left_out, warn_of_static_deflection
 from beamdyn.steady.crossings import KINDS, Crossing, Crossings
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
 
-_HIGHEST_ORDER = 20  # highest order that may be asked for: it takes ten seconds
-_NODES = 400  # intervals of speed in which roots are bracketed
-_BENT_NODES = 100  # the same with large deflection: each takes an equilibrium, and the loci are smooth
-_FURTHER_MODES = 2  # modes of other parts that may come below those that are sought
+_HIGHEST_ORDER = 20  # highest order of lines that is accepted: its search takes ten seconds
+_NODES = 400  # number of intervals of speed in which roots are bracketed
+# Number of intervals of speed with large deflection: each speed takes an equilibrium, and the loci are
+# smooth.
+_BENT_NODES = 100
+_FURTHER_MODES = 2  # modes computed beyond those sought, as modes of other uncoupled parts may be lower
 
 
 @statements.announced
@@ -48,7 +49,7 @@ def resonance_speeds(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> Crossings:
-    """Find the speeds at which lines of the excitation equal natural frequencies.
+    """Find the speeds at which excitation lines equal natural frequencies.
 
     The roots of lambda_i(omega) - multiple omega, and of lambda_i + lambda_j - multiple omega, are
     bracketed on the continuous loci and refined to rounding error; minima of the distance between the
@@ -97,6 +98,7 @@ def resonance_speeds(
     """
     start = perf_counter()
     check_scene(scene)
+    refuse_tip_load(scene)
     top = positive("top_speed", top_speed, "rad/s")
     check_speeds(top, "top_speed")
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
@@ -133,18 +135,19 @@ def resonance_speeds(
             *_warnings(model, discretization, (forced, parametric), crossings, order, top, critical),
             *warn_of_missed_tolerance(max((c.error for c in crossings), default=0.0), tolerance or np.inf),
         ),
-        provenance=Provenance(__version__, *names, perf_counter() - start),
+        provenance=Provenance.since(start, *names),
         scene=scene,
     )
 
 
 def _check_stiffness(scene: Scene, critical: float) -> None:
-    """Refuse a beam that the slightest rotation turns over about its root."""
+    """Refuse a beam that turns over about its root under the slightest rotation."""
     if critical > 0:
         return
     in_plane = np.abs([np.cos(scene.mount.bending_angle), np.sin(scene.mount.bending_angle)])
     names = ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]
-    spring, _, name = min(zip(scene.mount.root_stiffnesses, -in_plane, names, strict=False))  # the softest
+    # The softest spring.
+    spring, _, name = min(zip(scene.mount.root_stiffnesses, -in_plane, names, strict=False))
     bound, remedy = (
         ("the discretization does not resolve so soft a spring", 'give a stiffer one, or "ritz"')
         if spring
@@ -158,14 +161,14 @@ def _check_stiffness(scene: Scene, critical: float) -> None:
 
 @dataclass(frozen=True)
 class _UncoupledModes:
-    """Modes that no term couples with others, and the lines of their loads and of their stiffness.
+    """Modes that no term couples with others, with the lines of their loads and of their stiffness.
 
     Parameters
     ----------
     loci : _Loci
         Natural frequencies over speed.
     lines, more_lines : pair of list of Line
-        Lines up to the order that is sought, and up to the next.
+        Lines of the load (forced) and of the stiffness (parametric), up to the requested order and the next.
     """
 
     loci: _Loci
@@ -173,11 +176,11 @@ class _UncoupledModes:
     more_lines: tuple[list[Line], list[Line]]
 
     def resonances(self, order: int) -> dict[tuple[str, Line, tuple[int, ...]], None]:
-        """Kinds, lines and indices of the modes of the resonances: a set that keeps their order."""
+        """List kind, line and mode indices of each resonance up to an order, without repeats."""
         return dict.fromkeys(_list_resonances(*self.lines, self.loci.modes, order))
 
     def count_further(self, order: int, kind: str) -> int:
-        """Count the crossings of the next order, of one kind."""
+        """Count the crossings, "forced" or "parametric", that the next order of lines would add."""
         sought, more = self.resonances(order), _list_resonances(*self.more_lines, self.loci.modes, order + 1)
         further = (each for each in more if each not in sought and each[0] == kind)
         return sum(self.loci.count_crossings(*each[1:]) for each in further)
@@ -186,7 +189,7 @@ class _UncoupledModes:
 def _list_resonances(
     forced: list[Line], parametric: list[Line], modes: int, order: int
 ) -> list[tuple[str, Line, tuple[int, ...]]]:
-    """Kinds, lines and indices of the modes of the resonances up to an order."""
+    """List kind, line and mode indices of each resonance up to an order."""
     pairs = [p for p in combinations_with_replacement(range(modes), 2) if order > 1 or p[0] == p[1]]
     by_load = [("forced", line, (i,)) for line in forced for i in range(modes)]
     return [*by_load, *(("parametric", line, pair) for line in parametric for pair in pairs)]
@@ -201,7 +204,7 @@ def _warnings(
     top: float,
     critical: float,
 ) -> Iterator[statements.Statement]:
-    """Yield what limits the search, why it finds nothing, and whether rotation bends the beam too far."""
+    """Yield warnings: limits of the search, why nothing was found, and rotation bending the beam too far."""
     scene = model.scene
     if discretization == "fem" and model.discretization.order is None:
         said = f"finite elements do not resolve the springs at the root: solved with {model.discretization}"
@@ -228,7 +231,7 @@ def _warnings(
 
 
 def _split(model: Model, top: float, modes: int) -> Iterator[_Loci]:
-    """Yield the loci of the lowest modes at rest, apart for each part that no term couples."""
+    """Yield the loci of the lowest modes at rest, separately for each uncoupled part."""
     solver = model.solver
     uncoupled = isinstance(solver, UncoupledSolver)
     parts = (
@@ -244,14 +247,14 @@ def _split(model: Model, top: float, modes: int) -> Iterator[_Loci]:
 
 
 class _Loci:
-    """Natural frequencies over speed, in ascending order: continuous, with kinks where they cross.
+    """Natural frequencies over speed in ascending order, which have kinks where they cross.
 
     Parameters
     ----------
     model : Model
         The discretized scene.
     solver : Eigensolver
-        Eigensolver of the modes that are sought, which others do not affect.
+        Eigensolver of the modes that are sought, which other modes do not affect.
     places : ndarray of int
         Coordinates of the solver in the model.
     numbers : ndarray of int, shape (m,)
@@ -273,15 +276,15 @@ class _Loci:
 
     @property
     def tracked(self) -> np.ndarray:
-        """Angular frequencies [rad/s], each followed through crossings: shape (S, m)."""
+        """Angular frequencies [rad/s] of modes followed through crossings, shape (S, m)."""
         return np.take_along_axis(self.values, self.order, axis=1)
 
     def frequencies(self, speeds: np.ndarray) -> np.ndarray:
-        """Angular frequencies [rad/s], ascending: shape (S, m)."""
+        """Compute angular frequencies [rad/s] at speeds (S,), ascending: shape (S, m)."""
         return np.abs(np.imag(self.solver.eigenvalues(speeds, self.modes)))
 
     def crossings(self, kind: str, line: Line, indices: tuple[int, ...]) -> Iterator[Crossing]:
-        """Find the crossings of a line with a natural frequency, or with the sum of two, given by indices."""
+        """Yield the crossings of a line with a natural frequency, or the sum of two, of given indices."""
         if self.coincide(line, indices):
             return
 
@@ -292,28 +295,28 @@ class _Loci:
             yield self._crossing(kind, line, indices, speed, slope)
 
     def count_crossings(self, line: Line, indices: tuple[int, ...]) -> int:
-        """Count the crossings of a line by the changes of sign over the speeds of the locus."""
+        """Count the crossings of a line by sign changes over the speeds of the locus."""
         if self.coincide(line, indices):
             return 0
         return int(np.count_nonzero(np.diff(self._detunings(line, indices) > 0)))
 
     def coincide(self, line: Line, indices: tuple[int, ...]) -> bool:
-        """Whether a line equals a natural frequency, or the sum of two, at every speed: a hinged beam's."""
+        """Whether a line equals a natural frequency, or the sum of two, at every speed, as at a hinge."""
         return coincides(self._detunings(line, indices), self.values[:, indices].sum(axis=1))
 
     def describe_coincidence(self, kind: str, line: Line, indices: tuple[int, ...]) -> str:
-        """A sentence on a line that equals a natural frequency at every speed."""
+        """Describe in a sentence that a line equals a natural frequency at every speed."""
         modes = " and ".join(f"mode {number}" for number in sorted({int(self.numbers[i]) for i in indices}))
         return f"{modes} and the line {line.name} ({kind}) resonate at every speed, which is no crossing"
 
     def _detunings(self, line: Line, indices: tuple[int, ...]) -> np.ndarray:
-        """Distance of a frequency, or of the sum of two, from a line [rad/s], at the speeds of the locus."""
+        """Compute a frequency, or the sum of two, minus a line [rad/s], at the speeds of the locus."""
         return self.values[:, indices].sum(axis=1) - line.multiple * self.speeds
 
     def _crossing(
         self, kind: str, line: Line, indices: tuple[int, ...], speed: float, slope: float
     ) -> Crossing:
-        """Crossing at a root `speed`; the detuning's slope turns errors of frequency into speed."""
+        """Build the crossing at a root `speed`; the detuning's slope converts frequency to speed errors."""
         omega = self.frequencies(np.array([speed]))[0]
         vectors = self.solver.solve(np.array([speed]), self.modes).vector[0]
         embedded = np.zeros((self.model.solver.size, self.modes), dtype=vectors.dtype)
@@ -338,7 +341,7 @@ class _Loci:
         )
 
     def _error(self, speed: float, omega: np.ndarray) -> np.ndarray:
-        """Estimated errors of angular frequencies at a speed [rad/s], by the modes of the whole beam."""
+        """Estimate the errors of angular frequencies at a speed [rad/s] from the modes of the whole beam."""
         size = self.model.solver.size
         further = 0 if len(self.places) == size else _FURTHER_MODES
         most = min(int(self.numbers[-1]) + further, size)

@@ -6,15 +6,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.accuracy.refinement import refine
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.inputs.checks import ascending, count, positive
 from beamdyn.common.plots.plots import plot_response
-from beamdyn.common.results.one_line import error_at_most, states, warned
+from beamdyn.common.results.one_line import counted, error_at_most, states, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.results.result import Provenance, plain
 from beamdyn.common.results.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement, announced
@@ -42,14 +43,13 @@ from beamdyn.steady.vibration import (
     vibration_of,
 )
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_MOST_HARMONICS = 20  # most interactions that may be asked for: they take half a minute
-_HIGHEST_SPEED = 0.99  # highest speed of the modal basis, over the critical speed
-_MOST_MODES = 13  # modes of "auto", at each of two speeds
-_FIRST_ABOUT_EQUILIBRIA = 6  # modes of the first basis: each costs the equilibria anew
-_MOST_JUDGED = 4  # speeds of the model error, beside that of the largest amplitude
+_MOST_HARMONICS = 20  # largest number of interactions accepted, which takes half a minute
+_HIGHEST_SPEED = 0.99  # ratio of the modal basis' highest speed to the critical speed
+_MOST_MODES = 13  # largest number of modes of "auto", at each of two speeds
+# Number of modes of the first basis about equilibria, as each basis solves the equilibria anew.
+_FIRST_ABOUT_EQUILIBRIA = 6
+# Number of speeds at which the model error is computed, in addition to that of the largest amplitude.
+_MOST_JUDGED = 4
 _LINEAR = "vibration about the equilibrium being linear"
 
 
@@ -58,17 +58,17 @@ class SteadyResponse(StatesModelError):
     """Steady response over speed, after the free vibration from the start has decayed.
 
     `model_error` (k,) and `left_out`, computed when asked for, are what the physics left out would change in
-    the amplitude at the `left_out_speeds` (k,); `left_out_at` says it of any.
+    the amplitude at the `left_out_speeds` (k,), or by `left_out_at` at others.
 
     Parameters
     ----------
     speeds : ndarray, shape (S,)
         Speeds [rad/s].
     amplitude : ndarray, shape (S,)
-        Largest magnitude of the tip deflection over both phases [m], that of the vector where the beam bends
+        Largest magnitude of the tip deflection over both phases [m], of the vector where the beam bends
         in two directions; nan where there is no steady response.
     bound : ndarray, shape (S,)
-        Sum of the amplitudes of all lines, the static one included [m]; a line's is the longer semi-axis of
+        Sum of the amplitudes of all lines, including the static one [m]; a line's is the longer semi-axis of
         the ellipse that the tip describes.
     stable : ndarray of bool, shape (S,)
         Whether free vibration decays, or without damping stays bounded.
@@ -79,19 +79,19 @@ class SteadyResponse(StatesModelError):
         Largest growth rate of free vibration [1/s]; nan where the beam turns freely about its root, or has
         no equilibrium.
     growth_rate_error : ndarray, shape (S,)
-        Estimated error [1/s]: for resonant modes by the harmonics left out and between the phases tried; for
+        Error of the growth rate [1/s]: for resonant modes by harmonics left out and phases not tried; for
         others the second-order shift by the periodic coefficients.
     error : ndarray, shape (S,)
         Estimated truncation error of the harmonics, relative to the bound.
     lines : tuple of Line, length l
-        The lines of the response.
+        Lines (frequencies) of the response, named by what excites them.
     line_frequency : ndarray, shape (S, l)
         Frequencies of the lines [Hz].
     line_amplitude, line_amplitude_across : ndarray of complex, shape (S, l)
         Complex tip deflection a of each line [m] in the direction of bending at the root and across it, 0
         there where one plane is modelled: the tip's is the sum of Re(a exp(i (j theta + k chi))).
     harmonics : ndarray of int, shape (l, 2)
-        j and k of each line.
+        Harmonic (j, k) of each line.
     warnings : tuple of str
         Limitations of the result.
     provenance : Provenance
@@ -125,29 +125,27 @@ class SteadyResponse(StatesModelError):
     harmonics: np.ndarray
     warnings: tuple[str, ...]
     provenance: Provenance
-    vibration: np.ndarray = field(repr=False)  # largest size [m] of what is not static, (S,)
+    # Largest size [m] of the vibration without the static part, (S,).
+    vibration: np.ndarray = field(repr=False)
     request: ResponseRequest = field(repr=False)
 
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """Speeds, largest amplitude and error in one line; see `Result.headline`."""
+        """Yield speeds, largest amplitude and error for a one-line summary; see `Result.headline`."""
         largest = self.say_length(np.nanmax(self.amplitude, initial=0.0))
         yield f"{len(self.speeds)} speeds, {self.say_speed(self.speeds)}: up to {largest}"
-        yield from (
-            f"harmonics' {error_at_most(self.error)}",
-            states(self.status, ("stable",)),
-            warned(self.warnings),
-        )
+        yield f"harmonics' {error_at_most(self.error)}"
+        yield from (states(self.status, ("stable",)), warned(self.warnings))
 
     @property
     def scene(self) -> Scene:
-        """Scene."""
+        """Scene of the response."""
         return self.request.scene
 
     @property
     def is_warned(self) -> np.ndarray:
-        """Whether a warning holds at each speed, (S,)."""
+        """Whether a warning applies at each speed, shape (S,)."""
         undecided = (np.abs(self.growth_rate) < self.growth_rate_error) & np.isin(
             self.status, ("stable", UNSTABLE)
         )
@@ -165,7 +163,7 @@ class SteadyResponse(StatesModelError):
     def mode_error(self) -> np.ndarray:
         """Estimated modal truncation error, relative to the bound, (S,): twice the distance from `refined`.
 
-        Infinite where only one of the two has a steady response, or if there is no larger model.
+        The error is inf where only one of the two has a steady response, or if there is no larger model.
         """
         if self.refined is None:
             return np.full(len(self.speeds), np.inf)
@@ -177,52 +175,52 @@ class SteadyResponse(StatesModelError):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, its errors included."""
+        """Convert the result to numbers, lists and strings, including its errors."""
         more = {"mode_error": plain(self.mode_error), "left_out_speeds": self.left_out_speeds.tolist()}
         return {**super().to_dict(), **more}
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the amplitude by effects left out, at the `left_out_speeds` (k,)."""
+        """Changes of the amplitude at the `left_out_speeds` (k,) by effects left out of the model."""
         return self.left_out_at(self.left_out_speeds)
 
     @property
     def left_out_speeds(self) -> np.ndarray:
-        """Speeds at which the model error is computed: that of the largest amplitude, and a few more."""
+        """Speeds [rad/s] at which the model error is computed: of the largest amplitude, and others."""
         known = np.flatnonzero(np.isfinite(self.amplitude))
         if not len(known):
             return np.empty(0)
-        spread = np.linspace(0, len(known) - 1, min(len(known), _MOST_JUDGED)).round().astype(int)
+        spread = evenly_spread(len(known), _MOST_JUDGED)
         return self.speeds[np.union1d(known[spread], known[np.argmax(self.amplitude[known])])]
 
     def left_out_at(self, speeds: Sequence[float] | np.ndarray) -> LeftOutEffects:
-        """Changes of the amplitude by effects left out, at speeds [rad/s] (k,)."""
+        """Find changes of the amplitude at speeds [rad/s] (k,) by effects left out of the model."""
         if not len(speeds):
             return nothing_known(self.scene)
         request = replace(self.request, speeds=np.asarray(speeds, dtype=float))
         return left_out_by_solving(self.scene, request.solve_with)
 
     def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0, direction: int = 0) -> np.ndarray:
-        """Tip deflection [m] at the phases theta and chi [rad] of shape (...): shape (S, ...).
+        """Compute the tip deflection [m] at phases of rotation and road [rad] of shape (...): (S, ...).
 
-        The direction is 0 for that of the bending angle at the root, 1 for that across.
+        Direction 0 is that of the bending angle at the root, 1 the one across.
         """
         rotation, road = np.broadcast_arrays(rotation, road)
         phase = np.tensordot(self.harmonics, np.stack([rotation, road]), axes=1)
         return np.real(np.tensordot(self._lines(direction), np.exp(1j * phase), axes=1))
 
     def largest_tip(self, direction: int = 0) -> np.ndarray:
-        """Largest |tip deflection| in a direction over both phases [m], (S,); the direction as for `tip`."""
+        """Compute the largest |tip deflection| in a direction (see `tip`) over both phases [m]: (S,)."""
         size, lines = np.full(len(self.speeds), np.nan), self._lines(direction)
         size[self.stable] = largest_over_phases(lines[self.stable, None], self.harmonics)
         return size
 
     def _lines(self, direction: int) -> np.ndarray:
-        """Amplitudes of the lines (S, l) in a direction."""
+        """Return the complex amplitudes of the lines (S, l) in a direction."""
         return self.line_amplitude_across if check_direction(direction) else self.line_amplitude
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the resonance curve, and where the beam bends in two directions also that in each."""
+        """Draw the resonance curve and, if the beam bends in two directions, the curve in each of them."""
         names = modelled_directions(self.scene) if self.scene.physics.planes == 2 else ()
         by_direction = {name: self.largest_tip(direction) for direction, name in enumerate(names)}
         return plot_response(self.speeds, self.amplitude, self.bound, ax, by_direction, self.display_units)
@@ -260,7 +258,7 @@ def steady_response(
         load, 1 also those that their product with the stiffness adds, and so on.  If not given, as many
         as the tolerance needs, up to 5.
     tolerance : float
-        Truncation error of the harmonics aimed at, and with ``modes="auto"`` also the modal
+        Target of the truncation error of the harmonics, and with ``modes="auto"`` also the modal
         truncation error, each relative to the bound.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
@@ -288,6 +286,7 @@ def steady_response(
     0.26188
     """
     check_scene(scene)
+    validity.refuse_tip_load(scene)
     speeds = ascending("speeds", speeds)
     validity.check_speeds(speeds)
     basis = given_basis(modes)
@@ -301,7 +300,7 @@ def steady_response(
 
 @dataclass(frozen=True)
 class ResponseRequest(FieldsOnly):
-    """Checked arguments of `steady_response`, with the modal basis in place of the number of modes."""
+    """Checked arguments of `steady_response`, with a modal basis instead of the number of modes."""
 
     scene: Scene
     speeds: np.ndarray
@@ -311,7 +310,7 @@ class ResponseRequest(FieldsOnly):
     discretization: DiscretizationChoice
 
     def run(self) -> SteadyResponse:
-        """Solve with the modal basis of the request."""
+        """Solve for the steady response with the modal basis of the request."""
         start = perf_counter()
         scene, speeds, motion = self.scene, self.speeds, check_steady_state(self.scene.motion)
         vibration = vibration_of(self.model, self.basis, motion, speeds)
@@ -341,13 +340,13 @@ class ResponseRequest(FieldsOnly):
             line_amplitude_across=line[:, 1:].sum(axis=1),
             harmonics=harmonic,
             warnings=tuple(_warnings(self, status, vibrated, error * share, undecided)),
-            provenance=Provenance(__version__, method, estimated, perf_counter() - start),
+            provenance=Provenance.since(start, method, estimated),
             vibration=vibrated,
             request=self,
         )
 
     def solve_with(self, scene: Scene, _: str = "") -> SolvedValues:
-        """Amplitudes of another scene with as many modes, or more if only one has large deflection."""
+        """Solve amplitudes of another scene with as many modes, or more if only one has large deflection."""
         modes = self.basis.modes or 1
         other = replace(self, scene=scene, discretization=ensure_size(scene, self.discretization, modes))
         if scene.physics.large_deflection != self.scene.physics.large_deflection:
@@ -376,7 +375,7 @@ class ResponseRequest(FieldsOnly):
         return refine(first, finer, lambda found: not (found.mode_error > self.tolerance).any())
 
     def smallest_basis(self) -> ModalBasis:
-        """Modes at the slowest and the fastest speed; about equilibria, those at each speed are taken."""
+        """Choose modes at the slowest and fastest speed; about equilibria, modes at each speed."""
         if self.scene.physics.large_deflection:
             return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
         speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)
@@ -384,12 +383,12 @@ class ResponseRequest(FieldsOnly):
 
     @cached_property
     def model(self) -> Model:
-        """The discretized scene, chosen for the number of modes and the speeds."""
+        """Discretized scene, chosen for the number of modes and the speeds."""
         return choose_vibrating(self.scene, self.discretization, self.speeds, self.basis.modes or 1)
 
 
 def _largest(line: np.ndarray, harmonics: np.ndarray, stable: np.ndarray) -> np.ndarray:
-    """Largest size over the phases of a sum of lines (S, d, l); nan where there is no response."""
+    """Compute the largest size over the phases of a sum of lines (S, d, l); nan without a response."""
     size = np.full(len(line), np.nan)
     size[stable] = largest_over_phases(line[stable], harmonics)
     return size
@@ -402,14 +401,16 @@ def _warnings(
     error: np.ndarray,
     undecided: np.ndarray,
 ) -> Iterator[Statement]:
-    """Yield what limits the response, by speeds (S,)."""
+    """Yield warnings about the response, from its status, vibration and errors at speeds (S,)."""
     scene, speeds, tolerance = request.scene, request.speeds, request.tolerance
     yield from validity.warn_of_left_out(scene)
     yield from warn_of_peak(scene, float(np.nanmax(vibration, initial=0.0)))
     for name in (UNSTABLE, *WITHOUT_STABLE_MEAN):
         if (at := status == name).any():
             where = validity.list_speeds(speeds, at)
-            yield Statement(f"{name} at {at.sum()} speed(s), ", where, ": no steady response", kind=GROWING)
+            yield Statement(
+                f"{name} at {counted(int(at.sum()), 'speed')}, ", where, ": no steady response", kind=GROWING
+            )
     if (at := vibration == 0).any():
         remedy = "that takes gravity, or a wavy road and a speed other than 0"
         said = (

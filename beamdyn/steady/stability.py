@@ -1,4 +1,4 @@
-"""Stability of free motion about the steady response: Hill's method in two phases.
+"""Stability of free motion about the steady response, by Hill's method in two phases.
 
 A free motion is exp(s t) times a function of the phases.  Where the ratio of the rates is irrational there
 is no period and no monodromy matrix, but the exponents s are still eigenvalues of the operator of harmonic
@@ -30,26 +30,28 @@ from beamdyn.common.inputs.checks import NoModelAnswer
 from beamdyn.steady.harmonic_balance import convolution_matrix
 from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, generate_harmonics
 
-_TONGUE_ORDER = 2  # largest number of interactions with the periodic coefficients by which two modes resonate
-_ROUNDING = 1e-9  # real part, over the largest eigenvalue, that is rounding error
-_SETTLED = 1e-6  # change of the growth rate by one more interaction, over the rate
-_MOST_INTERACTIONS = 4  # beyond the resonant harmonics
-_MOST_OUTSIDE = 0.1  # share of an eigenvector in the outermost harmonics
-_SAME_RATE = 0.05  # difference between copies of one growth rate, over what the resonance adds to it
-_NEAREST = 8  # eigenvalues that are followed from one number of interactions to the next
-_OFF = 1e-4  # distance from the eigenvalue, at which the matrix is singular, over the largest
+# Largest number of interactions with the periodic coefficients through which two modes resonate.
+_TONGUE_ORDER = 2
+_ROUNDING = 1e-9  # ratio of real part to largest eigenvalue that is rounding error
+# Relative change of the growth rate by one more interaction, below which the rate has settled.
+_SETTLED = 1e-6
+_MOST_INTERACTIONS = 4  # largest number of interactions beyond the resonant harmonics
+_MOST_OUTSIDE = 0.1  # largest fraction of an eigenvector in the outermost harmonics
+_SAME_RATE = 0.05  # difference between copies of one growth rate, over the contribution of the resonance
+_NEAREST = 8  # number of eigenvalues followed from one number of interactions to the next
+_OFF = 1e-4  # relative offset of the shift from an eigenvalue, at which the shifted matrix would be singular
 _SINGULAR = (
     "the equations with periodic coefficients are singular: the excitation is too strong beside "
     "the beam's stiffness; check the size and the unit of each value"
 )
-_STATIONARY = 1e-9  # rate of a stationary harmonic, over those of the phases
-_MOST_STEPS = 6  # interactions by which a stationary harmonic is sought
-_PHASES = 8  # between commensurate rates, of which the fastest growth is taken
-_BETWEEN_PHASES = 0.1  # error of the growth rate between two of them, over its range over all
+_STATIONARY = 1e-9  # rate of a stationary harmonic, relative to the rates of the phases
+_MOST_STEPS = 6  # number of interactions within which a stationary harmonic is sought
+_PHASES = 8  # number of phases between commensurate rates, whose fastest growth is used
+_BETWEEN_PHASES = 0.1  # error of the growth rate between the phases, over the range of its values
 
 
 def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
-    """Largest rate of growth of a free motion, 0 or less where it is stable, and its error [1/s].
+    """Compute the largest growth rate of a free motion, 0 or less where it is stable, and its error [1/s].
 
     Instability tongues of up to two interactions are detected.  Those of higher order, which exist without
     damping near every rational combination of the rates, are narrower, and the slightest damping closes them.
@@ -79,7 +81,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     error[singular] = np.inf
     rows = np.flatnonzero(~singular)
     if len(rows):
-        R, n = R[rows], system.size  # columns of equal action make |V| symmetric
+        R, n = R[rows], system.size  # modal scales of equal action, which make |V| symmetric
         R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma[rows])))[:, None, :]
         V = _balance(sigma[rows], [(f[rows], np.linalg.solve(R, B[rows] @ R)) for f, B in periodic])
         free = _MeanMotion(system.rates[rows], system.coupling, sigma[rows], V)
@@ -92,7 +94,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
 
 
 def fastest_growth(parts: Sequence[PeriodicSystem]) -> tuple[np.ndarray, np.ndarray]:
-    """Growth rate (S,) of a free motion of parts that no term couples, and its error [1/s]."""
+    """Compute the growth rate (S,) of a free motion of uncoupled parts, and its error [1/s]."""
     rates, errors = np.swapaxes([growth_rate(part) for part in parts], 0, 1)
     largest = rates.max(axis=0)
     above, below = errors + (rates - largest), errors + (largest - rates)
@@ -100,7 +102,7 @@ def fastest_growth(parts: Sequence[PeriodicSystem]) -> tuple[np.ndarray, np.ndar
 
 
 def _combine(sigma: np.ndarray, shift: np.ndarray, resonances: list[_Resonance]) -> tuple[float, float]:
-    """Growth rate and error: the largest of the resonances and of the modes that do not resonate."""
+    """Return the largest growth rate of the resonances and of the modes outside them, and its error."""
     scale, resonant = np.abs(sigma).max(), {resonance.mode for resonance in resonances}
     alone = [a for a in range(len(sigma)) if np.imag(sigma[a]) >= 0 and a not in resonant]
     found = [resonance.growth_rate(scale) for resonance in resonances]
@@ -111,21 +113,24 @@ def _combine(sigma: np.ndarray, shift: np.ndarray, resonances: list[_Resonance])
 
 
 def _largest_real_part(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
-    """Largest real part, 0 where it is only rounding error."""
+    """Return the largest real part of exponents s (..., m), or 0 where it is only rounding error."""
     largest = np.real(s).max(axis=-1)
     return np.where(np.abs(largest) <= _ROUNDING * scale, 0.0, largest)
 
 
-# The equations in the modes of the mean equations ---------------------------------------------------
+# First-order equations in the modes of the mean equations --------------------------------------------
 
 
 def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]:
-    """Matrices of y' = (A + sum_h c_h B e^(ih.phi)) y for y = (w q, q'); w [rad/s] balances the scales."""
+    """Build the first-order equations of free motion: a constant matrix, and one by harmonic.
+
+    y' = (A + sum_h c_h B e^(i h.phi)) y for y = (w q, q'), with w [rad/s] so that both parts have one size.
+    """
     K, C, M = system.mean
     S, n = len(K), system.size
     K, C = np.linalg.solve(M, K), np.linalg.solve(M, C)
     w = np.sqrt(np.abs(K).max(axis=(1, 2)))[:, None, None]
-    w = np.where(w == 0, 1.0, w)  # a circuit that nothing couples has no stiffness
+    w = np.where(w == 0, 1.0, w)  # the coordinate of an uncoupled circuit has no stiffness
     A = np.zeros((S, 2 * n, 2 * n))
     A[:, :n, n:], A[:, n:, :n], A[:, n:, n:] = w * np.eye(n), -K / w, -C
     periodic = []
@@ -133,7 +138,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
         B = np.zeros_like(A)
         B[:, n:, n * order : n * order + n] = -np.linalg.solve(M, matrix) / (1 if order else w)
         periodic.append((spectrum, B))
-    # A coordinate that moves without stiffness, as the flux of a circuit, is no state: its rate alone is.
+    # A coordinate without stiffness, as the flux of a circuit, is not a state: only its rate is.
     states = np.append(~system.without_stiffness, np.ones(n, dtype=bool))
     if states.all():
         return A, periodic
@@ -141,7 +146,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
 
 
 def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues (S, 2 n) and vectors (S, 2 n, 2 n) of A; without damping by those of the stiffness."""
+    """Compute eigenvalues (S, 2 n) and vectors (S, 2 n, 2 n) of A; without damping from the stiffness."""
     if system.mean[1].any():
         return np.linalg.eig(A)
     modes, n = MeanModes.of_system(system), system.size
@@ -154,9 +159,9 @@ def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.n
 def _balance(
     sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Scale the modes that decay without oscillation to act on others as much as these act on them.
+    """Scale non-oscillating decaying modes so that they act on others as much as others on them.
 
-    By the scale of those that oscillate, the slow decay of a circuit with a large resistance would act on all
+    With the scale of oscillating modes, the slow decay of a circuit with a large resistance would act on all
     others by discs that grow with that resistance.
     """
     parts = (np.abs(f).sum(axis=(1, 2))[:, None, None] * np.abs(v) for f, v in V)
@@ -167,12 +172,12 @@ def _balance(
     return [(f, v * d[:, None, :] / d[:, :, None]) for f, v in V]
 
 
-# Which modes and harmonics resonate -----------------------------------------------------------------
+# Resonant modes and harmonics ------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class _MeanMotion:
-    """Free motion at S pairs of rates (S, 2), in the modes of the mean equations.
+    """Free motion at S pairs of rates, in the modes of the mean equations.
 
     Parameters
     ----------
@@ -192,7 +197,7 @@ class _MeanMotion:
     V: list[tuple[np.ndarray, np.ndarray]]
 
     def __getitem__(self, chosen: np.ndarray) -> _MeanMotion:
-        """Free motion at the chosen pairs of rates."""
+        """Select the free motion at the chosen pairs of rates."""
         V = [(spectrum[chosen], v[chosen]) for spectrum, v in self.V]
         return _MeanMotion(self.rates[chosen], self.coupling, self.sigma[chosen], V)
 
@@ -203,34 +208,35 @@ class _MeanMotion:
         return reduce(np.add, parts)
 
     def gap(self, harmonics: list[Pair]) -> np.ndarray:
-        """Distance of sigma_a from sigma_b - i Omega_h, shape (S, m, m, H)."""
+        """Compute eigenvalue a minus b, plus i times the rate of harmonic h [1/s]: (S, m, m, H)."""
         omega = self.rates @ np.array(harmonics).T
         difference = self.sigma[:, :, None] - self.sigma[:, None, :]
         return difference[..., None] + 1j * omega[:, None, None, :]
 
     def second_order_shift(self) -> np.ndarray:
-        """Shift (S, m) of each eigenvalue by the periodic coefficients in second order, within its disc."""
+        """Compute second-order shifts (S, m) of eigenvalues by the periodic coefficients."""
         harmonics = sorted(self.coupling)
         h, coupling = np.array(harmonics), self._couple(harmonics)
         opposite = (h[:, None] == -h[None]).all(axis=2).argmax(axis=1)
         product = np.abs(coupling[..., opposite] * np.swapaxes(coupling, 1, 2))
         own = np.arange(product.shape[1])
-        product[:, own, own] = 0  # h and -h, of opposite gaps, cancel: a frequency that varies shifts no rate
+        # H and -h, of opposite gaps, cancel: a varying frequency does not shift the growth rate.
+        product[:, own, own] = 0
         with np.errstate(divide="ignore", invalid="ignore"):
             shift = np.where(product > 0, product / np.abs(self.gap(harmonics)), 0.0).sum(axis=(2, 3))
         return np.minimum(shift, self.radius)
 
     def _couple(self, harmonics: list[Pair]) -> np.ndarray:
-        """Periodic coefficients between the modes, in some harmonics: shape (S, m, m, H)."""
+        """Compute the periodic coefficients between modes in given harmonics: shape (S, m, m, H)."""
         spectra = (convolution_matrix(f, [(0, 0), *harmonics])[:, 1:, 0] for f, _ in self.V)
         parts = (f[:, None, None] * v[..., None] for f, (_, v) in zip(spectra, self.V, strict=True))
         return reduce(np.add, parts)
 
     def shrunk_radius(self, harmonics: list[Pair]) -> np.ndarray:
-        """Radius (S, m) of smaller discs, if discs are far from each other or close together.
+        """Compute the radii (S, m) of discs made smaller where others are far away.
 
-        Scaling the coordinates of all that are far away by t < 1 leaves of a row what couples it with those
-        close by, and t times the rest; discs of those far away grow by 1/t, to half their distance.
+        Scaling the coordinates of far discs by t < 1 keeps the terms of a row that couple it with discs
+        close by, and multiplies its rest by t; far discs grow by 1/t, to half their distance.
         """
         radius, distance = self.radius, np.abs(self.gap(harmonics))
         close = 2 * radius.max(axis=1)[:, None, None, None]
@@ -241,14 +247,15 @@ class _MeanMotion:
         return np.where(between[:, None], radius, np.minimum(radius, scaled))
 
     def resonances(self, considered: np.ndarray) -> Iterator[tuple[int, list[_Resonance]]]:
-        """Yield each index at which discs of opposite energy overlap, with the resonances there."""
+        """Yield each index of rates at which discs of opposite energy overlap, with the resonances there."""
         levels = generate_harmonics([(0, 0)], self.coupling, _TONGUE_ORDER)
         harmonics = [h for level in levels for h in level]
         overlap = self._overlap(harmonics, self.radius) & considered[:, None, None, None]
         undamped = np.abs(np.real(self.sigma)).max(axis=1) <= _ROUNDING * np.abs(self.sigma).max(axis=1)
         rows = np.flatnonzero(undamped & overlap.any(axis=(1, 2, 3)))
         overlap[rows] = self[rows]._overlap(harmonics, self[rows].shrunk_radius(harmonics))
-        reached = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)[1:]  # beginning with the fewest
+        # The levels begin with the fewest interactions.
+        reached = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)[1:]
         pairs = np.array([h for level in reached for h in level])
         for i in np.flatnonzero(overlap.any(axis=(1, 2, 3))):
             V, found = [(f[i : i + 1], v[i]) for f, v in self.V], []
@@ -263,14 +270,14 @@ class _MeanMotion:
             yield int(i), found
 
     def _overlap(self, harmonics: list[Pair], radius: np.ndarray) -> np.ndarray:
-        """Whether discs of opposite energy, not all left of the axis, overlap: shape (S, m, m, H)."""
+        """Tell which discs of opposite energy, not all left of the axis, overlap: shape (S, m, m, H)."""
         near = np.abs(self.gap(harmonics)) <= (radius[:, :, None] + radius[:, None, :])[..., None]
         opposite = (np.imag(self.sigma) >= 0)[:, :, None] & (np.imag(self.sigma) <= 0)[:, None, :]
         rightmost = (np.real(self.sigma) + radius).max(axis=1) > 0
         return near & opposite[..., None] & rightmost[:, None, None, None]
 
 
-# Eigenvalues of the modes that resonate -------------------------------------------------------------
+# Eigenvalues of resonant modes -----------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -280,13 +287,13 @@ class _Resonance:
     Parameters
     ----------
     rates, coupling, sigma, V
-        As of `_MeanMotion`, at these rates.
+        As for `_MeanMotion`, at one pair of rates.
     mode : int
         Index of the mode, in the harmonic (0, 0).
     harmonics : set of pair
         Harmonics of the modes whose discs overlap that of the mode, and (0, 0).
     stationary : pair or None
-        A harmonic h with Omega_h = 0, if the rates are commensurate.
+        A harmonic h, not (0, 0), of frequency 0, if the rates are commensurate.
     """
 
     rates: np.ndarray
@@ -298,7 +305,7 @@ class _Resonance:
     stationary: Pair | None
 
     def growth_rate(self, scale: float) -> tuple[float, float]:
-        """Growth rate and its error [1/s], the largest over the phase between commensurate rates.
+        """Compute growth rate and its error [1/s], the largest over the phase between commensurate rates.
 
         `scale` is the largest |eigenvalue| of the mean equations.
         """
@@ -307,7 +314,7 @@ class _Resonance:
         return float(rates.max()), float(errors.max() + _BETWEEN_PHASES * np.ptp(rates))
 
     def _growth_rate_at(self, phase: float, scale: float) -> tuple[float, float]:
-        """Growth rate and its error [1/s], with as many harmonics as it takes to settle."""
+        """Compute growth rate and error [1/s] at a phase, with as many harmonics as settling takes."""
         hill, inner = self._hill_matrix(1, phase)
         s, z = np.linalg.eig(hill.toarray())
         rate, near, error = *self._select(s, z, inner, scale), np.inf
@@ -320,11 +327,11 @@ class _Resonance:
         return rate, error
 
     def _select(self, s: np.ndarray, z: np.ndarray, inner: int, scale: float) -> tuple[float, complex]:
-        """Growth rate from eigenvalues and vectors, and the value near which to seek with more harmonics.
+        """Select the growth rate from eigenvalues and vectors, and the value near which to continue.
 
-        Every exponent s reappears as s + i Omega_h about each harmonic h.  Copies about the outermost
-        harmonics, past the `inner` rows, are wrong, because their neighbours are missing; of the others,
-        that with the smallest share there is the most accurate.
+        Every exponent s recurs as s + i Omega_h about each harmonic h.  Copies about the outermost
+        harmonics, past the `inner` rows, are wrong, because their neighbours are missing.  Of the others,
+        the copy with the smallest part in the outermost harmonics is the most accurate.
         """
         outer = (np.abs(z[inner:]) ** 2).sum(axis=0) / (np.abs(z) ** 2).sum(axis=0)
         s, outer = s[outer < _MOST_OUTSIDE], outer[outer < _MOST_OUTSIDE]
@@ -336,9 +343,10 @@ class _Resonance:
         return float(np.real(best)), complex(best)
 
     def _hill_matrix(self, interactions: int, phase: float) -> tuple[scipy.sparse.csc_array, int]:
-        """Hill's matrix, the operator of harmonic balance in the modes, and its rows before the last level.
+        """Build Hill's matrix for the harmonics within a number of interactions, and count its inner rows.
 
-        Harmonics whose difference is stationary are one, with the phase between the commensurate rates.
+        Inner rows, which come first, are those of the harmonics within one interaction less.  Harmonics that
+        differ by one of frequency 0 (commensurate rates) are merged; `phase` is that harmonic's phase [rad].
         """
         levels = generate_harmonics(self.harmonics, self.coupling, interactions)
         inner = dict.fromkeys(self._fold(h) for level in levels[:-1] for h in level)
@@ -350,7 +358,7 @@ class _Resonance:
         return hill, len(inner) * len(self.sigma)
 
     def _fold(self, h: Pair) -> Pair:
-        """The harmonic that represents all from which h differs by multiples of the stationary one."""
+        """Return the harmonic that stands for all that differ from h by multiples of one of frequency 0."""
         if self.stationary is None:
             return h
         (j, k), (a, b) = h, self.stationary
@@ -358,7 +366,7 @@ class _Resonance:
         return j - turns * a, k - turns * b
 
     def _folded_convolution(self, spectrum: np.ndarray, harmonics: list[Pair], phase: float) -> np.ndarray:
-        """Matrix (H, H) of the product with a spectrum, summed over harmonics that are one."""
+        """Build the matrix (H, H) of the product with a spectrum, summed over merged harmonics."""
         if self.stationary is None:
             return convolution_matrix(spectrum, harmonics)[0]
         most = 1 + (np.ptp(harmonics, axis=0).max() + spectrum.shape[-1] // 2) // max(
@@ -374,12 +382,12 @@ class _Resonance:
 def _nearest_eigenvalues(
     hill: scipy.sparse.csc_array, near: complex, scale: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Eigenvalues and vectors of a sparse matrix nearest to a value."""
+    """Compute the eigenvalues of a sparse matrix nearest to a value, and their vectors."""
     start = np.ones(hill.shape[0], dtype=complex)
     try:
         return eigs(hill, min(_NEAREST, hill.shape[0] - 2), sigma=near + _OFF * scale, v0=start)
     except ArpackError:
         s, z = np.linalg.eig(hill.toarray())
         return s, z
-    except RuntimeError:  # the factorization fails
+    except RuntimeError:  # the factorization failed
         raise NoModelAnswer(_SINGULAR) from None

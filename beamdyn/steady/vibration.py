@@ -1,4 +1,4 @@
-"""Equations of vibration at steady speeds over the phases of the excitation, its lines, and its stability.
+"""Equations of vibration at steady speeds over the phases of the excitation; its lines and stability.
 
 A straight beam has the same equations at all speeds.  With large deflection, the beam vibrates about the
 equilibrium to which rotation bends it: its equations at each speed are linear about the equilibrium there, in
@@ -34,16 +34,17 @@ UNSTABLE = "parametric instability"
 _TURNING, _PAST = "turns freely about the root", "past the critical speed"
 _MISSING, _UNSTABLE_MEAN = "no equilibrium", "unstable equilibrium"
 WITHOUT_STABLE_MEAN = _PAST, _TURNING, _MISSING, _UNSTABLE_MEAN
-_MOST_INTERACTIONS = 5  # interactions with the periodic coefficients, for the response
-_MOST_UNKNOWNS = 2**17  # unknowns that are solved for at once: they fit the processor's cache
-_ACROSS_THEN_ALONG = [1, 2, 0]  # axes of the tip: the direction of bending, that across, along
+_MOST_INTERACTIONS = 5  # largest number of interactions with the periodic coefficients in the response
+_MOST_UNKNOWNS = 2**17  # number of unknowns solved for at once, which fit the processor's cache
+# Order of the tip's axes: the direction of bending, the one across, the one along.
+_ACROSS_THEN_ALONG = [1, 2, 0]
 _ROUNDING = 1e-15  # relative error where no harmonic is neglected
-_NO_FREQUENCY = 1e-8  # frequency, over that of a clamped beam, that rounding makes of 0
+_NO_FREQUENCY = 1e-8  # ratio of a frequency to a clamped beam's that is 0 within rounding
 
 
 @dataclass(frozen=True)
 class Vibration:
-    """Equations of vibration at S speeds.
+    """Equations of vibration of a beam at S speeds.
 
     Parameters
     ----------
@@ -54,9 +55,9 @@ class Vibration:
     static : ndarray, shape (S, d)
         Deflection of the tip in the equilibrium about which the beam vibrates [m].
     without_rate : ndarray of bool, shape (S,)
-        Where no growth rate is defined.
+        Whether the growth rate is undefined at each speed.
     lost : dict of str to ndarray of bool, shape (S,)
-        Where there is no stable mean to vibrate about, by the reason; the first that is true counts.
+        Whether there is no stable mean to vibrate about, for each reason; the first that is true counts.
     """
 
     parts: list[tuple[PeriodicSystem, np.ndarray]]
@@ -66,7 +67,7 @@ class Vibration:
     lost: dict[str, np.ndarray]
 
     def stability(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Growth rates of free motion, their errors, the status, and whether it is undecided: (S,) each."""
+        """Compute growth rates of free motion, errors, status, and whether it is undecided: (S,) each."""
         rate, error = np.full((2, len(self.static)), np.nan)
         if (known := ~self.without_rate).any():
             rate[known], error[known] = fastest_growth([part[known] for part, _ in self.parts])
@@ -76,14 +77,14 @@ class Vibration:
 
 
 def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds: np.ndarray) -> Vibration:
-    """Equations of vibration of a model in a modal basis.
+    """Build the equations of vibration of a model in a modal basis.
 
     Parameters
     ----------
     model : Model
         The discretized scene, of a straight beam or with large deflection.
     basis : ModalBasis
-        The modal basis; about equilibria its number of modes, at each speed.
+        The modal basis; about equilibria, only its number of modes is used, at each speed.
     motion : Motion or None
         The motion; None for rotation about a fixed centre.
     speeds : ndarray, shape (S,)
@@ -98,7 +99,7 @@ def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds:
     equations = model.modal_equations(basis)
     tips = np.broadcast_to(equations.tips, (len(speeds), *equations.tips.shape))
     free = np.zeros(len(speeds), dtype=bool)
-    if shift := model.equations.shift:  # else the stiffness at rest is positive definite
+    if shift := model.equations.shift:  # without a shift the stiffness at rest is positive definite
         lowest = np.abs(Solver(model.equations.steady().undamped()).eigenvalues(speeds, 1)[:, 0])
         free = lowest < _NO_FREQUENCY * np.sqrt(shift)
     return Vibration(
@@ -110,15 +111,15 @@ def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds:
     )
 
 
-# About equilibria ---------------------------------------------------------------------------------
+# Vibration about equilibria -----------------------------------------------------------------------
 
 
 def _about_equilibria(
     model: Model, basis: ModalBasis, motion: Motion | None, speeds: np.ndarray
 ) -> Vibration:
-    """Equations about each equilibrium; where there is none, those of the straight beam hold the place.
+    """Build equations about each equilibrium, or about the straight beam as a placeholder without one.
 
-    The directions of the tip are that of bending, that across, and along the axis of the beam at the root.
+    The directions of the tip are: of bending, across, and along the axis of the beam at the root.
     """
     q, bent = find_equilibria(model, speeds), model.bent
     missing = np.asarray(np.isnan(q).any(axis=1))
@@ -129,7 +130,7 @@ def _about_equilibria(
         equations.append(reduce_to_modes(state.linearized(), replace(basis, speeds=(speed,))))
         tips.append((bent.basis_of(equations[-1]).T @ state.bent.tip_motions[:, _ACROSS_THEN_ALONG]).T)
     parts = split_uncoupled(periodic_system(equations, motion, speeds), equations[0])
-    rate = np.zeros(len(missing))  # without the periodic coefficients
+    rate = np.zeros(len(missing))  # growth rate without the periodic coefficients
     if (known := ~missing).any():
         rate[known] = fastest_growth([replace(part[known], varying=()) for part, _ in parts])[0]
     return Vibration(
@@ -142,7 +143,7 @@ def _about_equilibria(
 
 
 def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
-    """Coordinates (S, n) in equilibrium at each speed; nan where the branch has none.
+    """Find coordinates (S, n) in equilibrium at each speed; nan where the branch has none.
 
     The branch from rest is followed upwards, the other one downwards from the fastest speed that has it: past
     the end of either, there is no more.
@@ -168,7 +169,7 @@ def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
 def choose_vibrating(
     scene: Scene, discretization: DiscretizationChoice, speeds: np.ndarray, modes: int
 ) -> Model:
-    """Choose a model at the speeds at which the beam has an equilibrium: see `choose_model`."""
+    """Choose a model for the speeds at which the beam has an equilibrium: see `choose_model`."""
     try:
         return choose_model(scene, discretization, speeds, modes)
     except NoEquilibrium:
@@ -180,7 +181,7 @@ def choose_vibrating(
     return choose_model(scene, discretization, found, modes) if found.size else rough
 
 
-# Lines of the tip ----------------------------------------------------------------------------------
+# Lines of the tip deflection ------------------------------------------------------------------------
 
 
 def solve_parts(
@@ -189,7 +190,7 @@ def solve_parts(
     interactions: int | None,
     tolerance: float,
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Solve parts of the equations that no term couples, and add up their tip deflections.
+    """Solve uncoupled parts of the equations, and add their tip deflections.
 
     Parameters
     ----------
@@ -200,7 +201,7 @@ def solve_parts(
     interactions : int, optional
         Number of interactions with the periodic coefficients; as many as the tolerance needs if not given.
     tolerance : float
-        Truncation error of the harmonics aimed at, relative to the sum of all lines.
+        Target of the truncation error of the harmonics, relative to the sum of all lines.
 
     Returns
     -------
@@ -220,7 +221,7 @@ def solve_parts(
 def _solve_harmonics(
     system: PeriodicSystem, tips: np.ndarray, interactions: int | None, tolerance: float
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Harmonics (H), tip deflections (S, d, H), errors (S); each speed with the harmonics it needs."""
+    """Compute harmonics, tip deflections (S, d, H) and errors (S), with the harmonics each speed needs."""
     S, d = tips.shape[:2]
     if not system.load_harmonics:
         return [], np.zeros((S, d, 0), dtype=complex), np.full(S, _ROUNDING)
@@ -241,7 +242,7 @@ def _solve_harmonics(
             if used:
                 q = solve_harmonic_balance(system[part], harmonics[kept])
                 finer = np.einsum("shn,sdn->sdh", q, tips[part])
-            if used >= first:  # the level before serves only to estimate the error
+            if used >= first:  # the level before is used only to estimate the error
                 total = sizes_of(finer).sum(axis=1)
                 distance = sizes_of(finer - c[part, :, kept]).sum(axis=1) / np.where(total == 0, 1, total)
                 error[part] = _ROUNDING if exact else distance
@@ -252,7 +253,7 @@ def _solve_harmonics(
 
 
 def sizes_of(c: np.ndarray) -> np.ndarray:
-    """Largest magnitudes (S, H) of vectors Re(c exp(i phi)) over phi, c of shape (S, d, H)."""
+    """Compute the largest magnitudes (S, H) of vectors Re(c exp(i phi)) over phi, c of shape (S, d, H)."""
     return longer_semi_axis(np.moveaxis(c, 1, 0))
 
 
@@ -299,7 +300,7 @@ def add_static(
     -------
     total : ndarray of complex, shape (S, directions, l)
     share : ndarray, shape (S,)
-        Sum of the sizes of all lines before over that after, at most 1: what a relative error shrinks by.
+        Sum of all lines' sizes before over the sum after, at most 1, by which a relative error shrinks.
     """
     total = line[:, :directions].copy()
     total[..., ~harmonics.any(axis=1)] += static[:, :directions, None]

@@ -1,1 +1,1 @@
-"""Answers over all combinations of inputs of a scene: many designs at once."""
+"""Studies: answers of many designs at once, over all combinations of inputs of a scene."""

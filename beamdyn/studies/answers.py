@@ -1,4 +1,4 @@
-"""Answers of many designs as arrays, put together from parts that end in any order."""
+"""Answers of many designs as arrays, put together from parts that are computed in any order."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ REFUSED = "refused"  # status of a design without an answer
 NO_ANSWERS = (
     *(REFUSED, "failed", "not found", "divergence", "flutter"),
     *("parametric instability", "past the critical speed", "turns freely about the root"),
-)  # states of numbers that are no answer
+)  # statuses that mean that there is no answer
 
 
 @dataclass(frozen=True)
 class Caution:
-    """What limits the answers of some designs, said for the worst of them.
+    """A caution about the answers of some designs, worded for the worst of them.
 
     Parameters
     ----------
@@ -28,9 +28,10 @@ class Caution:
     count : int
         Number of designs.
     weight : float
-        How bad the worst is.
+        Size by which the worst of the cautions of one kind is chosen.
     said : str
-        What is said of it, after the number of designs; a statement where programs may ask for its kind.
+        What is said of the worst design, after the number of designs; a statement where programs may ask for
+        its kind.
     """
 
     kind: str
@@ -62,7 +63,7 @@ class DesignAnswers:
     method: str
 
 
-Place = tuple[slice, slice]  # designs and speeds of a part
+Place = tuple[slice, slice]  # rows of designs and columns of speeds that a part fills
 
 
 @dataclass
@@ -88,10 +89,11 @@ class AnswerArrays:
 
     def __post_init__(self) -> None:
         self.value, self.error = np.full(self.shape, np.nan), np.full(self.shape, np.inf)
-        self._codes = np.zeros(self.shape, dtype=np.uint8)  # of states: text takes forty times the memory
+        # Index of each answer's status: the text itself would take forty times the memory.
+        self._codes = np.zeros(self.shape, dtype=np.uint8)
 
     def put(self, place: Place, part: DesignAnswers) -> None:
-        """Take the answers of a part."""
+        """Store the answers of one part at its place in the arrays."""
         self.value[place], self.error[place] = part.value, part.error
         words, codes = np.unique(part.status, return_inverse=True)
         numbers = np.array([self._words.setdefault(word, len(self._words)) for word in words.tolist()])
@@ -100,7 +102,7 @@ class AnswerArrays:
             self._methods.get(part.method, 0) + part.value.shape[0] * part.value.shape[1]
         )
         for caution in part.cautions:
-            # Add up cautions of one kind; keep the worst, and of equal ones the first.
+            # Cautions of one kind are counted together; the worst is kept, and of equally bad ones the first.
             noted = self._cautions.setdefault(caution.kind, [])
             noted.append((place[0].start, place[1].start, caution))
             worst = min(noted, key=lambda each: (-each[2].weight, *each[:2]))
@@ -109,26 +111,29 @@ class AnswerArrays:
 
     @property
     def status(self) -> np.ndarray:
-        """States (N, S, k)."""
+        """Statuses of all answers, as text: shape (N, S, k)."""
         return np.array([*self._words] or [""])[self._codes]
 
     def count(self, word: str) -> int:
-        """Number of answers of a state."""
+        """Return the number of answers that have a given status."""
         return int((self._codes == self._words[word]).sum()) if word in self._words else 0
 
     @property
     def method(self) -> str:
-        """How the answers were found; of several ways that of most of them first."""
+        """The methods by which answers were found, separated by semicolons, the most frequent first."""
         return "; ".join(sorted(self._methods, key=lambda method: (-self._methods[method], method)))
 
     def warnings(self) -> Iterator[str]:
-        """Yield a sentence for each kind of caution: of how many designs it is, and of the worst."""
+        """Yield a sentence for each kind of caution: how many designs it concerns, and the worst of them."""
         total = self.shape[0] * self.shape[1]
         for kind in sorted(self._cautions):
             yield after(f"at {self._counts[kind]} of {total} designs", self._cautions[kind][0][2].said)
 
 
 def caution_where(which: Any, kind: str, size: np.ndarray | float, said: str) -> Iterable[Caution]:
-    """A caution of the designs of a selection (R, S), if there are any; its weight is the largest size."""
+    """Make a caution for the selected designs and speeds (R, S), weighted by the largest size.
+
+    None if none is.
+    """
     if which.any():
         yield Caution(kind, int(which.sum()), float(np.max(np.broadcast_to(size, which.shape)[which])), said)

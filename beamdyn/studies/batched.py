@@ -1,6 +1,7 @@
-"""Similar designs in finer and finer bases, by batched eigenproblems: frequencies and critical speeds.
+"""Frequencies and critical speeds of many similar designs, by batched eigenproblems.
 
-Similar designs solved in finer and finer bases: each in the smallest that a single call would choose.
+Designs are solved together in bases of growing size: each in the smallest basis that a call for that design
+alone would choose.
 """
 
 from __future__ import annotations
@@ -28,13 +29,15 @@ from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, warn_of_stati
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
 from beamdyn.studies.similar import PencilFamily, SimilarDesigns
 
-_WITH_TIP_BODY = 1e-7  # target with a body at the tip: looser bases miss modes in layers
-_ENTRIES = 300_000  # entries of matrices of one size at once, which fit into the processor's cache
+# Target where there is a body at the tip: with a looser one, bases miss modes in layers.
+_WITH_TIP_BODY = 1e-7
+# Most entries of matrices solved in one batch, so that they fit into the processor's cache.
+_ENTRIES = 300_000
 
 
 @dataclass(frozen=True)
 class BasisAnswers:
-    """Answers of R designs in a basis.
+    """Answers of R designs in one basis, and whether they are accurate enough.
 
     Parameters
     ----------
@@ -48,12 +51,13 @@ class BasisAnswers:
     met: np.ndarray
 
 
-Solve = Callable[[np.ndarray, Discretization], BasisAnswers]  # solver of designs (R,) in a basis
+# A function that solves the designs of given rows (R,) in a basis.
+Solve = Callable[[np.ndarray, Discretization], BasisAnswers]
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """The bases in which designs are solved in turn.
+    """The sequence of bases in which designs are solved until they are accurate enough.
 
     Parameters
     ----------
@@ -73,28 +77,28 @@ class Refinement:
     tolerance: float | None
 
     def bases(self) -> Iterator[Discretization]:
-        """Bases to try in turn."""
+        """Return the bases to try, from coarse to fine."""
         cheapest = self.tolerance is not None and self.reference.beam.tip is None
         models = list_models(self.reference, self.discretization, self.modes, self._target, cheapest)
         return (model.discretization for model in models)
 
     @property
     def _target(self) -> float:
-        """Relative error to aim at; with a body at the tip small enough to resolve a layer there."""
+        """Relative error to aim at; with a body at the tip, small enough to resolve a layer there."""
         target = DEFAULT_TARGET if self.tolerance is None else self.tolerance
         return target if self.reference.beam.tip is None else min(target, _WITH_TIP_BODY)
 
     def target_of(self, basis: Discretization) -> float:
-        """Relative error to be met in a basis."""
+        """Return the relative error required in a basis: the target, or rounding if that is larger."""
         return within_reach(basis, self._target)
 
     @property
     def can_be_batched(self) -> bool:
-        """Whether the functions are the same in all designs."""
+        """Whether all designs can be solved in the same basis functions."""
         return self.discretization == "ritz" or isinstance(self.discretization, Ritz)
 
     def solve(self, count: int, speeds: int, solve: Solve) -> tuple[list[np.ndarray], int]:
-        """Solve designs at so many speeds each, in finer and finer bases until all meet the target.
+        """Solve designs at a number of speeds each, in finer and finer bases until all meet the target.
 
         Returns
         -------
@@ -106,7 +110,10 @@ class Refinement:
         bases, answers, functions = self.bases(), list[np.ndarray](), 0
 
         def solve_finer(pending: np.ndarray) -> np.ndarray | None:
-            """Solve designs in the next basis: those whose errors do not meet the target, None at the end."""
+            """Solve the pending designs in the next basis.
+
+            Return those that miss the target, None after the last.
+            """
             nonlocal answers, functions
             if (basis := next(bases, None)) is None:
                 return None
@@ -130,7 +137,10 @@ class Refinement:
 def _solve_or_halve(
     solve: Solve, batch: np.ndarray, basis: Discretization
 ) -> Iterator[tuple[np.ndarray, BasisAnswers]]:
-    """Yield solved designs; those that rounding of so many functions leaves unsolved are left out."""
+    """Yield solved designs.
+
+    Leave out those whose matrices rounding makes singular, found by halving batches.
+    """
     try:
         yield batch, solve(batch, basis)
     except np.linalg.LinAlgError:
@@ -147,12 +157,12 @@ def _size(basis: Discretization) -> int:
 # Natural frequencies ------------------------------------------------------------------------------
 
 
-_LARGE_ERROR = 1e-6  # error of a frequency beyond which it is said to be unresolved
+_LARGE_ERROR = 1e-6  # estimated relative error above which a warning says that a frequency is not resolved
 
 
 @dataclass(frozen=True)
 class SolvedDesigns:
-    """Frequencies of R designs at S speeds each.
+    """Frequencies of R designs at S speeds each, with their errors.
 
     Parameters
     ----------
@@ -175,7 +185,7 @@ class SolvedDesigns:
 def solve_frequencies(
     designs: SimilarDesigns, refinement: Refinement, speeds: np.ndarray, ratio: np.ndarray | None = None
 ) -> SolvedDesigns:
-    """Solve similar designs, each in the smallest basis that a single call would choose.
+    """Compute the eigenvalues of similar designs, each in the smallest basis that a single call would choose.
 
     Parameters
     ----------
@@ -211,7 +221,10 @@ def solve_frequencies(
 def frequencies_of(
     designs: SimilarDesigns, refinement: Refinement, speeds: np.ndarray, ratio: np.ndarray | None
 ) -> DesignAnswers:
-    """The frequencies of similar designs, with what limits them; arguments as of `solve_frequencies`."""
+    """Compute the frequencies of similar designs, with their statuses and cautions.
+
+    See `solve_frequencies`.
+    """
     found = solve_frequencies(designs, refinement, speeds, ratio)
     s = found.eigenvalue
     growing, oscillating, none = np.real(s) > 0, np.imag(s) != 0, np.isnan(s)
@@ -230,7 +243,7 @@ def frequencies_of(
 def _cautions_of_theory(
     designs: SimilarDesigns, speeds: np.ndarray, deflection: np.ndarray, status: np.ndarray
 ) -> Iterator[Caution]:
-    """Yield where linear theory ends, as `natural_modes` warns of it."""
+    """Yield cautions about designs beyond linear theory, for the reasons of which `natural_modes` warns."""
     unstable = np.isin(status, ("divergence", "flutter")).any(axis=2)
     diverges = Statement(": the beam diverges; see status", kind=GROWING)
     yield from caution_where(unstable, "a", 0.0, diverges)
@@ -246,13 +259,16 @@ def _cautions_of_theory(
 
 
 def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
-    """A caution of designs whose answers (R, S, k) rounding leaves unsolved, if there are any."""
+    """Make a caution about designs that have no answer (R, S, k) because of rounding.
+
+    None if all have one.
+    """
     said = Statement(" there is no answer: rounding of the matrices leaves none", kind=NO_ANSWER)
     return caution_where((status == REFUSED).any(axis=2), "d", 0.0, said)
 
 
 def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Caution]:
-    """Yield a caution of errors (R, S, k) past a tolerance, or past what is promised without one."""
+    """Yield a caution about errors (R, S, k) above the tolerance, or above 1e-6 if none is given."""
     worst, limit = error.max(axis=2), _LARGE_ERROR if tolerance is None else tolerance
     said: str = Statement(f" the estimated relative error is above {limit:g}: see error", kind=TOLERANCE)
     if tolerance is not None and worst.max() > tolerance:
@@ -263,7 +279,7 @@ def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Ca
 def stacks_of(
     designs: SimilarDesigns, rows: np.ndarray, basis: Discretization
 ) -> tuple[PencilStack, PencilStack, PencilFamily, np.ndarray]:
-    """Matrices of some designs in a basis and in the coarser one, of which family, and with which weights."""
+    """Return the matrices of designs in a basis and in the coarser one, their family and weights."""
     family, weights = designs.family(basis), designs.weights(rows)
     stack = family.stack(weights)
     if family.coarse is not None:
@@ -275,16 +291,16 @@ def stacks_of(
 
 
 BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND = "buckles", "does not buckle", "not found"
-_SIZED_FOR = 5  # modes that suit the first basis, as for a single design
-_TO_HALF = 4  # steps from a basis to one of about half its size
-_ROUNDING = 64 * float(np.finfo(float).eps)  # rounding error of a sum, relative to its terms
+_SIZED_FOR = 5  # number of modes by which the first basis is sized, as for a single design
+_TO_HALF = 4  # number of steps in a sequence of bases from one to another of about half its size
+_ROUNDING = 64 * float(np.finfo(float).eps)  # rounding error of a sum, relative to the sizes of its terms
 _BENT = "rotation bends the beam at every speed, so that it does not buckle as a straight one does"
 
 
 def critical_speeds_of(
     designs: SimilarDesigns, refinement: Refinement, single: Callable[[np.ndarray], DesignAnswers]
 ) -> DesignAnswers:
-    """The critical speeds of similar designs, with what limits them.
+    """Compute the critical speeds of similar designs, with their statuses and cautions.
 
     Parameters
     ----------
@@ -317,7 +333,7 @@ def critical_speeds_of(
 def _search(
     designs: SimilarDesigns, refinement: Refinement, rows: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Critical speeds, errors and whether these meet the target, (R,), of designs of some rows.
+    """Return critical speeds, their errors, and whether these meet the target, (R,), for given rows.
 
     A basis is compared with one of about half its size, as for a single design.
     """
@@ -332,7 +348,7 @@ def _search(
         found = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top, designs.estimate(basis))
         speed, error, rounding = (values[:, 0, 0] for values in found)
         met = np.isfinite(speed) & (error <= np.maximum(refinement.target_of(basis), 3 * rounding))
-        # Where a basis softens at no speed, a single call decides whether there is one.
+        # Where the beam does not buckle in this basis, a single call decides whether it ever does.
         return BasisAnswers((speed / time, error, met.astype(float)), met | np.isinf(speed))
 
     speed, error, met = refinement.solve(len(rows), 1, solve)[0] or [np.full(len(rows), np.nan)] * 3
@@ -340,20 +356,20 @@ def _search(
 
 
 def _stiffened(designs: SimilarDesigns) -> np.ndarray:
-    """Whether an argument says that rotation stiffens a design against every deflection, (N,)."""
+    """Whether it is proven, for each design (N,), that rotation stiffens it against every deflection."""
     two = designs.reference.physics.planes == 2
     with_inertia = [designs.tip[name] != 0 for name in ("transverse_inertia", "axial_inertia")]
     if designs.reference.beam.point_masses:
-        return np.zeros(designs.count, dtype=bool)  # single calls know
+        return np.zeros(designs.count, dtype=bool)  # single calls find out whether such a beam is stiffened
     tilting = designs.tip["transverse_inertia"] - designs.tip["axial_inertia"]
     if not two:
         return _is_stiffened(designs, designs.in_plane, tilting)
-    apart = ~np.any(with_inertia, axis=0)  # otherwise the twist turns the body
+    apart = ~np.any(with_inertia, axis=0)  # equal inertias: otherwise the twist turns the body
     return apart & np.all([_is_stiffened(designs, np.array(c2), np.array(0.0)) for c2 in (0.0, 1.0)], axis=0)
 
 
 def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray) -> np.ndarray:
-    """Whether the form F of `beamdyn.modes.buckling` is positive without a look at its string, (N,).
+    """Whether the form F of `beamdyn.modes.buckling` is positive, without its term of the string, (N,).
 
     Parameters
     ----------
@@ -380,6 +396,6 @@ def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray
 
 
 def _sum(*terms: np.ndarray | float) -> np.ndarray:
-    """Add terms; 0 where the sum is within their rounding errors."""
+    """Add terms; return 0 where the sum is within their rounding errors."""
     total, size = np.asarray(sum(terms)), np.asarray(sum(map(np.abs, terms)))
     return np.where(np.abs(total) > _ROUNDING * size, total, 0.0)

@@ -1,6 +1,6 @@
-"""Answers of designs one by one, by the analysis of a single scene, and what effects left out would change.
+"""Answers of designs that are analysed one at a time, and what effects left out would change in them.
 
-Of a response, all speeds of a design are solved at once.
+For steady responses all speeds of a design are solved at once.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _FAILURES = (ValueError, ArithmeticError)
 
 
 class SpeedAnswer(NamedTuple):
-    """Answer of one design at S speeds: values, errors and states (S, k), and its warnings.
+    """Answer of one design at S speeds: values, errors and statuses (S, k), and its warnings.
 
     `warned` says at which speeds these hold; at all if it is None.  `refusals` say why there is no answer,
     `effects` what those left out would change in its numbers at the first speed.
@@ -58,14 +58,14 @@ class SpeedAnswer(NamedTuple):
 
     @property
     def is_warned(self) -> np.ndarray:
-        """Whether a warning holds at each speed, (S,)."""
+        """Whether a warning applies at each speed, (S,)."""
         everywhere = np.full(len(self.value), bool(self.warnings))
         return everywhere if self.warned is None else self.warned
 
 
 @dataclass(frozen=True)
 class SingleDesigns(FieldsOnly):
-    """Designs that are answered one by one.
+    """Designs that are analysed one at a time.
 
     Parameters
     ----------
@@ -82,12 +82,12 @@ class SingleDesigns(FieldsOnly):
     speeds: np.ndarray
 
     def answers(self) -> DesignAnswers:
-        """The answers of the designs; one that is refused has the reason as a caution."""
+        """Compute the answers of the designs; a design that is refused has the reason as a caution."""
         designs = rows_of(dict(self.columns)) if self.columns else [{}]
         with statements.unannounced():
             found = [_answer(self.question, *each) for each in zip(designs, self.speeds, strict=True)]
         value, error, status = (np.array([answer[i] for answer in found]) for i in range(3))
-        # How many answers are refused, and how many have warnings, with those of the first.
+        # Count the answers that are refused and those with warnings; the first of each is worded.
         refused = [int((answer.status[:, 0] == REFUSED).sum()) for answer in found]
         warned = [int(answer.is_warned.sum()) for answer in found]
         without = _caution("there is no answer", designs, refused, [answer.refusals for answer in found])
@@ -101,7 +101,7 @@ def _caution(
     counts: Sequence[int],
     reasons: Sequence[tuple[str, ...]],
 ) -> Iterator[Caution]:
-    """Yield of how many answers something holds, and why of the first."""
+    """Yield a caution with the number of answers it concerns, the first such design, and its reason."""
     if any(counts):
         first = next(i for i, count in enumerate(counts) if count)
         at = statements.joined(
@@ -114,7 +114,7 @@ def _caution(
 
 
 def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
-    """The answer of a design at its speeds; of all at once, or where these are refused of each."""
+    """Answer one design at its speeds: at all at once, or one by one where that is refused."""
     try:
         return _ANALYSES[question.what](question, with_numbers(question.scene, design), speeds)
     except _FAILURES as error:
@@ -158,10 +158,10 @@ def _answer_critical_speed(question: StudyQuestion, scene: Scene, _: np.ndarray)
 
 
 def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> SpeedAnswer:
-    """The lowest crossing of each mode with each line."""
+    """Find the lowest crossing of each mode with each line."""
     found = resonance_speeds(scene, question.speed, question.modes, 1, question.discretization)
     keys, lowest = [crossing_key(each) for each in found], dict[Any, Any]()
-    for key, crossing in zip(keys, found, strict=True):  # they ascend in speed
+    for key, crossing in zip(keys, found, strict=True):  # crossings ascend in speed
         lowest.setdefault(key, crossing)
     there = {line_key(*each) for each in lines_of(scene, question.speed)}
     shape = 1, question.numbers
@@ -182,7 +182,7 @@ def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> S
     ]
 
     def effects() -> LeftOutEffects:
-        """Changes of the crossings of the answer; nan where there is none."""
+        """Return the changes of the crossings by effects left out; nan where there is no crossing."""
         places = [keys.index(each.key) if each.key in keys else -1 for each in question.resonances]
         known = found.left_out_effects
         changes = {name: np.append(change, np.nan)[places] for name, change in known.changes.items()}
@@ -193,13 +193,14 @@ def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> S
 
 def _answer_amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
     found = steady_response(scene, np.unique(speeds), **_options_of_responses(question))
-    error = (found.error + found.mode_error) * found.bound  # both are relative to the bound
+    # Converts the errors, which are relative to the bound.
+    error = (found.error + found.mode_error) * found.bound
     warned = found.is_warned if found.warnings else None
     return _at_each(speeds, found, (found.amplitude, error, np.asarray(found.status)), warned)
 
 
 def _answer_strain(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
-    """The largest strain in steady response: of a harvester's layers, or of the stations of the loads."""
+    """Find the largest strain in steady response: of a harvester's layers, or of the beam's stations."""
     if scene.beam.electrodes is not None:
         found = harvest(scene, np.unique(speeds), **_options_of_responses(question))
         return _at_each(speeds, found, (found.strain, found.strain_error, np.asarray(found.status)), None)
@@ -239,7 +240,7 @@ def _at_each(
     warned: np.ndarray | None,
     failed: tuple[str, ...] = (),
 ) -> SpeedAnswer:
-    """Values, relative errors and states at each speed given, of those at all speeds, each once."""
+    """Return the answer at each given speed, from values, errors and statuses at distinct speeds."""
     order = np.unique(speeds, return_inverse=True)[1]
     value, error, status = answer
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -276,7 +277,7 @@ def left_out_of_design(
     scene : Scene
         The scene of the design.
     design : mapping of str to float
-        Its inputs.
+        Inputs of the design, by name.
 
     Returns
     -------
@@ -285,14 +286,17 @@ def left_out_of_design(
     """
     speeds = np.array([design.get(SPEED, question.speed)])
     try:
-        with statements.unannounced():  # the study has warned
+        with statements.unannounced():  # without warnings: the study has given them
             return _ANALYSES[question.what](question, scene, speeds).effects()
     except _FAILURES:
         return None
 
 
 def join_effects(each: Sequence[LeftOutEffects | None], numbers: int) -> LeftOutEffects:
-    """The effects of p designs with m numbers each as one, of shape (p, m); nan where one has none."""
+    """Join the effects of p designs with m numbers each to one of shape (p, m).
+
+    Nan where a design has none.
+    """
     known = [effects for effects in each if effects is not None]
     names = dict.fromkeys(name for effects in known for name in effects.changes)
     nothing = np.full(numbers, np.nan)

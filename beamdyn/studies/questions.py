@@ -1,4 +1,4 @@
-"""What a study can be asked."""
+"""Questions that a study answers: kinds of answers, their units and options."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from beamdyn.scene.scene import Scene
 from beamdyn.studies.batched import Refinement
 from beamdyn.studies.resonance_speeds import PossibleCrossing
 
-OF_RESPONSES = 1e-5  # tolerance of `steady_response` and `sweep` by default
-MODES = 3  # number of modes of frequencies and crossings by default
-WINDOW = (20.0, 30.0)  # window of peaks by default [s]
+OF_RESPONSES = 1e-5  # default tolerance of `steady_response` and `sweep`
+MODES = 3  # default number of modes for frequencies and crossings
+WINDOW = (20.0, 30.0)  # default window of time for peaks [s]
 
 
 What: TypeAlias = Literal[
@@ -60,7 +60,7 @@ OPTIONS = {what: kind.options for what, kind in KINDS.items()}
 
 @dataclass(frozen=True)
 class StudyQuestion:
-    """What is asked of every design.
+    """The question that a study asks of every design.
 
     Parameters
     ----------
@@ -91,21 +91,21 @@ class StudyQuestion:
 
     @property
     def kind(self) -> Kind:
-        """The kind of its answer."""
+        """The kind of the answer, from `KINDS`."""
         return KINDS[self.what]
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Names of the numbers of a design, where it has several."""
+        """Names of the numbers of one answer, if it has several; else empty."""
         if self.what == "crossings":
             return tuple(each.label for each in self.resonances)
         return tuple(f"mode {i + 1}" for i in range(self.modes)) if self.what == "frequencies" else ()
 
     def refinement(self, reference: Scene) -> Refinement:
-        """The bases in which designs that are similar to a reference are solved."""
+        """Return the bases in which designs that are similar to a reference are solved."""
         return Refinement(reference, self.modes, self.discretization, self.tolerance)
 
     @property
     def numbers(self) -> int:
-        """How many numbers the answer of a design has."""
+        """Number of numbers in the answer of a design."""
         return len(self.labels) if self.what in ("frequencies", "crossings") else 1

@@ -1,4 +1,4 @@
-"""Resonance speeds: of designs that differ in numbers only by batched eigenproblems, without a search."""
+"""Resonance speeds of similar designs by batched eigenproblems, without a search in each."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import Designs, rows_of
 from beamdyn.common.results.statements import EXCITATION, Statement
@@ -27,24 +28,24 @@ from beamdyn.studies.similar import SimilarDesigns
 
 RESONATES, NO_RESONANCE, NO_LINE = "resonates", "none up to the top speed", "not excited"
 _NOTHING_EXCITES = Statement(" nothing excites the beam", kind=EXCITATION)
-_FEW = Ritz(6)  # basis in which the lines of a scene are found: they do not depend on the functions
-_PROBED = 16  # designs whose lines are looked for, beside the extremes
-_MOST_EXTREMES = 4  # inputs of which all extremes are looked at
+_FEW = Ritz(6)  # small basis with which a scene's excitation lines are found: they do not depend on the basis
+_PROBED = 16  # number of designs, beside the extremes, whose lines are looked for
+_MOST_EXTREMES = 4  # largest number of inputs of which all combinations of extremes are looked at
 
 
 def line_key(kind: str, line: Line) -> tuple[str, float]:
-    """Key of a line of a kind; lines of one multiple have one key, whatever rounding adds."""
+    """Return the key of a line of a kind; lines whose multiples differ by rounding have one key."""
     return kind, round(line.multiple, 9)
 
 
 def crossing_key(crossing: Crossing | PossibleCrossing) -> tuple[str, float, int]:
-    """Key of a crossing, found or possible: its line and its mode."""
+    """Return the key of a crossing, found or possible: its line and its mode."""
     return *line_key(crossing.kind, crossing.line), crossing.mode
 
 
 @dataclass(frozen=True)
 class PossibleCrossing:
-    """A mode and a line that it may meet.
+    """A mode and an excitation line that it may meet.
 
     Parameters
     ----------
@@ -62,7 +63,7 @@ class PossibleCrossing:
 
     @property
     def label(self) -> str:
-        """For tables and pictures."""
+        """Label of the crossing in tables and pictures."""
         return label_crossing(self.line, self.kind, self.mode)
 
     @property
@@ -72,28 +73,27 @@ class PossibleCrossing:
 
     @property
     def multiple(self) -> float:
-        """The frequency of the mode over the speed, where it resonates."""
+        """Ratio of the mode's frequency to the speed at resonance."""
         return self.line.multiple / (2 if self.kind == "parametric" else 1)
 
 
 @lru_cache(maxsize=64)
 def lines_of(scene: Scene, top: float) -> tuple[tuple[str, Line], ...]:
-    """Kinds and lines of first order that excite the beam of a scene."""
+    """Return kind and line of each excitation of first order of a scene, up to a top speed [rad/s]."""
     system = periodic_system(Model(scene, _FEW).equations, scene.motion, np.array([top]))
     kinds = zip(("forced", "parametric"), excitation_lines(system, scene.motion, 1), strict=True)
     return tuple((kind, line) for kind, lines in kinds for line in lines)
 
 
 def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> tuple[PossibleCrossing, ...]:
-    """The resonances that may occur in the designs: those of the extremes, and of others spread evenly.
+    """List the resonances that may occur in the designs, from the extremes and others spread evenly.
 
     Raises
     ------
     InvalidValue
         If nothing excites the beam in any of them.
     """
-    spread = np.linspace(0, designs.count - 1, min(designs.count, _PROBED)).round().astype(int)
-    rows = np.unique([*spread, *_ends_of_columns(designs)])
+    rows = np.unique([*evenly_spread(designs.count, _PROBED), *_ends_of_columns(designs)])
     probed = rows_of(designs.columns(rows)) if designs.inputs else [{}]
     if designs.combine == "product" and len(designs.inputs) <= _MOST_EXTREMES:
         probed += [*designs.extremes()]
@@ -109,7 +109,7 @@ def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> t
 
 
 def _ends_of_columns(designs: Designs) -> list[int]:
-    """Rows of the smallest and the largest value of each input, where they are taken together."""
+    """Return rows of the smallest and the largest value of each input, if inputs are varied together."""
     if designs.combine == "product":
         return []
     return [int(end(each.values)) for each in designs.inputs for end in (np.argmin, np.argmax)]
@@ -122,7 +122,7 @@ def crossings_of(
     resonances: Sequence[PossibleCrossing],
     top: float,
 ) -> DesignAnswers:
-    """The resonance speeds (N, 1, c) of similar designs, with what limits them.
+    """Compute the resonance speeds (N, 1, c) of similar designs, with their statuses and cautions.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def crossings_of(
         time, estimate = designs.time[rows], designs.estimate(basis)
         speed, error, rounding = speeds_of_meeting(stack, coarse, multiples, modes, top * time, estimate)
         critical = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top * time, estimate)[0]
-        speed = np.where(speed < critical, speed, np.inf)  # a beam that buckles vibrates no more
+        speed = np.where(speed < critical, speed, np.inf)  # beyond its critical speed a beam does not vibrate
         met = np.isinf(speed) | (error <= np.maximum(refinement.target_of(basis), 3 * rounding))
         return batched.BasisAnswers((speed / time[:, None, None], error), np.all(met, axis=(1, 2)))
 
@@ -168,7 +168,7 @@ def crossings_of(
 def _excited(
     designs: SimilarDesigns, scene: Scene, resonances: Sequence[PossibleCrossing], top: float
 ) -> np.ndarray:
-    """Which of the resonances (N, c) have a line in each design.
+    """Decide which of the resonances (N, c) have an excitation line in each design.
 
     The lines depend on whether the load has a component in the direction of bending, and on gravity.
     """
@@ -187,7 +187,7 @@ def _excited(
 
 
 def _kind_of(name: str, values: np.ndarray) -> np.ndarray:
-    """Classes (N,) of values that differ in whether a component vanishes."""
+    """Classify values (N,) of an angle or of gravity by which of their components vanish."""
     if name == "model.gravity":
         return values != 0
     return (np.abs(np.cos(values)) > 1e-15) * 2 + (np.abs(np.sin(values)) > 1e-15)

@@ -27,7 +27,7 @@ import numpy as np
 
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.mass import axial_tension
+from beamdyn.equations.mass import PLACES, steady_tension
 from beamdyn.modes.modal.error_estimate import parts_of_distances
 from beamdyn.modes.modal.many_designs import Estimate, PencilStack
 from beamdyn.modes.modal.model import Model
@@ -38,7 +38,7 @@ from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
 # Powers of an input in mass per length, bending stiffness, axial stiffness and second bending stiffness.
-_POWERS = {
+POWERS = {
     "beam.width": (1, 1, 1, 3),
     "beam.thickness": (1, 3, 1, 1),
     "beam.youngs_modulus": (0, 1, 1, 1),
@@ -49,8 +49,8 @@ _POWERS = {
     "beam.second_bending_stiffness": (0, 0, 0, 1),
     "beam.length": (0, 0, 0, 0),
 }
-_POWERS |= {
-    SCALE + name: _POWERS[f"beam.{name}"]
+POWERS |= {
+    SCALE + name: POWERS[f"beam.{name}"]
     for name in (
         *("width", "thickness", "mass_per_length", "bending_stiffness", "axial_stiffness"),
         "second_bending_stiffness",
@@ -59,41 +59,42 @@ _POWERS |= {
 _OF_TIP = ("mass", "offset", "inertia", "transverse_inertia", "axial_inertia")
 _OF_MOUNT = ("radius", "setting_angle", "bending_angle")
 _SPRINGS = ("root_stiffness", "second_root_stiffness")
-_WITHOUT_EFFECT = {"model.gravity"}  # inputs without effect on modes at a steady speed
+_WITHOUT_EFFECT = {"model.gravity"}  # inputs without effect on modes at a constant speed
 SIMILAR = {
-    *_POWERS,
+    *POWERS,
     *(f"beam.tip.{name}" for name in _OF_TIP),
     *(f"mount.{name}" for name in (*_OF_MOUNT, *_SPRINGS)),
     *_WITHOUT_EFFECT,
 }
-# Quantities of which the matrices are polynomials, and their degrees in them; of the angle trigonometric.
+# Quantities on which the matrices depend as polynomials, and the degrees; on the angle as trigonometric ones.
 _DEGREES = {
     **{"mass": 1, "offset": 2, "inertia": 1, "tilt": 1, "axial": 1, "in_plane": 1, "spring": 1},
     **{"along_beam": 1, "along_bending": 1, "along_axis": 1},
     **{"second_spring": 1, "second_stiffness": 1, "angle": 2},
 }
-_ANGLES = np.array([0.0, 1.0, 2.0]) * math.pi / 3  # between which trigonometric functions are interpolated
-_MOST_NODES = 512  # scenes that are assembled: some seconds
-_NODES_EACH = 8  # the same for each answer: beyond it single calls are as fast
-_ROUNDING_ON_SPRINGS, _ROUNDING_OF_PLANES = 2.0, 3.0  # over that of one clamped plane, as of single scenes
-_PLACES = np.linspace(0, 1, 101)  # x/L at which the axial strain is computed
+_ANGLES = np.array([0.0, 1.0, 2.0]) * math.pi / 3  # nodes of the trigonometric interpolation [rad]
+_MOST_NODES = 512  # largest number of scenes that are assembled, which takes some seconds
+_NODES_EACH = 8  # largest number of scenes per answer: with more, single calls are as fast
+# Rounding errors over those of one clamped plane of bending, as for single scenes.
+_ROUNDING_ON_SPRINGS, _ROUNDING_OF_PLANES = 2.0, 3.0
 
 Nodes = tuple[tuple[str, tuple[float, ...]], ...]
 
 
 def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
-    """Whether the designs of a study over some inputs are similar to beams of one shape and basis."""
+    """Whether the designs of a study over some inputs are beams of one shape, to be solved in one basis."""
     plain = scene.physics in (Physics(), Physics(planes=2)) and not scene.chooses_physics
-    lumped = bool(scene.beam.point_masses) and bool(names & _POWERS.keys())
+    lumped = bool(scene.beam.point_masses) and bool(names & POWERS.keys())
     apart = scene.physics.planes == 1 or scene.beam.second_bending_stiffness is not None
     beyond = scene.mount.precone or scene.beam.point_springs or scene.damping.damps
-    beyond = beyond or scene.beam.electrodes is not None  # layers follow the numbers of the beam beneath them
+    # The layers of a harvester follow the numbers of the beam, so that shapes differ.
+    beyond = beyond or scene.beam.electrodes is not None
     return plain and apart and not beyond and not lumped and names <= SIMILAR
 
 
 @dataclass(frozen=True)
 class SimilarDesigns(FieldsOnly):
-    """N designs as one beam with other tip bodies, springs, radii, angles and speeds.
+    """N designs as one reference beam with other tip bodies, springs, radii, angles and speeds.
 
     Parameters
     ----------
@@ -124,22 +125,25 @@ class SimilarDesigns(FieldsOnly):
     # Similarity -----------------------------------------------------------------------------------
 
     def _scale(self, which: int) -> np.ndarray:
-        """Mass per length (0) or a stiffness (1, 2, 3) over the reference's, (N,): see `_POWERS`."""
+        """Mass per length (0) or a stiffness (1, 2, 3) over the reference's, (N,): see `POWERS`."""
         scale = np.ones(self.count)
-        for name, powers in _POWERS.items():
+        for name, powers in POWERS.items():
             if name in self.columns:
                 scale = scale * (self.columns[name] / self.first[name]) ** powers[which]
         return scale
 
     @cached_property
     def length(self) -> np.ndarray:
-        """Length over the reference's, (N,)."""
+        """Length of each design over the reference's, (N,)."""
         given = self.columns.get("beam.length")
         return np.ones(self.count) if given is None else given / self.first["beam.length"]
 
     @cached_property
     def time(self) -> np.ndarray:
-        """Time T over the reference's: its speeds are the designs' times T, (N,)."""
+        """Unit of time of each design over that of the reference, (N,).
+
+        The reference turns at the speeds of a design times this.
+        """
         return np.sqrt(self._scale(0) * self.length**4 / self._scale(1))
 
     @cached_property
@@ -157,7 +161,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def tip(self) -> dict[str, np.ndarray]:
-        """The tip body of the reference beam in each design."""
+        """Properties (N,) of the tip body that the reference beam has in each design, by name."""
         tip, mass = self.reference.beam.tip or TipMass(0.0), self._scale(0) * self.length
         given = {name: self._given(f"beam.tip.{name}", getattr(tip, name) or 0.0) for name in _OF_TIP}
         if tip.transverse_inertia is None:
@@ -167,7 +171,10 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def _springs(self) -> dict[str, np.ndarray]:
-        """Springs at the root of the reference beam in each design [N m/rad]; inf where it is clamped."""
+        """Springs (N,) at the root that the reference beam has in each design [N m/rad].
+
+        Inf where clamped.
+        """
         stiffer = self.length / self._scale(1)
         return {name: self._of_mount(name) * stiffer for name in _SPRINGS[: self._planes]}
 
@@ -182,7 +189,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def quantities(self) -> dict[str, np.ndarray]:
-        """Values (N,) of the quantities of the reference beam, by name."""
+        """Values (N,) of the quantities on which the matrices depend, by name."""
         tip, springs = self.tip, self._springs
         common = {"mass": tip["mass"], "offset": tip["offset"], "axial": self.axial}
         if np.isfinite(spring := springs["root_stiffness"]).all():
@@ -191,7 +198,7 @@ class SimilarDesigns(FieldsOnly):
             return common | {"inertia": tip["inertia"], "tilt": self.tilt, "in_plane": self.in_plane}
         if np.isfinite(spring := springs["second_root_stiffness"]).all():
             common["second_spring"] = spring
-        # Second moments of mass of the tip body along the beam, along bending and along its axis [kg m2].
+        # Second moments of mass of the tip body: along the beam, along bending and along its axis [kg m2].
         n, e, one = (self.tip[name] for name in ("inertia", "transverse_inertia", "axial_inertia"))
         twice = {"along_beam": n + e - one, "along_bending": n + one - e, "along_axis": e + one - n}
         common |= {name: np.maximum(v / 2, 0.0) for name, v in twice.items()}
@@ -200,11 +207,11 @@ class SimilarDesigns(FieldsOnly):
 
     @property
     def tilt(self) -> np.ndarray:
-        """(J_e - J_1)/J_n of the tip body, (N,)."""
+        """Transverse less axial moment of inertia of the tip body over its `inertia`, (N,), from -1 to 1."""
         inertia = self.tip["inertia"]
         difference = self.tip["transverse_inertia"] - self.tip["axial_inertia"]
         tilt = np.where(inertia == 0, 0.0, difference / np.where(inertia == 0, 1.0, inertia))
-        return np.clip(tilt, -1.0, 1.0)  # beyond by rounding only
+        return np.clip(tilt, -1.0, 1.0)  # rounding may exceed these limits
 
     @property
     def in_plane(self) -> np.ndarray:
@@ -226,29 +233,32 @@ class SimilarDesigns(FieldsOnly):
         return nodes_of([self]) if self.nodes is None else self.nodes
 
     def has_few_nodes(self, answers: int) -> bool:
-        """Whether few scenes are assembled for so many answers."""
+        """Whether few enough scenes are assembled for a number of answers."""
         most = min(_MOST_NODES, _NODES_EACH * answers)
         return math.prod(len(values) for _, values in self._nodes) <= most
 
     @property
     def can_be_solved(self) -> bool:
-        """Whether roots are clamped in all designs, or on springs in all."""
+        """Whether roots are clamped in all designs, or on finite springs in all."""
         return all(
             (v > 0).all() and (np.isfinite(v).all() or np.isinf(v).all()) for v in self._springs.values()
         )
 
     def family(self, discretization: Discretization) -> PencilFamily:
-        """The matrices of all designs in one basis; kept for the next call, in each process."""
+        """Return the matrices of all designs in one basis.
+
+        They are kept for the next call, in each process.
+        """
         return _family(self.reference, self._nodes, discretization)
 
     def estimate(self, discretization: Discretization) -> Estimate:
-        """How the errors of a basis are estimated."""
+        """Return how the errors of a basis are estimated."""
         on_springs = np.isfinite(self.reference.mount.root_stiffness)
         rounding = _ROUNDING_OF_PLANES if self._planes == 2 else _ROUNDING_ON_SPRINGS if on_springs else 1.0
         return Estimate(rounding == 1.0, parts_of_distances(self.reference, discretization), rounding)
 
     def weights(self, designs: np.ndarray) -> np.ndarray:
-        """Weights (R, T) of the T node scenes in the matrices of R designs."""
+        """Compute the weights (R, T) of T node scenes in the matrices of R designs."""
         weights = np.ones((len(designs), 1))
         for name, nodes in self._nodes:
             own = _weights_of(name, np.array(nodes), self.quantities[name][designs])
@@ -256,7 +266,10 @@ class SimilarDesigns(FieldsOnly):
         return weights
 
     def strains(self, speeds: np.ndarray) -> np.ndarray:
-        """Largest axial strain of each design at its speeds (N, S) [rad/s]; nan if it is not known."""
+        """Compute the largest axial strain of each design at its speeds (N, S) [rad/s].
+
+        Nan if it is not known.
+        """
         per_square = np.abs(self.weights(np.arange(self.count)) @ _forces(self.reference, self._nodes)).max(
             axis=1
         )
@@ -264,7 +277,7 @@ class SimilarDesigns(FieldsOnly):
 
 
 def nodes_of(parts: Iterable[SimilarDesigns]) -> Nodes:
-    """Values of each quantity between which the matrices of designs in parts are interpolated."""
+    """Return the values of each quantity between which matrices of designs in parts are interpolated."""
     ends: dict[str, tuple[float, float]] = {}
     for part in parts:
         for name, values in part.quantities.items():
@@ -275,7 +288,7 @@ def nodes_of(parts: Iterable[SimilarDesigns]) -> Nodes:
 
 @dataclass(frozen=True)
 class PencilFamily:
-    """Matrices of T scenes, between which those of designs are interpolated.
+    """Matrices of T node scenes, between which those of designs are interpolated.
 
     Parameters
     ----------
@@ -299,7 +312,7 @@ class PencilFamily:
     coarse: np.ndarray | None
 
     def stack(self, weights: np.ndarray) -> PencilStack:
-        """The matrices of designs of some weights (R, T)."""
+        """Interpolate the matrices of designs from weights (R, T)."""
         M, K2 = (np.tensordot(weights, A, axes=1) for A in (self.M, self.K2))
         K0 = self.K0 if self.K0.ndim == 2 else np.tensordot(weights, self.K0, axes=1)
         return PencilStack(K0, M, K2)
@@ -310,7 +323,7 @@ class PencilFamily:
 
 @lru_cache(maxsize=8)
 def _node_scenes(reference: Scene, nodes: Nodes) -> list[Scene]:
-    """The reference beam with each combination of the values of the quantities."""
+    """Make the reference beam for each combination of the values of the quantities."""
     grids = np.meshgrid(*(values for _, values in nodes), indexing="ij")
     points = zip(*(grid.ravel().tolist() for grid in grids), strict=True)
     names = [name for name, _ in nodes]
@@ -318,7 +331,7 @@ def _node_scenes(reference: Scene, nodes: Nodes) -> list[Scene]:
 
 
 def _scene_at(reference: Scene, at: Mapping[str, float]) -> Scene:
-    """The reference beam with some values of the quantities."""
+    """Make the reference beam with given values of the quantities."""
     beam, axial = reference.beam, at["axial"]
     if "tilt" in at:
         inertia, angle = at["inertia"], math.acos(math.sqrt(at["in_plane"]))
@@ -355,37 +368,31 @@ def _family(reference: Scene, nodes: Nodes, discretization: Discretization) -> P
 
 @lru_cache(maxsize=8)
 def _forces(reference: Scene, nodes: Nodes) -> np.ndarray:
-    """Axial force of the node scenes over their axial stiffness, per squared speed [s2], (T, points)."""
+    """Compute the axial strain of the node scenes per squared speed [s2], (T, points); nan if not known."""
     scenes, stiffness = _node_scenes(reference, nodes), reference.beam.axial_stiffness
     if stiffness is None:
         return np.full((len(scenes), 1), np.nan)
-    return np.array([_axial_force(scene) for scene in scenes]) / stiffness(_PLACES)
-
-
-def _axial_force(scene: Scene) -> np.ndarray:
-    n_a, n_b = axial_tension(scene.beam)
-    axial = scene.mount.radius * math.cos(scene.mount.setting_angle)
-    return n_b(_PLACES) - axial * n_a(_PLACES)
+    return np.array([steady_tension(scene.beam, scene.mount) for scene in scenes]) / stiffness(PLACES)
 
 
 # Interpolation --------------------------------------------------------------------------------------
 
 
 def _cos(angle: np.ndarray, least: float = RIGHT_ANGLE) -> np.ndarray:
-    """Cosines of angles [rad], 0 where they are smaller than the least."""
+    """Compute cosines of angles [rad]; 0 where they are smaller in magnitude than `least`."""
     c = np.cos(angle)
     return np.where(np.abs(c) < least, 0.0, c)
 
 
 def _nodes_between(name: str, low: float, high: float) -> tuple[float, ...]:
-    """As many values between the extremes as a polynomial needs; one if all are the same."""
+    """Return as many values between two extremes as the polynomial needs; one if the extremes are equal."""
     if high == low:
         return (low,)
     return tuple((_ANGLES if name == "angle" else np.linspace(low, high, _DEGREES[name] + 1)).tolist())
 
 
 def _weights_of(name: str, nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Values (R, p) at x (R,) of the functions that are 1 at one of p nodes and 0 at the others."""
+    """Compute interpolation weights (R, p) at x (R,): functions that are 1 at one of p nodes, 0 at others."""
     if name == "angle" and len(nodes) > 1:
         return (1 + 2 * np.cos(2 * (x[:, None] - nodes))) / 3
     values = np.ones((len(x), len(nodes)))

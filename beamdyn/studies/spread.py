@@ -1,4 +1,4 @@
-"""Ranges of answers of a scene over tolerances of its inputs: to first order, worst cases, Monte Carlo."""
+"""Ranges of answers of a scene over tolerances of its inputs: first-order, worst-case and Monte Carlo."""
 
 from __future__ import annotations
 
@@ -37,11 +37,12 @@ from beamdyn.studies.sensitivities.sensitivity_result import numbers_of
 from beamdyn.studies.study import speed_of_study, study
 from beamdyn.studies.study_result import Study
 
-_NONLINEAR = "physics.large_deflection"  # the argument that is refused as it has no derivatives
+# Name of the argument that is refused, as nonlinear equations give no derivatives.
+_NONLINEAR = "physics.large_deflection"
 
 
 def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.SpreadInput]) -> KnownDerivatives:
-    """Derivatives by inputs, as far as equations give them.
+    """Compute the derivatives of an answer by inputs, as far as the equations of motion give them.
 
     Parameters
     ----------
@@ -66,7 +67,7 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.Sprea
                 found = frequency_sensitivities(scene, *of_modes, tolerance=question.tolerance, **options)
     except ValueError as error:
         return KnownDerivatives(warnings=_said(error))
-    # Columns of the answers, in their order; nan for crossings that are missing, of others the lowest.
+    # Columns follow the order of the answers; nan for missing crossings, and the lowest of several.
     none = np.full(len(found.inputs), np.nan)
     places = {name: k for k, name in reversed([*enumerate(found.answers)])}
     value, error = (
@@ -77,9 +78,10 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.Sprea
 
 
 def _said(refusal: ValueError) -> tuple[str, ...]:
-    """Why all slopes are those of designs; nothing where the answer has no derivatives by its nature.
+    """Word that all slopes come from differences of designs, and why the derivatives are refused.
 
-    These are a beam that does not buckle, and large deflection.
+    Empty where the answer has no derivatives by its nature: the critical speed of a beam that does not
+    buckle, and large deflection.
     """
     if isinstance(refusal, NoModelAnswer) or (
         isinstance(refusal, InvalidValue) and refusal.field == _NONLINEAR
@@ -107,12 +109,12 @@ class SceneSpread(Spread, StatesModelError):
 
     @property
     def scene(self) -> Scene:
-        """The scene, with the nominal design."""
+        """The scene with nominal values."""
         return self.question.scene
 
     @property
     def display_units(self) -> DisplayUnits:
-        """Units of its tables and columns: SI, as for brakes, unless `in_units` gave others."""
+        """Units of tables and columns: SI, as for brakes, unless `in_units` gave others."""
         return vars(self).get("_display_units") or SI_UNITS
 
     @cached_property
@@ -218,13 +220,13 @@ def spread(
 
 @dataclass
 class _StudyAnswers:
-    """Answers designs by studies; the answers of all are those of the first, in its order."""
+    """Answers of designs by studies; all have the numbers of the first study's answers, in its order."""
 
     scene: Scene
     what: Any
     options: Mapping[str, Any]
     _studies: list[Study] = field(default_factory=list)
-    _done: int = 0  # designs of earlier calls
+    _done: int = 0  # number of designs in earlier calls
 
     @property
     def first(self) -> Study:
@@ -232,7 +234,7 @@ class _StudyAnswers:
         return self._studies[0]
 
     def __call__(self, columns: dict[str, np.ndarray]) -> SpreadAnswers:
-        """Answers of designs."""
+        """Answer designs that are given as columns of inputs."""
         options = {**self.options, "progress": self._progress}
         with unannounced():
             found = study(self.scene, columns, self.what, combine="zip", **options)
@@ -255,12 +257,12 @@ class _StudyAnswers:
 
     @property
     def _progress(self) -> Progress | None:
-        """Progress over all designs so far: the number that worst cases need is not known before."""
+        """Report progress over all designs so far, as worst cases need a number not known in advance."""
         said, before = self.options["progress"], self._done
         return said if not before else said and (lambda done, total: said(before + done, before + total))
 
     def _in_order(self, found: Study, values: np.ndarray) -> np.ndarray:
-        """Columns of answers by the labels of the first study: others may meet fewer lines."""
+        """Order columns of answers by the labels of the first study; other designs may meet fewer lines."""
         if found.labels == self.first.labels:
             return values
         none = np.full(len(values), np.nan if values.dtype.kind == "f" else "not excited")
@@ -274,7 +276,7 @@ class _StudyAnswers:
 def check_tolerances(
     scene: Scene, inputs: Mapping[str, str | tolerances.Distribution], speed: float
 ) -> tuple[tolerances.SpreadInput, ...]:
-    """The inputs with their distributions.
+    """Check tolerances, and return the inputs with their distributions.
 
     Raises
     ------
@@ -301,7 +303,7 @@ def check_tolerances(
 
 
 def nominal_value(scene: Scene, name: str, speed: float) -> float:
-    """The value of an input in a scene, in SI; the speed is given, as it is none of the scene's numbers.
+    """Return the nominal value of an input, in SI; the speed is an argument, as it is no number of a scene.
 
     Raises
     ------
@@ -336,7 +338,7 @@ def _in_si(name: str, text: str, unit: str) -> tolerances.Convert:
 
 
 def check_reach(scene: Scene, given: tolerances.SpreadInput) -> None:
-    """Refuse a tolerance of which an end makes no scene, all other inputs being nominal."""
+    """Refuse a tolerance with an end at which no scene can be made, other inputs being nominal."""
     for end in given.distribution.reach:
         try:
             with_numbers(scene, {given.name: end})

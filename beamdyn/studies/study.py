@@ -1,4 +1,4 @@
-"""Answers over all combinations of inputs, or over designs that are given one by one."""
+"""Studies: answers over all combinations of inputs, or for designs that are given one by one."""
 
 from __future__ import annotations
 
@@ -38,15 +38,16 @@ VERSIONS = (
     __version__,
     np.__version__,
     scipy.__version__,
-)  # versions of programs on which the stored bits depend
+)  # packages whose versions affect the bits of stored answers
 _KIND = "beamdyn study"
-_BATCHED, _SINGLE = 1024, 16  # answers of a task
-_AT_ONCE = 100_000  # designs whose quantities are compared at once
-_MOST_CORNERS = 10  # inputs of which all combinations of smallest and largest values are checked first
+_BATCHED, _SINGLE = 1024, 16  # number of answers in a task, for designs solved in batches and for single ones
+_AT_ONCE = 100_000  # number of designs whose quantities are compared at once
+# Largest number of inputs of which all combinations of smallest and largest values are checked first.
+_MOST_CORNERS = 10
 
 
 @announced
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
+@one_blas_thread()  # more threads would only wait for each other on small matrices
 def study(
     scene: Scene,
     vary: Mapping[str, Sequence[float] | np.ndarray],
@@ -140,7 +141,7 @@ def study(
         )
     modes = checks.count("modes", MODES if modes is None else modes)
     tolerance = None if tolerance is None else checks.within("tolerance", tolerance, *TOLERANCES)
-    # Numbers of the motion matter where the answer is that of one motion.
+    # Answers at one motion depend on the motion's numbers.
     of_motion = (each.name for each in designs.inputs if is_of_motion(each.name))
     if not KINDS[what].needs_motion and (name := next(of_motion, None)):
         bound = (
@@ -170,7 +171,7 @@ def study(
         error=request.in_order(found.error).reshape(shape),
         status=request.in_order(found.status).reshape(shape),
         warnings=(*left_out, *found.warnings(), *run.warnings),
-        provenance=Provenance(__version__, found.method, compared_with, perf_counter() - start),
+        provenance=Provenance.since(start, found.method, compared_with),
         scene=scene,
         question=request.question,
     )
@@ -180,7 +181,7 @@ def study(
 
 
 def _check_inputs(vary: Any) -> tuple[VariedInput, ...]:
-    """The inputs with their values as arrays; refused where there is none, or a value is no finite number."""
+    """Check the inputs, and return them with their values as arrays."""
     if not isinstance(vary, Mapping) or not vary:
         remedy = 'give a dictionary, such as {"beam.thickness": [1e-4, 2e-4], "speed": [0.0, 50.0]}'
         raise checks.InvalidValue("vary", vary, "it names no input", remedy)
@@ -194,7 +195,9 @@ def _check_inputs(vary: Any) -> tuple[VariedInput, ...]:
 
 
 def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -> float:
-    """The speed of designs without one of their own [rad/s]; refused where the answer cannot have it.
+    """Return the speed [rad/s] of designs without one of their own.
+
+    Refuse it where the answer cannot have it.
 
     Parameters
     ----------
@@ -222,7 +225,7 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
 
 
 def check_window(window: tuple[float, float]) -> tuple[float, float]:
-    """Beginning and end of a window of time [s]; refused where they do not ascend from 0."""
+    """Check a window of time, and return its beginning and end [s]."""
     ends = checks.as_floats(window)
     if ends is None or ends.shape != (2,) or not (0 <= ends[0] < ends[1] < np.inf):
         bound = "give its beginning and its end [s], two ascending numbers such as (20.0, 30.0)"
@@ -231,7 +234,7 @@ def check_window(window: tuple[float, float]) -> tuple[float, float]:
 
 
 def _check_scenes(scene: Scene, designs: Designs) -> None:
-    """Make the scenes of extreme values: bounds are monotone in each input, so that all designs keep them."""
+    """Check that all designs are scenes, by those of extreme values: bounds are monotone in each input."""
     few = len(designs.inputs) <= _MOST_CORNERS
     try:
         for design in designs.extremes() if few else ():
@@ -250,13 +253,13 @@ def _check_scenes(scene: Scene, designs: Designs) -> None:
 
 
 def _answer(task: SimilarTask | SingleDesigns) -> DesignAnswers:
-    """Answer the designs of a task; workers and executors run this."""
+    """Answer the designs of a task; a function at module level, so that worker processes can run it."""
     return task.answers()
 
 
 @dataclass(frozen=True)
 class SimilarTask:
-    """Similar designs of a study.
+    """A task of a study: similar designs that are solved together.
 
     Parameters
     ----------
@@ -276,12 +279,12 @@ class SimilarTask:
     speeds: np.ndarray
 
     def answers(self) -> DesignAnswers:
-        """The answers of the designs."""
+        """Compute the answers of the designs."""
         question, designs = self.question, self.designs
         refinement = question.refinement(designs.reference)
         if question.what == "frequencies":
             own = np.full(designs.count, question.scene.damping_ratio)
-            ratio = self.columns.get("model.damping_ratio", own)  # ratio of each design
+            ratio = self.columns.get("model.damping_ratio", own)  # damping ratio of each design
             return frequencies_of(designs, refinement, self.speeds, ratio if ratio.any() else None)
         if question.what == "critical_speed":
             return critical_speeds_of(designs, refinement, self._single)
@@ -294,24 +297,24 @@ class SimilarTask:
 
 @dataclass(frozen=True)
 class _Request:
-    """A question of designs, whose arguments have been checked one by one."""
+    """The checked request of a study: a question, and the designs that it is asked of."""
 
     question: StudyQuestion
     designs: Designs
 
     @cached_property
     def others(self) -> Designs:
-        """The designs without their speeds."""
+        """The designs without their speeds as an input."""
         return self.designs.without(SPEED)
 
     @cached_property
     def own_speeds(self) -> np.ndarray | None:
-        """Speeds that are varied [rad/s]."""
+        """Speeds that are varied [rad/s]; None if the speed is none of the inputs."""
         return next((each.values for each in self.designs.inputs if each.name == SPEED), None)
 
     @property
     def together(self) -> bool:
-        """Whether each design has a speed of its own."""
+        """Whether each design has one speed of its own."""
         return self.designs.combine == "zip" and self.own_speeds is not None and bool(self.others.inputs)
 
     @property
@@ -320,7 +323,7 @@ class _Request:
         return 1 if self.together or self.own_speeds is None else len(self.own_speeds)
 
     def check(self) -> None:
-        """Refuse designs of which any is no scene, before anything is computed."""
+        """Refuse the request if any design is no scene, before anything is computed."""
         if self.own_speeds is not None:
             check_speeds(self.own_speeds, SPEED)
         if self.others.inputs:
@@ -333,7 +336,7 @@ class _Request:
             raise checks.InvalidValue("tolerance", question.tolerance, bound, "leave it out")
 
     def solve(self, run: TaskRunner) -> AnswerArrays:
-        """The answers, of all designs in one basis where only numbers differ, else one by one.
+        """Compute the answers: in one basis where designs differ in numbers only, else one by one.
 
         The size of tasks follows from the request alone; of a response all speeds are solved at once.
         """
@@ -355,7 +358,7 @@ class _Request:
         return found
 
     def _task(self, rows: slice, at: slice) -> SimilarTask | SingleDesigns:
-        """Some designs, each with some of its speeds (R, S) [rad/s]."""
+        """Make a task of some designs, each with some of its speeds (R, S) [rad/s]."""
         columns = self._columns(rows)
         if self.together:
             assert self.own_speeds is not None
@@ -381,7 +384,7 @@ class _Request:
         if not is_batched or not differ_in_numbers_only(scene, names - {"model.damping_ratio"}):
             return False
         if question.what == "crossings" and scene.physics.planes == 2:
-            return False  # each plane has lines of its own
+            return False  # each plane of bending has excitation lines of its own
         return (
             question.refinement(self._reference).can_be_batched
             and all(self._similar(rows).can_be_solved for rows in self.others.chunks(_AT_ONCE))
@@ -394,7 +397,7 @@ class _Request:
 
     @cached_property
     def _reference(self) -> Scene:
-        """The scene of the first design, without what matters only to its answer."""
+        """The scene of the first design, without damping and motion, which do not affect its modes."""
         return replace(with_numbers(self.question.scene, self._first).undamped, motion=None)
 
     @cached_property
@@ -407,7 +410,7 @@ class _Request:
     # Results ----------------------------------------------------------------------------------------
 
     def in_order(self, values: np.ndarray) -> np.ndarray:
-        """Answers (N, S, k) in the order of the inputs."""
+        """Arrange answers (N, S, k) in the order of the inputs."""
         if self.own_speeds is None or self.designs.combine == "zip":
             return values
         place = [each.name for each in self.designs.inputs].index(SPEED)

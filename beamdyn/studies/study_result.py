@@ -1,24 +1,25 @@
-"""The result of a study: an answer over combinations of inputs."""
+"""The result of a study: one kind of answer over combinations of inputs."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.inputs.designs import Designs, VariedInput
 from beamdyn.common.plots.axes_and_lines import set_up_axes
 from beamdyn.common.plots.curves import curves, mark_missing
 from beamdyn.common.plots.maps import MapAnswer, MapInput, map_size, plot_maps
 from beamdyn.common.results.display_units import ShownUnit
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, warned
-from beamdyn.common.results.pictures import add_legend
+from beamdyn.common.results.pictures import Axes, add_legend
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import InputValue, Statement, joined
-from beamdyn.common.words import Part, Words
+from beamdyn.common.words import InputName, Part, Words
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.numbers import SPEED, number_at, with_numbers
 from beamdyn.scene.scene import Scene
@@ -27,12 +28,9 @@ from beamdyn.studies.one_by_one import join_effects, left_out_of_design
 from beamdyn.studies.questions import StudyQuestion
 from beamdyn.studies.resonance_speeds import lines_of
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_JUDGED = 8  # designs at which the model error is computed, beside the extremes
-_DIGITS = 4  # digits of a design's inputs in words
-_MOST_AXES = 3  # inputs of which all extremes are combined
+_JUDGED = 8  # number of designs at which the model error is computed, beside the extremes
+_DIGITS = 4  # significant digits of a design's inputs in sentences
+_MOST_AXES = 3  # largest number of inputs of which all extremes are combined
 
 
 @dataclass(frozen=True)
@@ -102,14 +100,14 @@ class Study(StatesModelError):
 
     def headline(self) -> Iterator[str]:
         """The question, number of designs, range of the answer and error in a line; see `Result.headline`."""
-        names = ", ".join(each.name for each in self.inputs)
-        yield f"{self.what} of {counted(self.designs.count, 'design')} over {names}"
+        names = joined(", ", (InputName(each.name) for each in self.inputs))
+        yield Words(f"{self.what} of {counted(self.designs.count, 'design')} over ", names)
         yield spanned(self.value, self.unit)
         yield from (error_at_most(self.error), warned(self.warnings))
 
     @property
     def designs(self) -> Designs:
-        """The designs."""
+        """The designs of the study."""
         return Designs(self.inputs, self.combine)
 
     @property
@@ -118,11 +116,11 @@ class Study(StatesModelError):
         return self.designs.shape
 
     def design(self, *place: int) -> dict[str, float]:
-        """Inputs of the design at a place (i1, ..., id): values in SI, by name."""
+        """Return the inputs of the design at a place (i1, ..., id): values in SI, by name."""
         return self.designs.at(*place)
 
     def scene_at(self, *place: int) -> Scene:
-        """The scene of the design at a place (i1, ..., id), for any other analysis of it."""
+        """Return the scene of the design at a place (i1, ..., id), for any other analysis."""
         return with_numbers(self.scene, self.design(*place))
 
     @property
@@ -156,12 +154,11 @@ class Study(StatesModelError):
             corners = np.ravel_multi_index(
                 (*np.meshgrid(*ends), *(0,) * len(self.shape[_MOST_AXES:])), self.shape
             )
-            spread = np.linspace(0, self.designs.count - 1, _JUDGED).round().astype(int)
-            at = np.unique([*corners.ravel(), *spread])
+            at = np.unique([*corners.ravel(), *evenly_spread(self.designs.count, _JUDGED)])
         return tuple(tuple(map(int, np.unravel_index(i, self.shape))) for i in at)
 
     def left_out_at(self, *place: int) -> LeftOutEffects | None:
-        """Changes of the answer (m,) at a place by effects left out; None if it has no answer."""
+        """Compute changes of the answer (m,) at a place by effects left out; None if it has no answer."""
         design = self.design(*place)
         return left_out_of_design(self.question, with_numbers(self.scene, design), design)
 
@@ -170,19 +167,19 @@ class Study(StatesModelError):
         return len(self.labels) or 1
 
     def model_warnings(self, tolerance: float | None = None) -> list[Statement]:
-        """Warnings of a model error past a tolerance, or 1 %, with the design where it is largest."""
+        """Return warnings of a model error above a tolerance, or 1 %, with the design where it is largest."""
         return [*self.left_out_effects.warnings(tolerance, self.left_out_where, self._where_unknown)]
 
     @property
     def left_out_where(self) -> str:
-        """The design of `left_out_places` at which the model error is largest, in words."""
+        """Word the design of `left_out_places` at which the model error is largest."""
         total = self.left_out_effects.total_of_known
         if not total.size:
             return ""
         return self._say_place(int(total.max(axis=1).argmax()))
 
     def _where_unknown(self, name: str) -> str:
-        """The first design of `left_out_places` of which the change by an effect is not known, in words."""
+        """Word the first design of `left_out_places` whose change by an effect is not known."""
         nothing = np.isnan(self.left_out_effects.changes[name]).any(axis=1)
         refused = [bool(np.all(self.status[place] == REFUSED)) for place in self.left_out_places]
         unknown = np.flatnonzero(nothing & ~np.array(refused))
@@ -197,7 +194,7 @@ class Study(StatesModelError):
         return Words("at ", joined(", ", each))
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with its model error and what is left out."""
+        """Return the result as plain numbers, lists and strings, with model error and effects left out."""
         return super().to_dict() | {"left_out_places": [*map(list, self.left_out_places)]}
 
     # Pictures ---------------------------------------------------------------------------------------
@@ -228,16 +225,16 @@ class Study(StatesModelError):
         return add_legend(ax)
 
     def plot_panels(self, ax: Axes) -> Axes:
-        """Draw the picture that `plot` makes in a new figure, in the place of some axes."""
+        """Draw the picture that `plot` makes in a new figure, in place of given axes."""
         return plot_maps(*self._picture, ax)
 
     def picture_size(self, width: float | None = None) -> tuple[float, float]:
-        """Width and height of the picture, of a width if one is given, in inches."""
+        """Return width and height of the picture [inch], for a width if one is given."""
         return map_size(*self._picture, width)
 
     @cached_property
     def _picture(self) -> tuple[list[MapInput], list[MapAnswer]]:
-        """The inputs and the answers that the picture shows, in the units shown."""
+        """Return the inputs and answers that the picture shows, in the units shown."""
         unit = self.unit_shown(self.unit, "mm")
         several = self.value if self.labels else self.value[..., None]
         status = self.status if self.labels else self.status[..., None]
@@ -256,28 +253,29 @@ class Study(StatesModelError):
         return self._inputs(), answers
 
     def _inputs(self) -> list[MapInput]:
-        """The inputs of the picture; those that are taken together are drawn over the first."""
+        """Return the inputs of the picture; inputs that are varied together are drawn over the first."""
         shown = []
         for each in self.inputs if self.combine == "product" else self.inputs[:1]:
             unit = self.typed_units.get(each.name) or self.unit_shown(each.unit, "m")
             present = _present(self.scene, each.name)
-            shown.append(MapInput(each.name, unit.name, unit.of(each.values), present and unit.of(present)))
+            values, present = unit.of(each.values), present and unit.of(present)
+            shown.append(MapInput(each.in_words, unit.name, values, present))
         return shown
 
     def in_own_words(self, part: Part) -> str | None:
-        """An input and its value in a text, in the unit in which it was typed; None of other parts."""
+        """Word an input and its value in the unit in which it was typed; None for other parts of a text."""
         if not isinstance(part, InputValue) or part.name not in self.typed_units:
             return None
-        return f"{part.name} = {self.typed_units[part.name].say(part.value)}"
+        return part.said(self.typed_units[part.name].say(part.value))
 
     def unit_shown(self, unit: str, usual_length: str) -> ShownUnit:
-        """The unit in which quantities of a unit of SI are shown."""
+        """Return the unit in which quantities of an SI unit are shown."""
         units = self.display_units
         known = {"rad/s": units.speed_unit(), "m": units.length_unit(usual_length)}
         return known.get(unit, ShownUnit(unit, 1.0))
 
     def _lines(self) -> dict[str, np.ndarray]:
-        """Frequencies [Hz] of the lines that excite the beam, where frequencies are studied over speed."""
+        """Return frequencies [Hz] of the lines that excite the beam, if frequencies vary over speed."""
         speeds = next((each.values for each in self.inputs if each.name == SPEED), None)
         if self.what != "frequencies" or speeds is None:
             return {}
@@ -288,7 +286,7 @@ class Study(StatesModelError):
 
 
 def _present(scene: Scene, name: str) -> float | None:
-    """The value of an input in the scene; None where it has none, or varies along the beam."""
+    """Return the value of an input in the scene; None where it has none, or varies along the beam."""
     if name == SPEED:
         value = None if scene.motion is None else scene.motion.final_speed
     else:
@@ -300,4 +298,4 @@ _REASONS = {
     "divergence": "buckles",
     "flutter": "flutters",
     "none up to the top speed": "no resonance up to the top speed",
-}  # why there is no number, in words of a picture
+}  # words of a picture for statuses without a number

@@ -1,1 +1,1 @@
-"""Motion in time: step size, integrators, one run, and sweeps over speeds."""
+"""Transients: motion in time, with step sizes, integrators, errors, and sweeps over speeds."""

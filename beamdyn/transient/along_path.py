@@ -1,7 +1,7 @@
-"""What further modes would change in a transient, along its own path.
+"""Estimate of the change by further modes in a transient, along the computed path.
 
-The motion q of a run, seen as one of a larger model, misses the equations of that by a residual R, which is
-known along the path.  The difference e of the two motions obeys e'' + C e' + K(t) e = R.  It is found in the
+The motion q of a run, inserted in the equations of a larger model, leaves a residual R, which is
+known along the path.  The difference e of both motions obeys e'' + C e' + K(t) e = R.  It is found in the
 modes that the larger model has in each stretch of the run: the slow ones as oscillators whose frequency
 follows the stiffness, y = Im(exp(i theta) (a + int exp(-i theta) R / sqrt(w) dt)) / sqrt(w) with theta' = w
 (Liouville and Green); those too fast for the samples of the run follow the residual, and ring by as much as
@@ -30,32 +30,36 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import size_per_coordinate
 from beamdyn.transient.trajectory import SAMPLES, Trajectory, magnitude
 
-_MOST_PASSES = 4  # over the modes of a stretch, after the first, which leaves their coupling out
-_SETTLED = 0.1  # change of the difference by a pass, over its size, at which the passes end
-_STRETCHES, _OF_RECORD = 8, 32  # stretches of a segment in which the speed changes, and of a record
+_MOST_PASSES = 4  # largest number of passes over the modes of a stretch, after a first without coupling
+# The passes end once one changes the difference from the larger model by at most this share of it.
+_SETTLED = 0.1
+_STRETCHES, _OF_RECORD = 8, 32  # number of stretches of a segment of changing speed, and of a record
 _RESOLVED = 1.9  # phase from sample to sample [rad] up to which a mode is followed in time
-_INSIDE = 1e-9  # distance of the first and last sample from the ends, over a segment: loads may jump there
-_CONTAINED = 1e-6  # distance of a shape from the larger model, over its size, up to which it is contained
+# Distance of the outer samples from the ends of a segment, over its length: loads may jump there.
+_INSIDE = 1e-9
+_CONTAINED = 1e-6  # relative distance of a shape from the larger model up to which it counts as contained
 _MOST_DECAY = 30.0  # largest exponent of the decay in a stretch: beyond, numbers overflow
 _BY_CHANCE = 3.0  # largest sum of many random contributions, over the root of their summed squares
-_MOST_RINGING = 0.1  # ringing over the distance up to which this holds: amplitudes rarely add up to their sum
-_MOST_GROWTH = 2.0  # growth of the deflection at steady speed beyond which these oscillators do not do
+# Ratio of the amplitude of fast modes to the difference from the larger model, up to which amplitudes may be
+# added as random.
+_MOST_RINGING = 0.1
+_MOST_GROWTH = 2.0  # growth of the deflection at steady speed beyond which the oscillators are not valid
 
 
 @dataclass(frozen=True)
 class _Residual:
-    """Residual of the motion of a run in the equations of a larger model, and these equations.
+    """Residual of a run's motion in the equations of a larger model, with these equations.
 
     Parameters
     ----------
     larger : ModalSystem
         The larger model, of n coordinates.
     quantities : tuple of str
-        Functions of time that multiply its matrices of stiffness.
+        Functions of time that multiply the stiffness matrices.
     stiffness : ndarray, shape (k, n, n)
-        These matrices.
+        Stiffness matrices of the quantities.
     damping : ndarray, shape (n, n)
-        Damping.
+        Damping matrix of the larger model.
     factors : ndarray, shape (l + k m + m, n)
         Residual per unit of each load, of each coordinate times each quantity, and of each velocity.
     embedding : ndarray, shape (n, m)
@@ -71,7 +75,7 @@ class _Residual:
 
     @classmethod
     def of(cls, system: ModalSystem, larger: ModalSystem) -> _Residual | None:
-        """The residual of the motions of a system; None if the larger one does not contain it, or gyrates."""
+        """Build the residual of a system's motion; None if a larger one lacks its modes or is gyroscopic."""
         few, many = (_shapes(each.equations) for each in (system, larger))
         stiffness, damping, _ = larger.equations.matrices
         if few.shape[0] != many.shape[0] or not set(damping) <= {"unity"}:
@@ -88,28 +92,28 @@ class _Residual:
         return cls(larger, tuple(stiffness), matrices, C, factors - factors @ X @ X.T, X)
 
     def mean_modes(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Squared frequencies (n,) and modes (n, n) of the mean stiffness, for values (N, k) over time."""
+        """Compute squared frequencies (n,) and modes (n, n) of the mean stiffness for values (N, k)."""
         flat = self.stiffness.reshape(len(self.stiffness), -1)
         return np.linalg.eigh((values.mean(axis=0) @ flat).reshape(self.larger.size, -1))
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Residual at some times, (N, n), for coordinates and velocities (N, m) of the run."""
+        """Evaluate the residual (N, n) at some times for coordinates and velocities (N, m) of the run."""
         loads = [getattr(root, name)[:, None] for name in self.larger.equations.vectors]
         parts = [*loads, *(k[:, None] * q for k in self.values(root).T), v]
         return np.concatenate(parts, axis=1) @ self.factors
 
     def load(self, root: RootMotion) -> np.ndarray:
-        """Residual of the run at rest at some times: shape (N, n)."""
+        """Evaluate the residual of the run at rest at some times: shape (N, n)."""
         loads = np.stack([getattr(root, name) for name in self.larger.equations.vectors], axis=1)
         return loads @ self.factors[: loads.shape[1]]
 
     def values(self, root: RootMotion) -> np.ndarray:
-        """Values of the quantities at some times: shape (N, k)."""
+        """Evaluate the quantities that multiply stiffness matrices at some times: shape (N, k)."""
         return np.stack([getattr(root, name) for name in self.quantities], axis=1)
 
 
 def _shapes(equations: Equations) -> np.ndarray:
-    """Coordinates of all fields in the discretization, by those of the equations."""
+    """Express the coordinates of all fields of the discretization in those of the equations."""
     rows = []
     for shape in equations.shapes.values():
         rows.append(np.zeros((len(shape.matrix), equations.size)))
@@ -120,7 +124,7 @@ def _shapes(equations: Equations) -> np.ndarray:
 def distance_along_path(
     path: Trajectory, system: ModalSystem, larger: ModalSystem, y0: np.ndarray, y0_of_larger: np.ndarray
 ) -> float | None:
-    """Largest distance of the tip from that of a larger model [m], estimated along the path.
+    """Estimate the largest distance of the tip from that of a larger model [m] along the path.
 
     Parameters
     ----------
@@ -134,7 +138,7 @@ def distance_along_path(
     Returns
     -------
     float or None
-        None where it takes more than the oscillators: gyroscopic coupling, coordinates that the larger
+        Distance [m]; None where oscillators do not suffice: gyroscopic coupling, coordinates that the larger
         model does not contain, a mode that diverges or is heavily damped, coupling of modes that does not
         settle, a motion that grows, and where ringing counts most: after an abrupt start in long steps, or
         in a record that is rough from sample to sample.
@@ -144,7 +148,7 @@ def distance_along_path(
     size = magnitude(coordinates[times >= start], system.tips)
     quarter = len(size) // 4
     grows = quarter > 0 and size[-quarter:].max() > _MOST_GROWTH * size[: 2 * quarter].max()
-    if residual is None or grows:  # at steady speed, by parametric or other resonance
+    if residual is None or grows:  # at steady speed the motion grows by parametric or other resonance
         return None
     (q0, v0), (e, rate) = np.split(y0, 2), np.split(y0_of_larger, 2)
     e, rate = e - residual.embedding @ q0, rate - residual.embedding @ v0
@@ -169,10 +173,10 @@ def distance_along_path(
 
 
 def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
-    """Amplitude of the tip [m] that changes of the load's slope at the samples excite, added as random.
+    """Estimate the tip's amplitude [m] by changes of the load's slope at samples, added as random.
 
-    A change of slope excites a mode of frequency w by itself over w^3; a jump between two samples, in which
-    that is spread over a time h, by w h as much.
+    A change of slope excites a mode of frequency w by the change over w^3.  A jump between two samples, where
+    the jump is spread over a time h, by w h times as much.
     """
     middle = steps.piece_start + steps.piece_width / 2
     root = residual.larger.root(middle)
@@ -186,7 +190,7 @@ def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
 
 
 def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_start: float) -> Iterator[slice]:
-    """Samples of the stretches of a segment, the last of each being the first of the next."""
+    """Yield slices of samples for the stretches of a segment, which share their end samples."""
     steps, changing = len(segment.acceleration), segment.start < steady_start
     parts = (_OF_RECORD if isinstance(segment, RecordSegment) else _STRETCHES) if changing else 1
     decay = np.abs(residual.damping).sum(axis=0).max() / 2 * (segment.end - segment.start)
@@ -196,9 +200,9 @@ def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_sta
 
 
 class _Followed(NamedTuple):
-    """The difference in a stretch: of the tip at most, coordinates and rates (n,) at the end, and ringing.
+    """Difference in a stretch: largest at the tip, coordinates and rates (n,) at the end, and ringing.
 
-    The ringing is the amplitude of the tip [m] by the fast modes, if the stretch begins with a jump.
+    Ringing is the amplitude of the tip [m] by the fast modes, if the stretch begins with a jump.
     """
 
     largest: float
@@ -229,7 +233,7 @@ def _follow(
 
 @dataclass(frozen=True)
 class _Oscillators:
-    """The modes of the mean stiffness in a stretch as oscillators.
+    """Modes of the mean stiffness in a stretch, as oscillators.
 
     Parameters
     ----------
@@ -238,17 +242,17 @@ class _Oscillators:
     values : ndarray, shape (N, k)
         Values of the quantities that multiply the matrices of stiffness.
     modes : ndarray, shape (n, n)
-        The modes, in columns.
+        Modes of the mean stiffness, in columns.
     coupled : ndarray, shape (k, n, n)
-        The matrices of stiffness in these modes, without their diagonals.
+        Stiffness matrices in these modes, without their diagonals.
     stiff : ndarray, shape (N, n)
         Stiffness of each mode.
     decay : ndarray, shape (n,)
-        Rate of decay of each [1/s].
+        Rate of decay of each mode [1/s].
     slow : ndarray of bool, shape (n,)
-        Which modes the times resolve.
+        Whether the times resolve each mode.
     root, turn : ndarray, shape (N, j)
-        Roots of the frequencies of these, and their free motion as complex numbers.
+        Square roots of the resolved modes' frequencies, and their free motion as complex numbers.
     """
 
     t: np.ndarray
@@ -263,7 +267,7 @@ class _Oscillators:
 
     @classmethod
     def of(cls, residual: _Residual, t: np.ndarray, values: np.ndarray) -> _Oscillators | None:
-        """The oscillators; None if one diverges or is heavily damped."""
+        """Build the oscillators; None if one diverges or is heavily damped."""
         squares, modes = residual.mean_modes(values)
         matrices = modes.T @ residual.stiffness @ modes
         diagonals = np.diagonal(matrices, axis1=1, axis2=2)
@@ -279,14 +283,14 @@ class _Oscillators:
         return cls(t, values, modes, coupled, stiff, decay, slow, np.sqrt(w), turn)
 
     def coupling(self, y: np.ndarray) -> np.ndarray:
-        """Force on each mode by the motion y of the others: shape (N, n)."""
+        """Compute the force on each mode by the motion y of the others: shape (N, n)."""
         each = (k[:, None] * (y @ K) for k, K in zip(self.values.T, self.coupled, strict=True))
         return sum(each, np.zeros_like(y))
 
     def respond(
         self, force: np.ndarray, y0: np.ndarray, v0: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Motion (N, n) under forces (N, n), rates at the end, and jumps of the fast modes at the start."""
+        """Compute the motion (N, n) under forces (N, n), rates at the end, and fast modes' initial jumps."""
         y, slow = force / self.stiff, self.slow
         end = (y[-1] - y[-2]) / (self.t[-1] - self.t[-2])
         jump = np.abs(np.where(slow, 0.0, y0 - y[0]))
@@ -300,6 +304,6 @@ class _Oscillators:
 
 
 def _cumulative(values: np.ndarray, dt: np.ndarray) -> np.ndarray:
-    """Integrals from the first of some times to each, (N, j), by trapezoids of widths dt (N - 1, 1)."""
+    """Integrate values from the first time to each by trapezoids of widths dt (N - 1, 1): shape (N, j)."""
     parts = (values[1:] + values[:-1]) * (dt / 2)
     return np.concatenate([np.zeros_like(values[:1]), np.cumsum(parts, axis=0)])

@@ -1,4 +1,4 @@
-"""Equations of motion of a bent beam in modal coordinates, evaluated at times for the integrators."""
+"""Equations of motion of a beam bent in space, in modal coordinates, evaluated at times for integrators."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.system import ModalSystem
 
-_STEP = 1e-5  # of differences, over the size of a coordinate: the tangent only guides Newton's method
+_STEP = 1e-5  # relative step of differences: the tangent only guides Newton's method
 
 
 class DriveInSpace(NamedTuple):
-    """Motion of the root as it drives the beam, at the nodes of a step.
+    """Motion of the root that drives the beam, at the nodes of a step.
 
     Parameters
     ----------
@@ -38,45 +38,45 @@ class DriveInSpace(NamedTuple):
     root: np.ndarray
 
     def step(self, k: int) -> DriveInSpace:
-        """The drive in one of several steps."""
+        """Select the drive in one of several steps."""
         return DriveInSpace(*(values[k] for values in self))
 
     def node(self, k: int) -> DriveInSpace:
-        """The drive at one node of a step alone, s = 1."""
+        """Select the drive at one node of a step, s = 1."""
         return DriveInSpace(*(values[..., [k]] for values in self))
 
     @property
     def carrier(self) -> Carrier:
-        """The motion of the carrier at the nodes."""
+        """Motion of the carrier at the nodes of the step."""
         return Carrier(*(values.swapaxes(-1, -2) for values in self))
 
 
 class Evaluated(Protocol):
-    """Equations at s sets of coordinates, rates and accelerations; derivatives of each set, or of one."""
+    """Equations evaluated at s sets of coordinates, rates and accelerations, with their derivatives."""
 
     @property
     def residual(self) -> np.ndarray:
-        """Residual of the equations of motion (s, n)."""
+        """Residual of the equations of motion, shape (s, n)."""
         ...
 
     @property
     def elastic(self) -> np.ndarray:
-        """Elastic force (s, n)."""
+        """Elastic force, shape (s, n)."""
         ...
 
     @property
     def mass(self) -> np.ndarray:
-        """Derivative by the accelerations (s or 1, n, n)."""
+        """Derivative of the residual by the accelerations, shape (s or 1, n, n)."""
         ...
 
     @property
     def damping(self) -> np.ndarray:
-        """Derivative by the rates (s or 1, n, n)."""
+        """Derivative of the residual by the rates, shape (s or 1, n, n)."""
         ...
 
     @property
     def stiffness(self) -> np.ndarray:
-        """Derivative by the coordinates (s or 1, n, n)."""
+        """Derivative of the residual by the coordinates, shape (s or 1, n, n)."""
         ...
 
 
@@ -91,7 +91,7 @@ class BeamInSpaceSystem:
     motion : Motion
         Motion of the root.
     branch : {"straight", "bent"}
-        Equilibria of which a run begins with one, if it is to begin in equilibrium.
+        Branch of the equilibrium in which a run begins, if it is to begin in equilibrium.
     """
 
     elastica: RotatingBeam
@@ -100,14 +100,14 @@ class BeamInSpaceSystem:
 
     @classmethod
     def of_model(cls, model: Model, basis: ModalBasis, motion: Motion) -> Self:
-        """Equations of a model for large deflection in the coordinates of a modal basis."""
+        """Build the equations of a model for large deflection in the coordinates of a modal basis."""
         bends = model.scene.bends_in_space
         modal = reduce_to_modes(model.bent.about_straight if bends else model.equations, basis)
         return cls(model.bent.reduced(modal), motion, model.scene.physics.branch)
 
     @property
     def equations(self) -> Equations:
-        """Equations of the same coordinates, linear about the straight beam."""
+        """Equations in the same coordinates, linear about the straight beam."""
         return self.elastica.linear
 
     @property
@@ -117,15 +117,15 @@ class BeamInSpaceSystem:
 
     @cached_property
     def straight(self) -> ModalSystem:
-        """Equations of motion of the same coordinates, linear about the straight beam."""
+        """Equations of motion in the same coordinates, linear about the straight beam."""
         return ModalSystem(self.equations, self.motion)
 
     def root(self, t: np.ndarray) -> RootMotion:
-        """Motion of the root at times t [s]."""
+        """Compute the motion of the root at times t [s]."""
         return self.equations.root(self.motion.at(t))
 
     def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Deflection [m] over a strip, whose sections keep their shape, at xi (k,), eta (l,): (T, k, l)."""
+        """Compute the deflection [m] over a strip of rigid sections at xi (k,) and eta (l,): (T, k, l)."""
         return np.repeat(self.shape(q, xi)[:, :, None], len(eta), axis=2)
 
     def at(self, drive: Any, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Evaluated:
@@ -138,12 +138,12 @@ class BeamInSpaceSystem:
         return np.concatenate([v, self._acceleration(t, q, v)])
 
     def _acceleration(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Accelerations (n,) at a time [s]."""
+        """Compute the accelerations (n,) at a time [s]."""
         here = self.at(self.drive(self.root(np.array([t]))), q[None], v[None], np.zeros((1, self.size)))
         return np.linalg.solve(here.mass[0], -here.residual[0])
 
     def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Jacobian of y' with respect to y, shape (2 n, 2 n)."""
+        """Compute the Jacobian of y' with respect to y, shape (2 n, 2 n)."""
         n = self.size
         q, v = np.split(y, 2)
         drive = self.drive(self.root(np.array([t])))
@@ -153,53 +153,57 @@ class BeamInSpaceSystem:
         J[n:] = -np.linalg.solve(here.mass[0], np.hstack([here.stiffness[0], here.damping[0]]))
         return J
 
-    # Outputs ------------------------------------------------------------------------------------------
+    # Outputs of the system ----------------------------------------------------------------------------
 
     @cached_property
     def _unloaded(self) -> np.ndarray:
-        """Derivatives (3, N) of the position of the unloaded axis."""
+        """Derivatives (3, N) of the unloaded axis' position by the arc length."""
         return self.elastica.beam.at(np.zeros(self.size)).tangents
 
     def deflections(self, q: np.ndarray) -> np.ndarray:
-        """Deflection of the tip [m] at coordinates q (..., n): shape (..., 1 or 2)."""
+        """Compute the deflection of the tip [m] at coordinates q (..., n): shape (..., 1 or 2)."""
         moved = self.elastica.beam.at(q).tangents - self._unloaded
         stations = self.elastica.beam.stations
         return stations.length * (moved @ stations.quadrature.weights)[..., 1 : 1 + self.equations.planes]
 
     def shape(self, q: np.ndarray, xi: np.ndarray, direction: int = 0) -> np.ndarray:
-        """Deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
+        """Compute the deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
         moved = (self.elastica.beam.at(q).tangents - self._unloaded)[..., 1 + check_direction(direction), :]
         stations = self.elastica.beam.stations
         return stations.length * moved @ stations.quadrature.integrate_to(np.asarray(xi)).T
 
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Energy [J] at times t (T,): kinetic relative to the rotating axes, elastic, of the root's motion.
+        """Compute the energy [J] at times t (T,): kinetic in rotating axes, elastic, and of the root.
 
-        The last is the potential of the centrifugal forces and of the acceleration of the root, which an
-        angular acceleration has not; it is 0 where the beam is unloaded.
+        The last is the potential of the centrifugal forces and of the acceleration of the root (an
+        angular acceleration has none); it is 0 for the unloaded beam.
         """
-        carrier, beam = Carrier.of_root(self.elastica.axis, self.root(t)), self.elastica.beam
-        moving, rest = (MovingBeam(beam.at(k * q), k * v, carrier) for k in (1.0, 0.0))
+        carrier = Carrier.of_root(self.elastica.axis, self.root(t))
+        moving, rest = (self.moving(k * q, k * v, carrier) for k in (1.0, 0.0))
         return moving.energy - rest.energy
 
-    # Equations ----------------------------------------------------------------------------------------
+    # Evaluation of the equations ----------------------------------------------------------------------
 
     def drive(self, root: RootMotion) -> Any:
-        """Quantities of the root's motion as they enter the equations."""
+        """Compute the quantities of the root's motion that drive the equations."""
         carrier = Carrier.of_root(self.elastica.axis, root)
         return DriveInSpace(*(values.swapaxes(-1, -2) for values in vars(carrier).values()))
 
     def evaluate(self, drive: Any, motion: np.ndarray) -> Any:
         """Evaluate the equations at coordinates, rates and accelerations (3, s, n) under a drive (s,).
 
-        What is returned has the attributes of `Evaluated`.
+        The result has the attributes of `Evaluated`.
         """
         return EvaluationInSpace(self, drive, motion)
 
     def residual(self, drive: DriveInSpace, motion: np.ndarray) -> np.ndarray:
-        """Residual of the equations of motion (s, n)."""
+        """Compute the residual of the equations of motion, shape (s, n)."""
         q, v, a = motion
-        return MovingBeam(self.elastica.beam.at(q), v, drive.carrier).residual(a)
+        return self.moving(q, v, drive.carrier).residual(a)
+
+    def moving(self, q: np.ndarray, v: np.ndarray, carrier: Carrier) -> MovingBeam:
+        """Return the beam at coordinates and rates (..., n) on a carrier."""
+        return MovingBeam(self.elastica.beam.at(q), v, carrier, self.elastica.load)
 
 
 AnySystem: TypeAlias = ModalSystem | BeamInSpaceSystem
@@ -207,7 +211,7 @@ AnySystem: TypeAlias = ModalSystem | BeamInSpaceSystem
 
 @dataclass(frozen=True)
 class EvaluationInSpace:
-    """The equations at s sets of coordinates, rates and accelerations: their residual and its derivatives.
+    """The equations at s sets of coordinates, rates and accelerations: residual and derivatives.
 
     Parameters
     ----------
@@ -225,38 +229,38 @@ class EvaluationInSpace:
 
     @cached_property
     def elastic(self) -> np.ndarray:
-        """Elastic force (s, n)."""
+        """Elastic force, shape (s, n)."""
         return self.motion[0] @ self.system.elastica.stiffness
 
     @cached_property
     def residual(self) -> np.ndarray:
-        """Residual of the equations of motion (s, n)."""
+        """Residual of the equations of motion, shape (s, n)."""
         return self.system.residual(self.drive, self.motion)
 
     @cached_property
     def _tangents(self) -> np.ndarray:
         """Derivatives (3, s, n, n) by coordinates, rates and accelerations."""
-        (q, v, a), n, beam = self.motion, self.system.size, self.system.elastica.beam
-        step = _STEP * (np.abs(self.motion).max(axis=(1, 2)) + 1 / np.abs(beam.angles).max())
+        (q, v, a), n, moving = self.motion, self.system.size, self.system.moving
+        step = _STEP * (np.abs(self.motion).max(axis=(1, 2)) + 1 / np.abs(self.system.elastica.angles).max())
         steps, still = step[:, None, None, None] * np.eye(n)[:, None], np.zeros((n, 1, n))
-        moved = MovingBeam(beam.at(q + steps[0]), v + still, self.drive.carrier).residual(a + still)
+        moved = moving(q + steps[0], v + still, self.drive.carrier).residual(a + still)
         # Coordinates that stay are turned once.
         rates, accelerations = np.concatenate([steps[1], still]), np.concatenate([still, steps[2]])
-        at_same = MovingBeam(beam.at(q), v + rates, self.drive.carrier).residual(a + accelerations)
+        at_same = moving(q, v + rates, self.drive.carrier).residual(a + accelerations)
         change = np.concatenate([moved, at_same]).reshape(3, n, *q.shape) - self.residual
         return np.moveaxis(change, 1, 3) / step[:, None, None, None]
 
     @property
     def stiffness(self) -> np.ndarray:
-        """Derivative by the coordinates (s, n, n), near enough for Newton's method."""
+        """Derivative of the residual by the coordinates (s, n, n), accurate enough for Newton's method."""
         return self._tangents[0]
 
     @property
     def damping(self) -> np.ndarray:
-        """Derivative by the rates (s, n, n)."""
+        """Derivative of the residual by the rates, shape (s, n, n)."""
         return self._tangents[1]
 
     @property
     def mass(self) -> np.ndarray:
-        """Derivative by the accelerations (s, n, n)."""
+        """Derivative of the residual by the accelerations, shape (s, n, n)."""
         return self._tangents[2]

@@ -1,4 +1,4 @@
-"""Cases of a sweep: the request, and the solution of one chunk of cases, each with its own steps."""
+"""Cases of a sweep over speeds: the request, and the solution of one chunk of cases."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ DONE = "done"
 class SweepRequest(FieldsOnly):
     """Checked arguments of `sweep` on which each case depends.
 
-    The basis is that of all cases, of modes at rest or at the slowest and the fastest speed of all.  Where
-    `modes_at` gives the numbers of modes that some speeds [rad/s] need, ascending, each case takes the larger
-    one of its neighbours there.
+    All cases share the basis: modes at rest, or at the slowest and the fastest speed of all.  Where
+    `modes_at` gives the numbers of modes that some speeds [rad/s] need, ascending, each case uses the larger
+    number of its two neighbours.
     """
 
     scene: Scene
@@ -45,13 +45,13 @@ class SweepRequest(FieldsOnly):
     modes_at: tuple[tuple[float, int], ...] = ()
 
     def transient_request(self, speed: float) -> TransientRequest:
-        """Request of the transient of the case with a final speed [rad/s]."""
+        """Build the request of the transient of one case, given by its final speed [rad/s]."""
         scene, basis = replace(self.scene, motion=self.motion(speed)), self.basis_at(speed)
         how = "auto", self.discretization, "rest", None, {}
         return TransientRequest(scene, self.t_end, self.tolerance, *how, basis)
 
     def basis_at(self, speed: float) -> ModalBasis:
-        """Modal basis of one case, with as many modes as it needs, at its own slowest and fastest speed."""
+        """Choose the modal basis of one case: as many modes as needed, at its slowest and fastest speed."""
         basis = self.basis
         if self.modes_at:
             speeds, modes = zip(*self.modes_at, strict=True)
@@ -66,18 +66,18 @@ class SweepRequest(FieldsOnly):
         return self.scene.physics.planes
 
     def motion(self, speed: float) -> Motion:
-        """Motion at a final speed [rad/s]."""
+        """Build the motion of one case, given by its final speed [rad/s]."""
         assert self.scene.motion is not None
         return self.scene.motion.with_speed(speed)
 
     @cached_property
     def model(self) -> Model:
-        """The discretized scene, chosen for the modal basis and the tolerance."""
+        """Discretized scene, chosen for the modal basis and the tolerance."""
         return choose_for_basis(self.scene, self.discretization, self.basis, self.tolerance)
 
     @property
     def basis_name(self) -> str:
-        """The modal bases of all cases, in words."""
+        """Words for the modal bases of all cases."""
         if self.basis.is_at_rest:
             return str(self.basis)
         fewest = min((modes for _, modes in self.modes_at), default=self.basis.modes)
@@ -87,17 +87,17 @@ class SweepRequest(FieldsOnly):
 
     @cached_property
     def _shared_equations(self) -> Equations:
-        """The equations of motion in the basis of all cases."""
+        """Equations of motion in the basis that all cases share."""
         return self.model.modal_equations(self.basis)
 
     def modal_equations(self, speed: float) -> Equations:
-        """The equations of motion of one case in its modal basis."""
+        """Build the equations of motion of one case in its modal basis."""
         basis = self.basis_at(speed)
         return self._shared_equations if basis == self.basis else self.model.modal_equations(basis)
 
 
 class CaseResult(NamedTuple):
-    """Result of one case: the fields of `Sweep`."""
+    """Result of one case of a sweep, with the fields of `Sweep`."""
 
     peak: float
     largest: float
@@ -113,7 +113,7 @@ def solve_chunk(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseRe
 
 
 def _solve(request: SweepRequest, speed: float) -> CaseResult:
-    """Solve one case as `simulate` does; of its motion only peaks of the tip are kept."""
+    """Solve one case as `simulate` does, but keep only the peaks of the tip."""
     reason = "not finite"
     try:
         if request.scene.physics.large_deflection:

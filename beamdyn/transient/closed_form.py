@@ -1,9 +1,9 @@
-"""Motion at steady speed in closed form: a sum of exponentials, in place of many steps.
+"""Motion at steady speed in closed form, as a sum of exponentials, instead of many time steps.
 
 The equations q'' + C q' + (K + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l have constant C and K, and e and g
-are sums of a few harmonics.  So the motion is that which the loads force, at sums of their frequencies and
-those of e, and free vibrations exp(lambda t) times such sums (Floquet; Hill's method).  Both follow by
-iteration, because e is small.  What the result misses in the equations is measured, and decides whether it
+are sums of a few harmonics.  So the motion consists of a forced part, at sums of the loads' frequencies and
+those of e, and of free vibrations exp(lambda t) times such sums (Floquet; Hill's method).  Both follow by
+iteration, because e is small.  The residual of the equations is measured, and decides whether the result
 is used.
 """
 
@@ -18,33 +18,33 @@ from beamdyn.transient import time_error
 from beamdyn.transient.gauss import interpolate, tableau
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 
-_WORTH_IT = 200  # number of steps below which these cost no more
-_ORDERS = (3, 5)  # powers of e that are tried
-_FIT_TIMES = 8  # times for each harmonic of e and g at which these are fitted
-_GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
-_FIT_ERROR = 1e-3  # error of e and g, over the accuracy
-_SAME = 1e-9  # difference of frequencies that count as equal, over the largest
+_WORTH_IT = 200  # number of steps of a segment below which stepping costs no more than the closed form
+_ORDERS = (3, 5)  # highest powers of e, the variation of the stiffness, that are tried in turn
+_FIT_TIMES = 8  # number of times, for each harmonic of e and g, at which these are fitted
+_GOLDEN = 0.6180339887498949  # reciprocal of the golden ratio: such spacing misses no period of the motion
+_FIT_ERROR = 1e-3  # error of e and g, relative to the accuracy
+_SAME = 1e-9  # relative difference of frequencies that count as equal
 _ABSENT = 1e-12  # factor of a line, over the largest, that is rounding error of the fit
 _MOST_HARMONICS = 400
 _ITERATIONS = 30
 _CONVERGED = 1e-15
-_CHECKED = 64  # times at which the equations are checked
-_NEGLIGIBLE = 1e-2  # share of the accuracy for all small terms that are left out
-_RESOLVED = 12.0  # phase per step [rad] of the fastest terms that the nodes of a step show
-_MOST_GROWTH = 20.0  # exponent of the largest growth
-_ROWS = 32  # steps whose exponentials are computed; the square of it is evaluated as one batch
+_CHECKED = 64  # number of times at which the equations are checked
+_NEGLIGIBLE = 1e-2  # fraction of the accuracy for all small terms that are left out
+_RESOLVED = 12.0  # phase per step [rad] of the fastest terms that the nodes of a step resolve
+_MOST_GROWTH = 20.0  # largest exponent by which the motion may grow over a segment
+_ROWS = 32  # number of steps whose exponentials are computed; its square is evaluated as one batch
 
 
 @dataclass(frozen=True)
 class _Harmonics:
-    """The varying stiffness and the loads as sums of harmonics exp(i frequency (t - t0)).
+    """Varying stiffness and loads as sums of harmonics exp(i frequency (t - t0)).
 
     Parameters
     ----------
     frequency : ndarray, shape (f,)
         Angular frequencies [rad/s], ascending, with their negatives.
     stiffness : ndarray, shape (f, n, n)
-        Factors of the varying stiffness; that of frequency 0 is in `mean`.
+        Factors of the varying stiffness; its part of frequency 0 is in `mean`.
     load : ndarray, shape (f, n)
         Factors of the loads.
     mean : ndarray, shape (n, n)
@@ -58,7 +58,10 @@ class _Harmonics:
 
     @classmethod
     def fit(cls, system: ModulatedSystem, t0: float, t1: float, accuracy: float) -> _Harmonics | None:
-        """Fit e and g from t0 to t1 [s]; None if they contain more than the lines of the system."""
+        """Fit the factors of stiffness e and loads g from t0 to t1 [s].
+
+        None if they contain other frequencies than the lines of the system.
+        """
         lines = _distinct(np.concatenate([-system.lines, [0.0], system.lines]))
         count = _FIT_TIMES * len(lines)
         tau = (t1 - t0) * (_GOLDEN * np.arange(1, 2 * count + 1) % 1)
@@ -76,7 +79,7 @@ class _Harmonics:
         return cls(lines, np.tensordot(found[:, :m], system.G, axes=1), load, mean)
 
     def sums(self, order: int) -> np.ndarray:
-        """Sums of up to `order` frequencies of the stiffness, ascending: shape (k,)."""
+        """List sums of up to `order` frequencies of the stiffness, ascending: shape (k,)."""
         varying = self.frequency[np.abs(self.stiffness).any(axis=(1, 2))]
         found = np.zeros(1)
         for _ in range(order):
@@ -84,9 +87,10 @@ class _Harmonics:
         return found
 
     def coupling(self, sums: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-        """Forces (..., k, n) of the varying stiffness on a motion with factors q (..., k, n) at sums (k,)."""
+        """Make the function from a motion q (..., k, n) to forces (..., k, n) of the varying stiffness."""
         varying = np.abs(self.stiffness).any(axis=(1, 2))
-        source = _places(sums, sums - self.frequency[varying, None])  # which sum leads to each; k where none
+        # Index of the sum that leads to each sum; k where there is none.
+        source = _places(sums, sums - self.frequency[varying, None])
         factors = self.stiffness[varying].swapaxes(1, 2)
 
         def force(q: np.ndarray) -> np.ndarray:
@@ -97,14 +101,14 @@ class _Harmonics:
 
 
 def _distinct(frequencies: np.ndarray) -> np.ndarray:
-    """Frequencies, ascending, each once."""
+    """Sort frequencies, and leave out those that are equal to others."""
     sorted_ = np.sort(frequencies)
     apart = np.diff(sorted_) > _SAME * max(abs(sorted_[0]), abs(sorted_[-1]))
     return sorted_[np.concatenate([[True], apart])]
 
 
 def _places(sums: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Indices of wanted frequencies, of any shape, among k ascending sums; k where none is equal."""
+    """Find the indices of wanted frequencies among k ascending sums; k where none is equal."""
     after = np.searchsorted(sums, wanted - 10 * _SAME * np.abs(sums).max())
     missing = np.abs(np.append(sums, np.inf)[after] - wanted) > 10 * _SAME * np.abs(sums).max()
     return np.where(missing, len(sums), after)
@@ -112,27 +116,27 @@ def _places(sums: np.ndarray, wanted: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _Exponentials:
-    """A motion q(t) = Re sum_k b_k exp(s_k (t - t0)).
+    """Motion as a sum of exponentials, q(t) = Re sum_k b_k exp(s_k (t - t0)).
 
     Parameters
     ----------
     s : ndarray of complex, shape (k,)
-        Exponents [1/s].
+        Exponents s_k [1/s].
     b : ndarray of complex, shape (k, n)
-        Factors.
+        Factors b_k of the exponentials.
     """
 
     s: np.ndarray
     b: np.ndarray
 
     def at(self, tau: np.ndarray, derivatives: int = 0) -> np.ndarray:
-        """Values at times tau (N,) [s] after t0, and those of derivatives: shape (derivatives + 1, N, n)."""
+        """Evaluate the motion and its derivatives at times tau (N,) [s] after t0: (derivatives + 1, N, n)."""
         powers = self.s ** np.arange(derivatives + 1)[:, None]
         return np.real(np.exp(np.outer(tau, self.s)) @ (powers[:, :, None] * self.b))
 
 
 def _forced(harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int) -> _Exponentials | None:
-    """The motion that the loads force; None if it is not found."""
+    """Find the motion that the loads force; None if the iteration fails."""
     loaded = np.abs(harmonics.load).any(axis=1)
     if not loaded.any():
         return _Exponentials(np.zeros(0, complex), np.zeros((0, len(K)), complex))
@@ -156,7 +160,7 @@ def _forced(harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int) -> 
 
 
 def _stiffness(s: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Dynamic stiffness s^2 + s C + K at exponents s (...): shape (..., n, n)."""
+    """Compute the dynamic stiffness s^2 + s C + K at exponents s (...): shape (..., n, n)."""
     s = s[..., None, None]
     return s**2 * np.eye(len(K)) + s * C + K
 
@@ -164,16 +168,17 @@ def _stiffness(s: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
 def _free(
     harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Exponents (n, k) and shapes (n, k, n) of the n free vibrations; None if they are not found.
+    """Find exponents (n, k) and shapes (n, k, n) of the n free vibrations; None if the iteration fails.
 
-    Each is corrected until it satisfies the equations at all sums of frequencies, by Newton's method with
+    Each vibration is corrected to satisfy the equations at all sums of frequencies, by Newton's method with
     the inverses at the exponents without the varying stiffness; that of its own exponent is bordered by the
     direction of the shape, in which the exponent changes instead.
     """
     n, sums = len(K), harmonics.sums(order)
     values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
     upper = np.imag(values) > 0
-    if upper.sum() != n or n * len(sums) > 4 * _MOST_HARMONICS:  # one does not oscillate, or too many terms
+    # A vibration does not oscillate, or there are too many terms.
+    if upper.sum() != n or n * len(sums) > 4 * _MOST_HARMONICS:
         return None
     exponent, shape = values[upper], vectors[:n, upper].T
     shape = shape / np.linalg.norm(shape, axis=1)[:, None]
@@ -212,16 +217,16 @@ def propagate_in_closed_form(
     stages: int,
     accuracy: float,
 ) -> time_error.SegmentWithError | None:
-    """Motion at steady speed, as `beamdyn.transient.weakly_modulated.propagate_modulated` has it.
+    """Compute the motion at steady speed as a sum of exponentials, sampled in steps.
 
     Parameters
     ----------
     system : ModulatedSystem
         The equations.
     t0, t1, steps, q0, v0, stages
-        As for `beamdyn.transient.gauss.propagate`: the steps only sample the motion.
+        As for `beamdyn.transient.gauss.propagate`, but the steps only sample the motion.
     accuracy : float
-        Largest error by what the result misses in the equations, over the largest coordinate.
+        Largest error by the residual of the equations, relative to the largest coordinate.
 
     Returns
     -------
@@ -238,7 +243,7 @@ def propagate_in_closed_form(
     for order in _ORDERS:
         try:
             motion = _solve(harmonics, C, K + harmonics.mean, order, q0, v0)
-        except np.linalg.LinAlgError:  # singular at resonance without damping
+        except np.linalg.LinAlgError:  # the equations are singular at resonance without damping
             return None
         if motion is None or np.real(motion.s).max(initial=0.0) * (t1 - t0) > _MOST_GROWTH:
             return None
@@ -246,7 +251,8 @@ def propagate_in_closed_form(
         e, g = system.scalars(t0 + tau)
         q, v, a = motion.at(tau, 2)
         varying = (e[:, :, None] * (q @ system.G.swapaxes(1, 2)).swapaxes(0, 1)).sum(axis=1)
-        missed = a + v @ C.T + q @ K.T + varying - g @ system.P  # counts as if it were always in resonance
+        # The residual counts as if it were always in resonance.
+        missed = a + v @ C.T + q @ K.T + varying - g @ system.P
         error = (t1 - t0) * np.abs(missed).mean(axis=0) / np.sqrt(np.abs(np.diag(K)))
         if error.sum() <= accuracy * float(np.abs(q).max()):
             return _sample(motion, t0, (t1 - t0) / steps, steps, stages, accuracy, error)
@@ -256,7 +262,7 @@ def propagate_in_closed_form(
 def _solve(
     harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int, q0: np.ndarray, v0: np.ndarray
 ) -> _Exponentials | None:
-    """Forced motion, and the free vibrations that lead from it to the state q0, v0; None if not found."""
+    """Solve forced motion plus the free vibrations that match the state q0, v0; None if not found."""
     forced, free = _forced(harmonics, C, K, order), _free(harmonics, C, K, order)
     if forced is None or free is None:
         return None
@@ -273,7 +279,7 @@ def _solve(
 def _sample(
     motion: _Exponentials, t0: float, h: float, steps: int, stages: int, accuracy: float, missed: np.ndarray
 ) -> time_error.SegmentWithError:
-    """The motion at the ends of steps and at their nodes, without terms that are small or too fast."""
+    """Sample the motion at the ends and nodes of steps, without terms that are small or too fast."""
     growth = np.exp(np.maximum(np.real(motion.s), 0) * h * steps)
     size = np.abs(motion.b).max(axis=1) * growth
     rank = np.argsort(size)
@@ -293,7 +299,7 @@ def _sample(
 
 
 def _evaluate(motion: _Exponentials, h: float, steps: int, stages: int) -> tuple[np.ndarray, np.ndarray]:
-    """Augmented states at the ends of steps, (N + 1, 2 n + 1), and accelerations (N, s, n) at their nodes."""
+    """Evaluate augmented states (N + 1, 2 n + 1) at ends of steps, and accelerations (N, s, n) at nodes."""
     s, n = motion.s, motion.b.shape[1]
     nodes = np.exp(np.multiply.outer(s, h * tableau(stages).c))[:, :, None] * (s**2)[:, None, None]
     at_nodes = (nodes * motion.b[:, None]).reshape(len(s), stages * n)

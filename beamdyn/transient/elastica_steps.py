@@ -1,12 +1,12 @@
-"""Steps of bent beams, whose equations are nonlinear, by Gauss collocation, and the error from a second run.
+"""Time steps of bent beams, whose equations are nonlinear, by Gauss collocation; errors from a second run.
 
 As in `beamdyn.transient.gauss`, the unknowns of a step are the accelerations a_i at its s nodes; rates and
 coordinates there are v + h sum A_ij a_j and q + c_i h v + h^2 sum A2_ij a_j.  Newton's method solves for them
 to rounding, with the derivatives of the equations at all nodes.  The method is symmetric in time and has no
 numerical damping, so that energy does not drift.
 
-A run with two more stages in the same steps, of an order higher by four, shows the error of the first, with
-all that the equations make of it.  The second is the result: its own error is far smaller.
+A run with two more stages in the same steps, of an order higher by four, shows the first run's error, with
+its growth by the equations.  The second run is the result: its own error is far smaller.
 """
 
 from __future__ import annotations
@@ -40,24 +40,26 @@ from beamdyn.transient.time_error import (
 )
 from beamdyn.transient.trajectory import Trajectory
 
-_ITERATIONS = 30  # of Newton's method
-_CONVERGED = 1e-13  # error of the accelerations, over their size, with which the iteration ends
-_LEAST_REDUCTION = 1e-3  # least ratio of errors by an iteration that the last two changes may show
-_STALLED = 1e-9  # error of the accelerations over their size below which a stalled iteration has converged
-_BALANCED = 1e-12  # the same for the residual over the elastic force, where accelerations are small beside it
-_FAST = 0.1  # reduction by an iteration up to which the derivatives are kept
+_ITERATIONS = 30  # largest number of iterations of Newton's method in a step
+_CONVERGED = 1e-13  # relative error of the accelerations at which the iteration ends
+_LEAST_REDUCTION = 1e-3  # smallest ratio of errors in an iteration that the last two changes may indicate
+_STALLED = 1e-9  # relative error of the accelerations below which a stalled iteration has converged
+# Residual over the elastic force below which a stalled iteration has converged, where accelerations are
+# small.
+_BALANCED = 1e-12
+_FAST = 0.1  # reduction of the error by an iteration up to which the derivatives are kept
 _FEW = 4  # number of iterations up to which the next step begins with the same derivatives
-_FINER = STAGES + 2  # stages of the second run
-_BALANCE = 1e-13  # what is out of balance in equilibrium, over the largest force or coordinate: rounding
-_TIMES_COMPARED = 257  # times at which the motion of the root is compared with that at the start
-_SHORTER = 0.5  # phase angle of the next step size, over that of a step that was not solved
-_SHORT = 1.0  # phase angle of steps [rad] below which they resolve one mode more instead
-_MANY = 64  # number of pieces of a motion, such as one given by samples, above which none is divided further
-_CHECKED = 48  # steps of a segment at which the interpolation is checked
+_FINER = STAGES + 2  # number of stages of the second run
+_BALANCE = 1e-13  # residual in equilibrium, relative to the largest force or coordinate, that is rounding
+_TIMES_COMPARED = 257  # number of times at which the motion of the root is compared with that at the start
+_SHORTER = 0.5  # ratio of the next step's phase angle to that of a step that was not solved
+_SHORT = 1.0  # phase angle of steps [rad] below which they resolve one more mode instead
+_MANY = 64  # number of pieces of a motion, such as a sampled one, above which no piece is divided further
+_CHECKED = 48  # number of steps of a segment at which the interpolation is checked
 
 
 def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
-    """The path of a beam that stays at rest, by a constant motion of the root and forces in equilibrium."""
+    """Build the path of a beam that stays at rest, if root motion is constant and forces in equilibrium."""
     q, v = y0[None, : system.size], y0[None, system.size :]
     if system.motion.steady_start > 0 or v.any():
         return None
@@ -81,9 +83,9 @@ def attempt_elastica(
     step_size: StepSize,
     before: Attempt | None = None,
 ) -> Attempt:
-    """Integrate twice with equal steps in each segment, of 8 and of 10 stages; shorter ones if not solved.
+    """Integrate twice with equal steps in each segment, with 8 and 10 stages, shortening failed steps.
 
-    Steps that were not solved are shortened, at last until they resolve the vibration of all coordinates.
+    Steps that were not solved are shortened, finally until they resolve the vibration of all coordinates.
     """
     pieces = smooth_piece_ends(system.motion, t_end)
     edges = pieces if len(pieces) > _MANY else split_at_breakpoints(system.motion, t_end)
@@ -117,12 +119,12 @@ def attempt_elastica(
 
 
 def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
-    """Deflections of the tip (k, planes) at the ends of the steps [m]: it may move across alone."""
+    """Compute deflections of the tip (k, planes) at the ends of the steps [m]."""
     return system.deflections(segment.state[:, 1 : system.size + 1])
 
 
 def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
-    """Error of the tip deflection: distance of two runs, divided among the coordinates."""
+    """Estimate the error of the tip deflection: the distance of two runs, divided among coordinates."""
     tip, n, straight = 0.0, system.size, system.straight
     change = np.zeros(n)
     for first, second in zip(coarse, fine, strict=True):
@@ -130,7 +132,8 @@ def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[S
         change = np.maximum(change, difference * np.abs(system.equations.tips).max(axis=0))
         tip = max(tip, float(np.abs(_tips(system, first) - _tips(system, second)).max()))
     modes = tip * change / max(change.sum(), 1e-300)
-    longest = max(fine, key=lambda segment: segment.h)  # whose phase errors are those of a straight beam
+    # The phase errors of its steps are those of a straight beam.
+    longest = max(fine, key=lambda segment: segment.h)
     starts = np.array([(longest.start + longest.end - longest.h) / 2])
     maps, finer = (step_maps(straight, starts, longest.h, tableau(s)).step for s in (STAGES, _FINER))
     phases = phase_errors(finer - maps, vibration_frequencies(straight, longest.end))
@@ -140,7 +143,7 @@ def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[S
 
 
 def _interpolation_error(system: BeamInSpaceSystem, segment: Segment) -> float:
-    """Largest error of the tip's deflection between the ends of steps [m], by steps with more stages."""
+    """Estimate the tip deflection's largest error between step ends [m], by steps with more stages."""
     error, h = 0.0, segment.h
     for k in np.unique(np.linspace(0, len(segment.acceleration) - 1, _CHECKED).astype(int)):
         state, acceleration = segment.state[k : k + 2], segment.acceleration[k : k + 1]
@@ -159,7 +162,7 @@ def _interpolation_error(system: BeamInSpaceSystem, segment: Segment) -> float:
 
 
 class StepNotSolved(ArithmeticError):
-    """A step whose equations Newton's method does not solve."""
+    """Raised when Newton's method does not solve the equations of a step."""
 
 
 def propagate_elastica(
@@ -172,7 +175,7 @@ def propagate_elastica(
     stages: int,
     like: Segment | None = None,
 ) -> Segment:
-    """Integrate over equal steps: as `beamdyn.transient.gauss.propagate`.
+    """Integrate over equal steps by Gauss collocation; like `beamdyn.transient.gauss.propagate`.
 
     Parameters
     ----------
@@ -192,7 +195,7 @@ def propagate_elastica(
     Raises
     ------
     StepNotSolved
-        If a step is too long.
+        If a step is too long for Newton's method to converge.
     """
     h, n = (t1 - t0) / steps, system.size
     step = _Step(system, h, tableau(stages))
@@ -212,18 +215,18 @@ def propagate_elastica(
 
 
 def _at_nodes(given: int, wanted: int) -> np.ndarray:
-    """Matrix (wanted, given) from values at the nodes of one Gauss rule to those at the nodes of another."""
+    """Build the matrix (wanted, given) from values at one Gauss rule's nodes to those at another's."""
     x, w = legendre.leggauss(given)
     degrees = np.arange(given)
     series = (2 * degrees[:, None] + 1) / 2 * legendre.legvander(x, given - 1).T * w
     return legendre.legvander(2 * tableau(wanted).c - 1, given - 1) @ series
 
 
-Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # factors of a matrix, and the pivots
+Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # factors of a matrix, and pivots
 
 
 class Tangent(NamedTuple):
-    """Derivatives of the equations by coordinates and rates (1, n, n), and the factors of a step's matrix."""
+    """Derivatives of the equations by coordinates and rates (1, n, n), with factors of a step's matrix."""
 
     stiffness: np.ndarray
     damping: np.ndarray
@@ -231,7 +234,7 @@ class Tangent(NamedTuple):
 
 
 class _Step:
-    """Solution of steps of one length h [s] and one number of stages."""
+    """Solver of steps of one length h [s] and one number of stages."""
 
     def __init__(self, system: BeamInSpaceSystem, h: float, table: Tableau) -> None:
         self.system, self.h, self.table = system, h, table
@@ -243,13 +246,13 @@ class _Step:
     def advance(
         self, drive: Any, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Coordinates and rates at the end of a step, and accelerations at its nodes."""
+        """Compute coordinates and rates at the end of a step, and accelerations at its nodes."""
         drift, middle = self.drift * v, len(self.table.c) // 2
-        if self.tangent is None:  # at rest in these coordinates, the same for all nodes
+        if self.tangent is None:  # tangent at rest in these coordinates, the same for all nodes
             still = np.zeros((1, len(q)))
             here = self.system.at(drive.node(middle), q[None], still, still)
             self.tangent = Tangent(here.stiffness, here.damping, self._factorize(here))
-        if guess is None:  # as if the equations were linear about the beginning of the step
+        if guess is None:  # initial guess from equations linearized about the beginning of the step
             still = np.zeros((len(self.table.c), len(q)))
             load = self.system.at(drive, still + q, still, still).residual
             load += self.tangent.damping[0] @ v + drift @ self.tangent.stiffness[0].T
@@ -258,7 +261,7 @@ class _Step:
         return q + self.h * v + self.end_q @ a, v + self.end_v @ a, a
 
     def _solve(self, drive: Any, drifted: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-        """Solve for the accelerations (s, n) by Newton's method; the tangent is kept while it serves."""
+        """Solve for accelerations (s, n) by Newton's method, keeping the tangent while it serves."""
         assert self.tangent is not None
         factors: Factors | None = self.tangent.factors
         start, last = np.stack([drifted, np.broadcast_to(v, a.shape), np.zeros_like(a)]), np.inf
@@ -285,7 +288,7 @@ class _Step:
         raise StepNotSolved("the equations of a step were not solved: take shorter steps")
 
     def _factorize(self, now: Evaluated) -> Factors:
-        """LU factors of the derivative of all residuals of a step by all accelerations."""
+        """Compute LU factors of the derivative of all residuals of a step by all accelerations."""
         s, n = len(self.table.c), self.system.size
         matrix = self.to_q[:, None, :, None] * now.stiffness[:, :, None]
         matrix += self.to_v[:, None, :, None] * now.damping[:, :, None]
@@ -296,11 +299,11 @@ class _Step:
 
 
 def _norm(values: np.ndarray) -> float:
-    """Root of the sum of squares."""
+    """Compute the Euclidean norm of all values."""
     flat = values.ravel()
     return math.sqrt(flat.dot(flat))
 
 
 def _divide(factors: Factors, residual: np.ndarray) -> np.ndarray:
-    """Solve for accelerations by the factors of a matrix."""
+    """Solve a linear system for accelerations by the factors of its matrix."""
     return dgetrs(*factors, residual.ravel())[0].reshape(residual.shape)

@@ -1,6 +1,6 @@
-"""Equations of motion for large deflection in modal coordinates, evaluated at times for the integrators.
+"""Equations of motion for large deflection in one plane, in modal coordinates, for the integrators.
 
-They are those of the beam in space with one curvature, in the form in which they cost least.  Positions are
+The equations are those of the beam in space with one curvature, in their cheapest form.  Positions are
 sums over the slope angles, p_i = sum_j P_ji (cos theta_j, sin theta_j), so that the mass enters by one matrix
 of the angles, H = P m P': the forces are
 
@@ -25,23 +25,23 @@ from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 class ElasticaSystem(BeamInSpaceSystem):
     """Equations of motion of a straight inextensible beam that bends by any angle in one plane.
 
-    Integrators ask for them a million times: in one plane they take a tenth of the time of those in space.
+    Integrators evaluate them a million times: in one plane this takes a tenth of the time in space.
     """
 
-    # Outputs ------------------------------------------------------------------------------------------
+    # Outputs of the system ----------------------------------------------------------------------------
 
     def deflections(self, q: np.ndarray) -> np.ndarray:
-        """Deflection of the tip along e [m] at coordinates q (..., n): shape (..., 1)."""
+        """Compute the deflection of the tip along e [m] at coordinates q (..., n): shape (..., 1)."""
         return self.shape(q.reshape(-1, self.size), np.ones(1)).reshape(*q.shape[:-1], 1)
 
     def shape(self, q: np.ndarray, xi: np.ndarray, direction: int = 0) -> np.ndarray:
-        """Deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
+        """Compute the deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
         if check_direction(direction):
             return np.zeros((len(q), len(xi)))
         stations, slopes = self.elastica.beam.stations, np.sin(q @ self.elastica.angles)[..., :-1]
         return stations.length * slopes @ stations.quadrature.integrate_to(np.asarray(xi)).T
 
-    # Equations ----------------------------------------------------------------------------------------
+    # Evaluation of the equations ----------------------------------------------------------------------
 
     @cached_property
     def in_plane(self) -> float:
@@ -50,7 +50,7 @@ class ElasticaSystem(BeamInSpaceSystem):
 
     @cached_property
     def positions(self) -> np.ndarray:
-        """Positions (N + 1, N + 1 + k) of the masses, by the cosines or sines of the angles [m]."""
+        """Matrix (N + 1, N + 1 + k) from cosines or sines of slope angles to positions of the masses [m]."""
         stations, masses = self.elastica.beam.stations, self.elastica.beam.masses
         positions = np.zeros((stations.sections, stations.count))
         positions[:-1] = stations.to_all(np.eye(stations.sections - 1))
@@ -59,7 +59,7 @@ class ElasticaSystem(BeamInSpaceSystem):
 
     @cached_property
     def kernel(self) -> np.ndarray:
-        """Matrix H (N + 1, N + 1) of the mass, by the slope angles [kg m2]."""
+        """Mass matrix (N + 1, N + 1) over the slope angles [kg m2]."""
         return (self.positions * self.elastica.beam.masses.mass) @ self.positions.T
 
     @cached_property
@@ -75,15 +75,15 @@ class ElasticaSystem(BeamInSpaceSystem):
 
     @cached_property
     def kernel_and_moments(self) -> np.ndarray:
-        """-H, as X and Y are summed with the other sign, and in a further row the moments: (N + 2, N + 1).
+        """Matrix (N + 2, N + 1): the negative kernel, and below it a row of moments.
 
-        The moments g [kg m] are those at the slope angles under a unit acceleration.
+        The moments [kg m] act at the slope angles under a unit acceleration of the root.
         """
         return np.vstack([-self.kernel, self.positions @ self.elastica.beam.masses.mass])
 
     @cached_property
     def out_of_plane(self) -> float:
-        """1 where the beam bends out of the plane of rotation, 0 where it bends in it."""
+        """Factor: 1 where the beam bends out of the plane of rotation, 0 where it bends in that plane."""
         return 1 - self.in_plane**2
 
     @cached_property
@@ -102,7 +102,7 @@ class ElasticaSystem(BeamInSpaceSystem):
         return np.ascontiguousarray(self.elastica.angles.T)
 
     def drive(self, root: RootMotion) -> Drive:
-        """Quantities of the root's motion as they enter the equations."""
+        """Compute the quantities of the root's motion that drive the equations."""
         c = self.in_plane
         return Drive(
             turning=c * np.stack([root.speed, root.acceleration], axis=-2),
@@ -116,14 +116,14 @@ class ElasticaSystem(BeamInSpaceSystem):
 
 
 class Drive(NamedTuple):
-    """Motion of the root as it drives the beam, at the nodes of a step.
+    """Motion of the root that drives the beam, at the nodes of a step.
 
     Parameters
     ----------
     turning : ndarray, shape (..., 2, s)
-        c omega [rad/s] and c omega' [rad/s2]: turning of the axes in the plane of bending, negative.
+        Negative rotation of the axes in the plane of bending, c omega [rad/s] and c omega' [rad/s2].
     squared : ndarray, shape (..., s)
-        omega^2 [rad2/s2].
+        Squared speed omega^2 [rad2/s2].
     root : ndarray, shape (..., 2, s)
         Acceleration of the root along b1 and e [m/s2].
     """
@@ -133,18 +133,18 @@ class Drive(NamedTuple):
     root: np.ndarray
 
     def step(self, k: int) -> Drive:
-        """The drive in one of several steps."""
+        """Select the drive in one of several steps."""
         return Drive(*(values[k] for values in self))
 
     def node(self, k: int) -> Drive:
-        """The drive at one node of a step alone, s = 1."""
+        """Select the drive at one node of a step, s = 1."""
         return Drive(*(values[..., [k]] for values in self))
 
 
 class Evaluation:
-    """The equations at s sets of coordinates, rates and accelerations: their residual and its derivatives.
+    """The equations at s sets of coordinates, rates and accelerations: residual and derivatives.
 
-    Integrators ask for the residual a million times, of arrays so small that the number of operations counts.
+    Integrators evaluate the residual a million times, on small arrays, so that every operation counts.
     In the plane of rotation, rate and acceleration of an angle as seen from the ground, w and w', leave
     X = -w^2 cos theta - w' sin theta and Y = -w^2 sin theta + w' cos theta; out of it X has
     -omega^2 cos theta, too.
@@ -178,17 +178,17 @@ class Evaluation:
 
     @property
     def _softening(self) -> np.ndarray:
-        """Squared speed (s, 1) in so far as the beam bends out of the plane of rotation [rad2/s2]."""
+        """Squared speed (s, 1) [rad2/s2] if the beam bends out of the plane of rotation, else 0."""
         return self.system.out_of_plane * self.drive.squared[:, None]
 
     @cached_property
     def elastic(self) -> np.ndarray:
-        """Elastic force (s, n)."""
+        """Elastic force, shape (s, n)."""
         return self.q.dot(self.system.elastica.stiffness)
 
     @property
     def residual(self) -> np.ndarray:
-        """Residual of the equations of motion (s, n)."""
+        """Residual of the equations of motion, shape (s, n)."""
         elastica = self.system.elastica
         by_angle = self.cos * self.across - self.sin * self.along
         if self.system.has_inertia:
@@ -200,31 +200,34 @@ class Evaluation:
 
     @cached_property
     def _levers(self) -> np.ndarray:
-        """Moments by the coordinates of forces along b1, then of those along e: (s, n, 2 (N + 1))."""
+        """Lever arms: moments per coordinate by unit forces along b1, then e: (s, n, 2 (N + 1))."""
         angles, kernel = self.system.elastica.angles, self.system.kernel
         turned = np.stack([-self.sin, self.cos], axis=1)[:, None] * angles[:, None]
         return turned.dot(kernel).reshape(len(self.q), len(angles), -1)
 
     def _derivative(self, along: np.ndarray, across: np.ndarray) -> np.ndarray:
-        """Derivative (s, n, n) of the moments from those of X and Y by the angles (s, N + 1)."""
+        """Compute the derivative (s, n, n) of the moments by the coordinates.
+
+        The arguments (s, N + 1) are the derivatives by the angles of the sums along b1 and across.
+        """
         changes = np.stack([along, across], axis=1)[..., None] * self.system.slopes
         return self._levers @ changes.reshape(len(self.q), -1, self.system.size)
 
     @cached_property
     def mass(self) -> np.ndarray:
-        """Derivative by the accelerations (s, n, n)."""
+        """Derivative of the residual by the accelerations, shape (s, n, n)."""
         angles, inertia = self.system.elastica.angles, self.system.inertia
         return self._derivative(-self.sin, self.cos) + (angles * inertia) @ angles.T
 
     @cached_property
     def damping(self) -> np.ndarray:
-        """Derivative by the rates (s, n, n)."""
+        """Derivative of the residual by the rates, shape (s, n, n)."""
         rate = -2 * self.turning
         return self._derivative(rate * self.cos, rate * self.sin) + self.system.elastica.beam.damping
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """Derivative by the coordinates (s, n, n)."""
+        """Derivative of the residual by the coordinates, shape (s, n, n)."""
         system, angles, softening = self.system, self.system.elastica.angles, self._softening
         along = (self.squared + softening) * self.sin - self.turned * self.cos
         across = -self.squared * self.cos - self.turned * self.sin

@@ -1,4 +1,4 @@
-"""Integrators for linear second-order systems q'' + C(t) q' + K(t) q = f(t).
+"""Time integrators for linear second-order systems q'' + C(t) q' + K(t) q = f(t).
 
 Gauss collocation: of order 2 s with s stages, symmetric, without numerical damping (quadratic
 invariants are kept), stable at any step size.  Since the system is linear, the steps of a block are
@@ -21,7 +21,7 @@ from numpy.polynomial import legendre
 
 from beamdyn.common.inputs.checks import MOST
 
-BLOCK = 64  # steps solved as one batch, so that their matrices fit the processor's cache
+BLOCK = 64  # number of steps solved as one batch, whose matrices fit the processor's cache
 
 
 class LinearSystem(Protocol):
@@ -33,7 +33,10 @@ class LinearSystem(Protocol):
         ...
 
     def coefficients(self, t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
-        """Evaluate C (None if zero), K and f at times t [s] of any shape: shapes (..., n, n) and (..., n)."""
+        """Evaluate damping C (None if zero), stiffness K and load f at times t [s] of any shape.
+
+        The shapes are (..., n, n) for C and K, and (..., n) for f.
+        """
         ...
 
 
@@ -153,7 +156,7 @@ def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, ta
     a = np.linalg.solve(matrix, right)
     if not equal:
         return StepMaps(_maps_to_end(a, h, table), a.reshape(*f.shape, -1))
-    a = a.astype(np.longdouble)  # errors of the map grow with its powers: refined by iteration
+    a = a.astype(np.longdouble)  # errors of the map grow with its powers, so it is refined by iteration
     for _ in range(2):
         a += np.linalg.solve(matrix, (right - matrix.astype(np.longdouble) @ a).astype(float))
     step, acceleration = _maps_to_end(a, h, table)[0], a.astype(float).reshape(*f.shape, -1)
@@ -165,12 +168,12 @@ def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, ta
 
 
 def _maps_to_end(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Maps to (q, v) at the ends of the steps, shape (N, 2 n, 2 n + 1), from those to the accelerations."""
+    """Compute maps (N, 2 n, 2 n + 1) to (q, v) at the ends of steps from maps to the accelerations."""
     return add_drift(increment(a, h, table), h, first=1)
 
 
 def increment(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Increment (N, 2 n, m) of (q, v) over steps by the accelerations at the nodes (N, s n, m)."""
+    """Compute the increment (N, 2 n, m) of (q, v) over steps by the nodes' accelerations (N, s n, m)."""
     N, rows, columns = a.shape
     weights = np.stack([h**2 * table.b2, h * table.b])
     n = rows // len(table.c)
@@ -186,7 +189,7 @@ def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
 
 
 def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Matrix of the collocation equations for the accelerations at all nodes, shape (N, s n, s n)."""
+    """Build the matrix of the collocation equations for accelerations at all nodes: (N, s n, s n)."""
     N, s, n, _ = K.shape
     matrix = np.empty((N, s, n, s, n))
     np.multiply((h**2 * table.A2)[:, None, :, None], K[:, :, :, None, :], out=matrix)
@@ -198,7 +201,7 @@ def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> 
 
 
 def right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Right-hand sides of the collocation equations for the augmented state, shape (N, s n, 2 n + 1)."""
+    """Build the collocation equations' right-hand sides for the augmented state: (N, s n, 2 n + 1)."""
     N, s, n = f.shape
     right = np.empty((N, s, n, 2 * n + 1))
     right[..., 0] = f
@@ -210,12 +213,12 @@ def right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, tab
 
 
 def components(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Values (..., d) of linear functions of coordinates q (..., n), given per unit of each (d, n)."""
+    """Evaluate linear functions (d, n) of coordinates q (..., n): shape (..., d)."""
     return np.stack([q @ output for output in outputs], axis=-1)
 
 
 def project(state: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Augmented states of linear functions (d, n) of coordinates, (..., 2 d + 1), from (..., 2 n + 1)."""
+    """Project augmented states (..., 2 n + 1) on linear functions (d, n) of coordinates: (..., 2 d + 1)."""
     n = outputs.shape[1]
     q, v = state[..., 1 : n + 1], state[..., n + 1 :]
     return np.concatenate([state[..., :1], components(q, outputs), components(v, outputs)], axis=-1)
@@ -223,7 +226,7 @@ def project(state: np.ndarray, outputs: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Segment:
-    """Segment of a trajectory, in equal steps.
+    """Segment of a trajectory, computed in equal steps.
 
     Parameters
     ----------
@@ -242,11 +245,11 @@ class Segment:
 
     @property
     def end(self) -> float:
-        """End [s]."""
+        """Time at the end of the segment [s]."""
         return self.start + self.h * len(self.acceleration)
 
     def projected(self, outputs: np.ndarray) -> Segment:
-        """Segment of linear functions of the coordinates, given per unit of each: (d, n)."""
+        """Build the segment of linear functions (d, n) of the coordinates."""
         return replace(
             self, state=project(self.state, outputs), acceleration=components(self.acceleration, outputs)
         )
@@ -305,7 +308,7 @@ def interpolate(
     both = weights @ table.A, weights
     if n > 1:
         dq, dv = (each @ acceleration for each in both)
-    else:  # of one function: a single product
+    else:  # for one function, a single product suffices
         dq, dv = ((acceleration[:, :, 0] @ each.T)[:, :, None] for each in both)
     return q + h * theta[:, None] * v + h**2 * dq, v + h * dv
 
@@ -346,7 +349,7 @@ def propagate(
 
 
 def growth_without_bound(how_far: str) -> ArithmeticError:
-    """Say of a motion that it has no answer, as it grows so far."""
+    """Build the error for a motion that has no answer, because it grows without bound."""
     return ArithmeticError(
         f"the motion grows without bound, {how_far}: the beam buckles under its weight, or it is "
         "parametrically unstable, and linear theory does not hold; lower gravity or the speed, or end the "
@@ -355,10 +358,11 @@ def growth_without_bound(how_far: str) -> ArithmeticError:
 
 
 def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
-    """Fill state[1:] from state[0]; equal steps by powers of their map, returned for the next block."""
+    """Fill state[1:] from state[0]; for equal steps by powers of their map, which are returned."""
     if maps.step_extended is not None:
         if powers is None or len(powers) < len(maps.step) or (powers[0] != maps.step[0]).any():
-            full = np.eye(state.shape[1], dtype=np.longdouble)  # one rounding error a block, not a step
+            # One rounding error per block, instead of per step.
+            full = np.eye(state.shape[1], dtype=np.longdouble)
             full[1:] = maps.step_extended
             power, rows = full, []
             for _ in maps.step:
@@ -378,7 +382,7 @@ def advance(steps: np.ndarray, state: np.ndarray) -> None:
 
 
 def allocate_steps(steps: int, stages: int, q0: np.ndarray, v0: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Allocate the arrays `state` and `acceleration` of a segment, of which the first state is known."""
+    """Allocate `state` and `acceleration` of a segment, with the first state filled in."""
     n = len(q0)
     state = np.empty((steps + 1, 2 * n + 1))
     state[:, 0], state[0, 1 : n + 1], state[0, n + 1 :] = 1, q0, v0

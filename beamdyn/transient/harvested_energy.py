@@ -1,11 +1,10 @@
-"""What a harvester yields during a transient: voltage, current, power, energy and strain of its layers."""
+"""Yield of a harvester during a transient: voltage, current, power, energy and strain of its layers."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from beamdyn.common.inputs.checks import InvalidValue, kind
 from beamdyn.common.numerics import gauss_points_on, gauss_weights_on
 from beamdyn.common.plots.curves import plot_load_over_time
 from beamdyn.common.results.one_line import error_at_most, number
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.equations.circuit import Voltage
 from beamdyn.equations.harvested import electric_rows, strain_rows
@@ -21,15 +21,12 @@ from beamdyn.scene.scene import Scene
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.transient import Transient
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_POINTS = 4  # Gauss points between two samples of a run, of which there are several in each step
+_POINTS = 4  # Gauss points between two samples of a run, of which each step has several
 
 
 @dataclass(frozen=True)
 class TransientHarvest(JudgedByRepeating):
-    """What a harvester yields during a transient.
+    """Yield of a harvester during a transient: voltage, current, power, energy and strain over time.
 
     `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
     harvested energy.
@@ -69,40 +66,43 @@ class TransientHarvest(JudgedByRepeating):
 
     @property
     def scene(self) -> Scene:
-        """Scene."""
+        """Scene of the transient."""
         return self.run.scene
 
     @property
     def mean_power(self) -> float:
-        """Harvested energy over the duration [W]."""
+        """Mean power [W]: harvested energy over the duration."""
         return float(self.energy[-1] / (self.t[-1] - self.t[0]))
 
     @cached_property
     def energy_error(self) -> float:
-        """Estimated error of the harvested energy by the modes left out [J]: twice the distance from more."""
+        """Estimated error of the harvested energy by modes left out [J], from a run with more modes."""
         if self.run.refined is None:
             return float("inf")
         return 2 * abs(float(transient_harvest(self.run.refined).energy[-1] - self.energy[-1]))
 
     def headline(self) -> Iterator[str]:
-        """Duration, energy, largest voltage and strain in one line; see `Result.headline`."""
+        """Yield duration, energy, largest voltage and strain for a one-line summary.
+
+        See `Result.headline`.
+        """
         yield f"{number(self.run.path.end, 's')}: {number(self.energy[-1], 'J')}"
         yield f"up to {number(np.abs(self.voltage).max(), 'V')}"
         yield f"strain to {number(self.strain.max(), '')}"
         yield f"time {error_at_most(self.run.time_error / (self.run.largest or 1.0))}"
 
     def judged(self, found: TransientHarvest) -> np.ndarray:
-        """The harvested energy, of which the model error is stated: shape ()."""
+        """Select the harvested energy, whose model error is stated: shape ()."""
         return np.array(found.energy[-1])
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the voltage over time."""
+        """Draw the voltage across the load over time."""
         return plot_load_over_time(self.t, self.voltage[:, None], ["voltage"], "voltage [V]", ax)
 
 
 @repeatable
 def transient_harvest(run: Transient) -> TransientHarvest:
-    """Compute what a harvester yields during a transient.
+    """Compute voltage, power, energy and strain of a harvester during a transient.
 
     Parameters
     ----------
@@ -154,5 +154,5 @@ def transient_harvest(run: Transient) -> TransientHarvest:
 
 
 def _at(row: Voltage, run: Transient, t: np.ndarray) -> np.ndarray:
-    """A quantity of the circuit at times t [s] (T,)."""
+    """Evaluate a quantity of the circuit at times t [s] (T,)."""
     return run.path.at(t)[row.order] @ row.row

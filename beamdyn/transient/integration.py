@@ -1,4 +1,4 @@
-"""Integration of a scene's equations to a tolerance: choose the steps, integrate, estimate the error, refine.
+"""Time integration of a scene's equations to a tolerance: choose step sizes, estimate the error, refine.
 
 A straight beam has linear equations, solved by maps of many steps at once; those of a bent beam
 (`elastica_steps`) are solved step by step.  The step size and its control are the same.
@@ -32,13 +32,13 @@ from beamdyn.transient.time_error import ERROR_ORDER, STAGES, SegmentWithError, 
 from beamdyn.transient.trajectory import Trajectory, magnitude
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
-_WORTH_A_SEGMENT = 500  # steps that cost as much as the preparation of a segment
-_TIMES_COMPARED = 257  # times at which the equations are compared with those at the start
-_BALANCE = 1e-13  # residual force in equilibrium, over the largest force: rounding error
-_SERIES_SHARE = 0.1  # share of the tolerance for the truncated series of weakly modulated steps
-_ORDER_ACROSS_SAMPLES = 3  # order of the error of steps in which the acceleration has kinks
-_FEW_STEPS = 4  # samples in a step, from which on it is one over many
-_CEILED = 1.02  # factor by which whole numbers of steps exceed those wanted, of hundreds
+_WORTH_A_SEGMENT = 500  # number of steps that cost as much as the preparation of a segment
+_TIMES_COMPARED = 257  # number of times at which the equations are compared with those at the start
+_BALANCE = 1e-13  # residual force in equilibrium, over the largest force, that is rounding error
+_SERIES_SHARE = 0.1  # fraction of the tolerance for the truncated series of weakly modulated steps
+_ORDER_ACROSS_SAMPLES = 3  # order of the error of steps within which the acceleration has kinks
+_FEW_STEPS = 4  # number of samples in a step from which on the step counts as long
+_CEILED = 1.02  # ratio of a whole number of steps, some hundreds, to the wanted number, which is rounded up
 
 
 def integrate(
@@ -53,9 +53,9 @@ def integrate(
     y0 : ndarray, shape (2 n,)
         Coordinates and velocities at time 0.
     t_end : float
-        End [s].
+        End of the run [s].
     tolerance : float
-        Time-integration error aimed at, relative to the largest deflection.
+        Target of the time-integration error, relative to the largest deflection.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def integrate(
 
 
 class _Start(NamedTuple):
-    """A run of a straight beam: equations, coordinates and velocities at time 0, end [s] and tolerance."""
+    """Start of a straight beam's run: equations, coordinates and velocities at time 0, end [s], tolerance."""
 
     system: ModalSystem
     y0: np.ndarray
@@ -95,7 +95,7 @@ class _Start(NamedTuple):
 
 
 def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
-    """The path of a beam that stays at rest, by constant equations and an initial state in equilibrium."""
+    """Build the path of a beam that stays at rest, if equations are constant and forces in equilibrium."""
     system, y0, t_end, tolerance = start
     if system.motion.steady_start > 0:
         return None
@@ -112,7 +112,7 @@ def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
 def _attempt(start: _Start, step_size: StepSize, _: Attempt | None) -> Attempt:
     """Integrate with equal steps in each segment.
 
-    Neighbouring parts of one smooth piece are joined where steps of one size cost fewer steps more than
+    Neighbouring parts of one smooth piece are joined if equal steps cost fewer additional steps than
     the preparation of another segment is worth.
     """
     system, y0, t_end, tolerance = start
@@ -137,8 +137,8 @@ def _attempt(start: _Start, step_size: StepSize, _: Attempt | None) -> Attempt:
 def _attempt_record(start: _Start, step_size: StepSize, before: Attempt | None) -> Attempt:
     """Integrate a motion given by samples, after another attempt if there was one.
 
-    Loads without kinks are integrated so much better than those across samples that one step between two
-    samples comes after steps over many.  Later it is at least one more: so many steps have been tried.
+    Smooth loads are integrated so much better than loads with samples inside a step that one step between two
+    samples is tried after steps over many.  Each later attempt has at least one step more between samples.
     """
     system, y0, t_end, tolerance = start
     if before is not None:
@@ -160,7 +160,7 @@ def _attempt_record(start: _Start, step_size: StepSize, before: Attempt | None) 
 
 
 def _judged(system: ModalSystem, step_size: StepSize, path: Trajectory, order: int) -> Attempt:
-    """A run with its error, its largest deflection at the ends of steps, and the name of its method."""
+    """Complete a run by its error, largest deflection at the ends of steps, and name of its method."""
     error = estimate_time_error(system, path.segments, system.tips)
     largest = max(float(magnitude(s.state[:, 1 : system.size + 1], system.tips).max()) for s in path.segments)
     steps = sum(len(s.acceleration) for s in path.segments)
@@ -173,13 +173,13 @@ def follow_steps(
 ) -> tuple[Trajectory, float]:
     """Integrate other equations in the equal steps of a path.
 
-    The other parameters and what is raised are those of `integrate`.
+    Other parameters, and errors raised: see `integrate`.
 
     Returns
     -------
     path : Trajectory
     error : float
-        Error of the tip deflection [m] in those segments that state one; that of the others is not estimated.
+        Error of the tip deflection [m] in those segments that state one; for others it is not estimated.
     """
     steps = [len(segment.acceleration) for segment in path.segments]
     check_number_of_steps(sum(steps), system.size, path.end)

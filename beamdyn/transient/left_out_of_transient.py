@@ -1,4 +1,4 @@
-"""What the effects left out would change in the largest deflection of a transient.
+"""Changes of a transient's largest deflection by the effects that its model leaves out.
 
 An effect that changes the lowest natural frequencies by so little that neither their phase at the end of the
 run nor the deflection changes visibly is judged by the first frequency; any other by running again with it.
@@ -19,9 +19,11 @@ from beamdyn.modes.modal.discretization_choice import ensure_size
 from beamdyn.modes.modal.modal_basis import find_speed_range
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.left_out_changes import (
+    LOADED,
     SolvedValues,
     left_out_by_solving,
     left_out_of_modes,
+    nothing_known,
     without_large_deflection,
 )
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
@@ -29,9 +31,10 @@ from beamdyn.modes.repeated import BY_FREQUENCY
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.problem import Solution, TransientProblem
 
-_MODES = 2  # lowest modes, whose frequencies tell whether an effect matters
-_SHIFT, _PHASE = 1e-4, 1e-2  # relative change of a frequency, and of its phase at the end [rad], that matter
-_SHORT_RUN = 2000  # samples up to which a run is done with large deflection
+_MODES = 2  # number of lowest modes whose frequencies tell whether an effect matters
+# Smallest relative change of a frequency, and of its phase at the end [rad], that matter.
+_SHIFT, _PHASE = 1e-4, 1e-2
+_SHORT_RUN = 2000  # number of samples up to which a run is repeated with large deflection
 _BY_BACKBONE = (
     "roughly estimated by the static deflection and the backbone: "
     "where much of it vibrates, it may be off by a factor, or in sign"
@@ -42,6 +45,8 @@ def left_out_of_transient(
     problem: TransientProblem, found: Solution, window: tuple[float, float] | None = None
 ) -> LeftOutEffects:
     """Find what each effect changes in the largest deflection of a run, or in a window [s]: of shape ()."""
+    if problem.scene.tip_load.acts:
+        return nothing_known(problem.scene, LOADED)
     largest, samples = _peak(found, window), len(found.path.samples[0])
     speed = find_speed_range(problem.motion, problem.t_end)[-1]
     straight = without_large_deflection(problem.model)
@@ -63,12 +68,12 @@ def left_out_of_transient(
 
 
 def _peak(found: Solution, window: tuple[float, float] | None) -> float:
-    """Largest deflection of a run, or in a window of it [m]."""
+    """Find the largest deflection of a run, or in a window of it [m]."""
     return found.largest if window is None else found.peak(*window)
 
 
 def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str, float]:
-    """Relative change of the first frequency by each effect that changes the frequencies hardly at all."""
+    """Find the relative changes of the first frequency by effects that hardly change the frequencies."""
     s = model.solver.solve(np.array([speed]), min(_MODES, model.solver.size)).eigenvalue
     omega, changes = np.abs(s).max(), left_out_of_modes(model, np.array([speed]), s).changes
     largest = {name: np.abs(each).max() for name, each in changes.items() if name != LARGE_DEFLECTION.name}
@@ -77,10 +82,10 @@ def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str
 
 
 def _estimate_bent(problem: TransientProblem, largest: float, scene: Scene, speed: float) -> SolvedValues:
-    """Largest deflection by what large deflection changes at rest in rotating axes, and over amplitude.
+    """Estimate the largest deflection with large deflection from equilibrium and backbone at a speed.
 
-    The part that does not vary is that of the equilibrium at the largest speed; the rest changes as the
-    compliance of the first mode does, which is -2 times its frequency.
+    The constant part is the equilibrium's deflection at the largest speed.  The rest changes as the
+    compliance of the first mode does, by -2 times the relative change of its frequency.
     """
     bent, straight = (Model(each, problem.model.discretization) for each in (scene, problem.scene))
     try:
@@ -98,7 +103,7 @@ def _estimate_bent(problem: TransientProblem, largest: float, scene: Scene, spee
 
 
 def _run_again(problem: TransientProblem, scene: Scene, window: tuple[float, float] | None) -> SolvedValues:
-    """Largest deflection by a run of another scene with the same number of modes."""
+    """Find the largest deflection in a run of another scene with the same number of modes."""
     if not isinstance(problem.initial, str):
         return SolvedValues(np.array(np.nan), "the initial coordinates are those of this model")
     modes = problem.basis.modes

@@ -1,11 +1,11 @@
-"""The problem that a transient solves, its integration, and larger problems to compare with."""
+"""The problem that a transient solves, its integration, and larger problems for comparison."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 
 import numpy as np
 
@@ -31,19 +31,17 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import Path, Trajectory, in_direction, largest_on, magnitude_of, sample_tip
 
 if TYPE_CHECKING:
-    from typing import Self
-
     from scipy.integrate import OdeSolver
 
-_LIMIT_DEFLECTION = 1000.0  # over the length: beyond it the motion counts as unbounded
-_FREE = 1e-9  # stiffness, over that of the beam with a clamped root, below which the root turns freely
+_LIMIT_DEFLECTION = 1000.0  # deflection over the length beyond which the motion counts as unbounded
+_FREE = 1e-9  # relative stiffness, over that with a clamped root, below which the root turns freely
 _REMEDY = "give 'rest' or an array"
-_FINER_MODEL = 1e-3  # error of the modes over the tolerance
+_FINER_MODEL = 1e-3  # ratio of the error of the modes to the tolerance
 _Found = TypeVar("_Found")
 
 
 class Solution(NamedTuple):
-    """Motion in time: equations, path, errors of time integration [m], largest deflection [m] and method."""
+    """Solution of a transient: equations, path, time errors [m], largest deflection [m] and method."""
 
     system: AnySystem
     path: Path
@@ -52,7 +50,7 @@ class Solution(NamedTuple):
     method: str = ""
 
     def peak(self, start: float, end: float, direction: int | None = None) -> float:
-        """Largest |tip deflection| [m] in a window [s], or of its component in a direction."""
+        """Find the largest |tip deflection| [m] in a window [s], or of its component in a direction."""
         if direction is None:
             return largest_on(lambda q: magnitude_of(self.system.deflections(q)), self.path, start, end)
         chosen = check_direction(direction)
@@ -62,7 +60,7 @@ class Solution(NamedTuple):
 
 
 def unless_unbounded(solve: Callable[[], _Found]) -> _Found | None:
-    """Solve; None if the motion grows without bound, or takes too many steps."""
+    """Call `solve`; return None if the motion grows without bound, or takes too many steps."""
     try:
         return solve()
     except (ArithmeticError, TooManySteps):
@@ -74,8 +72,8 @@ def choose_for_basis(
 ) -> Model:
     """Choose the smallest model that gives the modes of a basis, far within the tolerance of a motion.
 
-    The basis has modes without damping.  In a scene with two planes, shear, rotary inertia or springs those
-    are what the choice rests on: damped ones take far longer to find in large models, and where shear has no
+    The basis has undamped modes.  In a scene with two planes, shear, rotary inertia or springs the choice
+    is based on them: damped modes take far longer to find in large models, and where shear has no
     mass of its own, some do not exist.
     """
     speeds, modes, target = np.array(basis.speeds), basis.modes or 1, _FINER_MODEL * tolerance
@@ -92,7 +90,7 @@ def choose_for_basis(
 
 @dataclass(frozen=True)
 class TransientProblem(FieldsOnly):
-    """Checked arguments of `simulate`, with the modal basis in place of the number of modes."""
+    """Checked arguments of `simulate`, with a modal basis instead of the number of modes."""
 
     scene: Scene
     t_end: float
@@ -112,12 +110,12 @@ class TransientProblem(FieldsOnly):
 
     @cached_property
     def model(self) -> Model:
-        """The discretized scene, chosen for the modal basis and the tolerance."""
+        """Discretized scene, chosen for the modal basis and the tolerance."""
         return choose_for_basis(self.scene, self.discretization, self.basis, self.tolerance)
 
     def system(self) -> AnySystem:
-        """Equations of the run, without the coordinates that stay at rest."""
-        if self.scene.bends_in_space:
+        """Return the equations of the run, without the coordinates that stay at rest."""
+        if self.scene.bends_in_space or self.scene.tip_load.acts:
             # Few scenes need it.
             from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 
@@ -130,14 +128,14 @@ class TransientProblem(FieldsOnly):
         return ModalSystem(equations, self.motion)
 
     def solve(self) -> Solution:
-        """Integrate with the modal basis.
+        """Integrate the motion with the modal basis.
 
         Raises
         ------
         NoModelAnswer
             If the motion passes the critical speed, before any long work.
         ArithmeticError
-            If it has grown without bound: its error estimates are void.
+            If the motion has grown without bound, so that its error estimates are void.
         """
         self._refuse_past_critical()
         system = self.system()
@@ -156,7 +154,7 @@ class TransientProblem(FieldsOnly):
         return found._replace(largest=largest)
 
     def _refuse_past_critical(self) -> None:
-        """Refuse a motion that passes the critical speed; past it a beam of large deflection bends on."""
+        """Refuse a motion that passes the critical speed, unless the beam has large deflection."""
         t = np.linspace(0, self.t_end, SPEED_SAMPLES)
         speed = np.abs(self.motion.at(t).speed)
         if self.scene.physics.large_deflection:
@@ -171,10 +169,13 @@ class TransientProblem(FieldsOnly):
                 "speed"
             )
 
-    # With more modes ------------------------------------------------------------------------------
+    # Problems with more modes ---------------------------------------------------------------------
 
     def refined(self) -> Self | None:
-        """Problem with more modes, or a finer discretization where the basis has all modes; None if none."""
+        """Return the problem with more modes, or a finer discretization if it has all modes.
+
+        None if there is none.
+        """
         base = replace(self, method="auto", t_eval=None)
         if self.basis.modes is None:
             finer = self.model.discretization.finer()
@@ -183,12 +184,12 @@ class TransientProblem(FieldsOnly):
         return basis and base._with_basis(basis)
 
     def with_one_more(self) -> Self | None:
-        """Problem with one more mode; None if the basis has all."""
+        """Return the problem with one more mode; None if the basis has all."""
         basis = None if self.basis.modes is None else self.basis.with_one_more()
         return basis and self._with_basis(basis)
 
     def _with_basis(self, basis: ModalBasis) -> Self:
-        """Problem with a larger basis, by "ritz" if the discretization has too few functions."""
+        """Return the problem with a larger basis, by "ritz" if the discretization has too few functions."""
         assert basis.modes is not None and self.basis.modes is not None
         initial = self.initial
         if not isinstance(initial, str):
@@ -198,7 +199,7 @@ class TransientProblem(FieldsOnly):
         return replace(self, basis=basis, discretization=discretization, initial=initial)
 
     def _refined_of_same_functions(self) -> Self | None:
-        """Problem with more modes, of the functions of this one if these suffice: no choice takes time."""
+        """Return the problem with more modes of the same discretization, if it suffices, to save a choice."""
         finer = self.refined()
         if finer is None or finer.basis.modes is None:
             return finer
@@ -209,8 +210,8 @@ class TransientProblem(FieldsOnly):
     def follow_with_more_modes(self, path: Trajectory) -> tuple[AnySystem, Path] | None:
         """Integrate with the modes of `refined` in the steps of a path: equations and motion; or None.
 
-        Two runs in the same steps differ by the modes of one of them; neither needs an error of its own.
-        Where the steps are too long for what the further modes do, those of `refined` are taken.
+        Two runs in the same steps differ only by the additional modes; neither needs an error estimate.
+        If the steps are too long for the motion of the further modes, the steps of `refined` are used.
         """
         finer = self._refined_of_same_functions()
         if finer is None or not isinstance(system := finer.system(), ModalSystem):
@@ -226,7 +227,7 @@ class TransientProblem(FieldsOnly):
         return solved and (solved.system, solved.path)
 
     def distance_with_more_modes(self, path: Trajectory, own: ModalSystem) -> float | None:
-        """Distance of the tip from that with the modes of `refined` [m], found along a path; or None."""
+        """Estimate the tip's distance from that with the modes of `refined` [m] along a path; or None."""
         finer = self._refined_of_same_functions()
         if finer is None or not isinstance(system := finer.system(), ModalSystem):
             return None
@@ -234,16 +235,16 @@ class TransientProblem(FieldsOnly):
         return distance_along_path(path, own, system, *states)
 
 
-# The beginning -------------------------------------------------------------------------------------
+# Initial state ---------------------------------------------------------------------------------------
 
 
 def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
-    """Coordinates and velocities (2 n,) at "rest", in "equilibrium", or as given by an array.
+    """Build the initial state (2 n,): "rest", "equilibrium", or a given array.
 
     Raises
     ------
     ValueError
-        If it is another word, an array of another shape, or there is no equilibrium.
+        If `initial` is another word, an array of another shape, or there is no equilibrium.
     """
     n = system.size
     if isinstance(initial, str):
@@ -263,7 +264,7 @@ def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
 
 
 def _equilibrium(system: ModalSystem) -> np.ndarray:
-    """Coordinates in static equilibrium with the loads at time 0; a ValueError where a hinge turns freely."""
+    """Solve static equilibrium with the loads at time 0; a ValueError where a hinge turns freely."""
     _, K, f = system.coefficients(np.zeros(()))
     if (shift := system.equations.shift) and np.abs(np.linalg.eigvalsh(K)).min() < _FREE * shift:
         bound = "at time 0 the beam turns freely on its hinge: no position is its equilibrium"
@@ -273,10 +274,10 @@ def _equilibrium(system: ModalSystem) -> np.ndarray:
 
 @dataclass(frozen=True)
 class LoadAtOnce(SteadyLoad):
-    """Equilibrium under all loads at one time, gravity and angular acceleration included.
+    """Equations of equilibrium under all loads at one time, including gravity and angular acceleration.
 
-    The continuation parameter is the squared speed, and all other quantities grow in proportion to it; for a
-    beam that does not rotate it is the fraction of the loads.
+    The continuation parameter is the squared speed, and all other quantities grow in proportion; for a
+    beam that does not rotate, the parameter is the fraction of the loads.
 
     Parameters
     ----------
@@ -287,7 +288,7 @@ class LoadAtOnce(SteadyLoad):
     quantities: dict[Quantity, float] | None = None
 
     @cached_property
-    def _values(self) -> dict[Quantity, float]:
+    def values(self) -> dict[Quantity, float]:
         """Quantities that differ from 0, with the push."""
         values = dict(self.quantities or {})
         values["root_transverse"] = values.get("root_transverse", 0.0) + self.push
@@ -295,13 +296,16 @@ class LoadAtOnce(SteadyLoad):
 
     @property
     def transverse(self) -> float:
-        """Transverse acceleration of the root, or what else bends the straight beam, per parameter."""
-        given = self._values.get("root_transverse", 0.0)
+        """Transverse acceleration of the root per unit of the continuation parameter, with its sign.
+
+        Where that is 0: the largest entry of the generalized load on the straight beam.
+        """
+        given = self.values.get("root_transverse", 0.0)
         return given or float(np.abs(self.load(self.elastica.at(np.zeros(self.elastica.size)))).max())
 
 
 def _bent_equilibrium(system: BeamInSpaceSystem) -> np.ndarray:
-    """Coordinates (n,) in equilibrium with the loads at time 0, on the branch of the scene."""
+    """Find coordinates (n,) in equilibrium with the loads at time 0, on the branch of the scene."""
     root, lowest = system.root(np.zeros(())), Solver(system.equations.steady()).lowest_at_rest
     speed = abs(float(root.speed)) or 1.0
     is_bent = system.branch == "bent"

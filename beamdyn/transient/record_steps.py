@@ -1,4 +1,4 @@
-"""Steps for a motion that is given by many samples: several samples to a step, where the tolerance allows.
+"""Time steps for a motion given by many samples: several samples per step, where the tolerance allows.
 
 Such a motion is smooth between samples only, and Gauss collocation needs coefficients that are smooth over a
 step.  So each coefficient is replaced, over each step, by the polynomial of degree s - 1 nearest to it in the
@@ -25,40 +25,43 @@ from beamdyn.transient import gauss
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
-_STRETCHES = 16  # stretches of a run, each with steps as long as the motion in it allows
-_FEWEST_PIECES = 16  # between samples: fewer are integrated one after the other
-_MOST_STEPS_IN_PIECE = 16  # mean above which the pieces are better integrated one after the other
-_PIECES_AT_ONCE = 4096  # pieces in the steps of a block, whose matrices fit into memory
-_SLACK = 1e-6  # share of a step by which rounding may exceed it
-_EQUAL_STEPS, _FEWEST_EQUAL = 1024, 128  # most and fewest steps that are expanded about one mean motion
-_SAME_LENGTH = 1e-6  # share of a step by which lengths and ends of equal steps may differ
-_MANY_PIECES, _IN_EACH = 4, 5  # pieces in a step, and nodes or stages in each: a quarter of them is as exact
+_STRETCHES = 16  # number of stretches of a run, each with steps as long as the motion in it allows
+_FEWEST_PIECES = 16  # smallest number of pieces between samples: fewer are integrated one after the other
+# Mean number of steps above which the pieces are better integrated one after the other.
+_MOST_STEPS_IN_PIECE = 16
+_PIECES_AT_ONCE = 4096  # number of pieces in the steps of a block, whose matrices fit into memory
+_SLACK = 1e-6  # fraction of a step that rounding may add to it
+# Largest and smallest number of steps that are expanded about one mean motion.
+_EQUAL_STEPS, _FEWEST_EQUAL = 1024, 128
+_SAME_LENGTH = 1e-6  # fraction of a step by which lengths and ends of equal steps may differ
+# Pieces in a step, and nodes or stages in each: with so many pieces, fewer nodes are as exact.
+_MANY_PIECES, _IN_EACH = 4, 5
 
 
 class StepCounter(Protocol):
-    """Choice of the number of equal steps: see `beamdyn.transient.step_size.StepSize`."""
+    """Method of choosing numbers of equal steps; implemented by `beamdyn.transient.step_size.StepSize`."""
 
     def count_steps(self, system: ModalSystem, start: float, end: float) -> int:
-        """Number of equal steps from start to end [s]."""
+        """Count the equal steps from start to end [s]."""
         ...
 
 
 def is_record(system: ModalSystem, t_end: float, step_size: StepCounter) -> bool:
-    """Whether a motion has breakpoints about as dense as the steps, as a motion given by samples has."""
+    """Whether a motion has breakpoints about as dense as the steps, as a sampled motion has."""
     pieces = len(smooth_piece_ends(system.motion, t_end)) - 1
     few = _MOST_STEPS_IN_PIECE * pieces
     return pieces >= _FEWEST_PIECES and step_size.count_steps(system, 0.0, t_end) <= few
 
 
 def smooth_piece_ends(motion: Motion, t_end: float) -> np.ndarray:
-    """The ends of the pieces on which a motion is smooth, 0 and `t_end` included [s]."""
+    """List the ends of the pieces on which a motion is smooth, including 0 and `t_end` [s]."""
     breakpoints = np.array(motion.breakpoints)
     return np.concatenate([[0.0], breakpoints[(breakpoints > 0) & (breakpoints < t_end)], [t_end]])
 
 
 @dataclass(frozen=True)
 class RecordSteps:
-    """Steps of unequal length, and the pieces of each on which the motion is smooth.
+    """Time steps of unequal length, and the pieces of each step on which the motion is smooth.
 
     Parameters
     ----------
@@ -80,7 +83,7 @@ class RecordSteps:
     def choose(cls, system: ModalSystem, t_end: float, step_size: StepCounter) -> RecordSteps:
         """Choose steps about as long as the step size allows, which end at samples or divide a piece."""
         wanted, ends = _wanted_steps(system, t_end, step_size), smooth_piece_ends(system.motion, t_end)
-        parts = np.maximum(1, np.ceil(np.diff(wanted(ends)) - _SLACK).astype(int))  # equal ones
+        parts = np.maximum(1, np.ceil(np.diff(wanted(ends)) - _SLACK).astype(int))  # parts of each piece
         index = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
         inside = np.repeat(ends[:-1], parts) + index * np.repeat(np.diff(ends) / parts, parts)
         pieces = np.append(inside, ends[-1])
@@ -100,7 +103,7 @@ class RecordSteps:
 
     @cached_property
     def blocks(self) -> list[slice]:
-        """Blocks of steps that are integrated at once: of equal steps of one piece each, and of others."""
+        """Divide the steps into blocks that are integrated at once: equal steps of one piece, and others."""
         single = self.counts == 1
         cuts = np.flatnonzero(~(_are_same(self.h) & single[1:] & single[:-1])) + 1
         runs = [(a, b) for a, b in pairwise([0, *cuts.tolist(), len(self)]) if b - a >= _FEWEST_EQUAL]
@@ -108,14 +111,15 @@ class RecordSteps:
         return [slice(a, b) for a, b in pairwise(ends)]
 
     def are_equal(self, block: slice) -> bool:
-        """Whether the steps of a block have one piece each and equal lengths, also in their sums."""
+        """Whether the steps of a block have one piece each and equal lengths, without accumulating drift."""
         ends = np.append(self.start[block], self.start[block.stop - 1] + self.h[block.stop - 1])
         grid = np.linspace(ends[0], ends[-1], len(ends))
-        off = np.abs(ends - grid).max()  # lengths that drift differ little from one to the next, but add up
+        # Lengths that drift differ little between neighbours, but their differences add up.
+        off = np.abs(ends - grid).max()
         return bool(off <= _SAME_LENGTH * (grid[1] - grid[0]) and (self.counts[block] == 1).all())
 
     def select(self, which: np.ndarray) -> RecordSteps:
-        """Some of the steps, by their indices."""
+        """Select some of the steps by their indices."""
         counts = self.counts[which]
         first = np.cumsum(counts) - counts
         pieces = np.repeat(self.first[which] - first, counts) + np.arange(counts.sum())
@@ -124,52 +128,53 @@ class RecordSteps:
         )
 
     def pieces(self) -> RecordSteps:
-        """The pieces as steps of their own."""
+        """Return the pieces as steps of their own."""
         index = np.arange(len(self.piece_start))
         return RecordSteps(self.piece_start, self.piece_width, self.piece_start, self.piece_width, index)
 
     def root(self, system: ModalSystem, table: gauss.Tableau) -> RootMotion:
-        """Motion of the root at the nodes of the steps, each quantity by its nearest polynomial: (N, s)."""
+        """Compute the root's motion at nodes of steps, from each quantity's nearest polynomial: (N, s)."""
         within = gauss.tableau(self.nodes_in_piece(len(table.c)))
         root = system.root(self.piece_start[:, None] + self.piece_width[:, None] * within.c)
         if len(self.piece_start) == len(self):
-            return root  # without a sample inside, a polynomial through the nodes is the nearest
+            return root  # without a sample inside the step, a polynomial through the nodes is the nearest
         s, owner = len(table.c), np.repeat(np.arange(len(self)), self.counts)
         share = self.piece_width / self.h[owner]
         offset = (self.piece_start - self.start[owner]) / self.h[owner]
         inside = legendre.legvander(2 * (offset[:, None] + share[:, None] * within.c) - 1, s - 1)
         at_nodes = legendre.legvander(2 * table.c - 1, s - 1) * (2 * np.arange(s) + 1)
-        weights = share[:, None, None] * within.b[:, None] * (inside @ at_nodes.T)  # of a piece in its step
+        # Weights of a piece in its step.
+        weights = share[:, None, None] * within.b[:, None] * (inside @ at_nodes.T)
         values = (getattr(root, f.name) for f in fields(RootMotion))
         return RootMotion(*(np.add.reduceat((v[:, None] @ weights)[:, 0], self.first) for v in values))
 
     def nodes_in_piece(self, count: int) -> int:
-        """Number of nodes or stages in each piece that are as exact as `count` of them in a step."""
+        """Choose the number of nodes or stages per piece that are as exact as `count` in a step."""
         return min(count, _IN_EACH) if self.counts.min() >= _MANY_PIECES else count
 
 
 def _wanted_steps(
     system: ModalSystem, t_end: float, step_size: StepCounter
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """How many steps a step size wants before times [s], as a function."""
+    """Make the function that gives the number of steps before times [s] for a step size."""
     times = np.linspace(0.0, t_end, _STRETCHES + 1)
     counts = [step_size.count_steps(system, a, b) for a, b in pairwise(times)]
     return partial(np.interp, xp=times, fp=np.concatenate([[0], np.cumsum(counts)]))
 
 
 def most_steps_in_piece(system: ModalSystem, t_end: float, step_size: StepCounter) -> float:
-    """Largest number of steps between two neighbouring samples, by a step size."""
+    """Find the largest number of steps between two neighbouring samples for a step size."""
     wanted = _wanted_steps(system, t_end, step_size)
     return float(np.diff(wanted(smooth_piece_ends(system.motion, t_end))).max())
 
 
 def _are_same(lengths: np.ndarray) -> np.ndarray:
-    """Whether each length (N,) is that of the next: shape (N - 1,)."""
+    """Tell whether each length (N,) equals the next: shape (N - 1,)."""
     return np.abs(np.diff(lengths)) <= _SAME_LENGTH * lengths[:-1]
 
 
 def _group(place: list[float]) -> list[int]:
-    """Group consecutive pieces that end at the given places into steps of length 1 or less: their first."""
+    """Group pieces with given ends into steps of at most unit length; return each step's first piece."""
     first = [0]
     while True:
         end = bisect_right(place, place[first[-1]] + 1 + _SLACK) - 1
@@ -179,7 +184,7 @@ def _group(place: list[float]) -> list[int]:
 
 
 def maps_of_record(system: ModalSystem, steps: RecordSteps, stages: int) -> gauss.StepMaps:
-    """Solve the collocation equations of all steps, in the time of each, and transform back to seconds."""
+    """Solve the collocation equations of all steps, each in units of its own length, then in seconds."""
     table, n, h = gauss.tableau(stages), system.size, steps.h[:, None, None]
     C, K, f = system.assemble(steps.root(system, table))
     C = None if C is None else C * h[..., None]
@@ -193,7 +198,7 @@ def maps_of_record(system: ModalSystem, steps: RecordSteps, stages: int) -> gaus
 
 @dataclass(frozen=True)
 class RecordSegment:
-    """Segment of a trajectory in unequal steps.
+    """Segment of a trajectory, computed in unequal steps.
 
     Parameters
     ----------
@@ -211,16 +216,16 @@ class RecordSegment:
 
     @property
     def start(self) -> float:
-        """Beginning [s]."""
+        """Time at the beginning of the segment [s]."""
         return float(self.steps.start[0])
 
     @property
     def end(self) -> float:
-        """End [s]."""
+        """Time at the end of the segment [s]."""
         return float(self.steps.start[-1] + self.steps.h[-1])
 
     def projected(self, outputs: np.ndarray) -> RecordSegment:
-        """Segment of linear functions of the coordinates, given per unit of each: (d, n)."""
+        """Build the segment of linear functions (d, n) of the coordinates."""
         return replace(
             self,
             state=gauss.project(self.state, outputs),
@@ -247,7 +252,7 @@ def propagate_record(
 ) -> RecordSegment:
     """Integrate over unequal steps by Gauss collocation.
 
-    Many equal steps, each between two samples, take maps that are expanded about the mean motion of a block
+    Many equal steps, each between two samples, use maps that are expanded about the mean motion of a block
     of them.
 
     Parameters
@@ -283,7 +288,7 @@ def _expand(
     acceleration: np.ndarray,
     accuracy: float,
 ) -> bool:
-    """Fill in a block of equal steps by expanded maps, if it is one and its motion varies little enough."""
+    """Fill in a block of equal steps by expanded maps; False if they are unequal or vary too much."""
     count, n = block.stop - block.start, system.size
     if count < _FEWEST_EQUAL or not steps.are_equal(block):
         return False
@@ -302,7 +307,7 @@ def _expand(
 def _solve(
     system: ModalSystem, steps: RecordSteps, block: slice, state: np.ndarray, acceleration: np.ndarray
 ) -> None:
-    """Fill in a block of steps, each solved by itself."""
+    """Fill in a block of steps, solving each step by itself."""
     size = max(1, min(gauss.BLOCK, _PIECES_AT_ONCE // int(steps.counts[block].max())))
     for first in range(0, len(acceleration), size):
         part = np.arange(first, min(first + size, len(acceleration)))

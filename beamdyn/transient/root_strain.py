@@ -1,4 +1,4 @@
-"""Bending strain at the root during a run, and its time-integration error."""
+"""Bending strain at the root during a run, with its time-integration error."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import estimate_time_error
 from beamdyn.transient.trajectory import Path, Trajectory
 
-_TIMES_CHECKED = 257  # times of a run at which the strain per coordinate is compared
+_TIMES_CHECKED = 257  # number of times of a run at which the strain per coordinate is compared
 
 
 @dataclass(frozen=True)
 class RootStrain:
-    """Bending strain of the outer fibre at the root.
+    """Bending strain of the outer fibre at the root as a function of the state of a run.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class RootStrain:
 
     @classmethod
     def of_scene(cls, scene: Scene, discretization: Discretization, system: AnySystem) -> RootStrain:
-        """Strain in the coordinates of the equations of a scene; a ValueError without an outer fibre."""
+        """Build the strain in the coordinates of a scene's equations; a ValueError without an outer fibre."""
         if isinstance(system, BeamInSpaceSystem):
             bound = "the root strain of a beam with large deflection is not computed"
             remedy = "leave large_deflection out where the deflection is small"
@@ -55,18 +55,18 @@ class RootStrain:
         return cls(system, root_moment(scene, discretization, system.equations), strain_per_moment(scene))
 
     def at(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Strain at times t [s] of shape (T,), with coordinates q and velocities v (T, n): shape (T,)."""
+        """Evaluate the strain at times t [s] (T,), with coordinates q and velocities v (T, n): (T,)."""
         return self.per_moment * self.moment.at(self.system.root(t), q, v)
 
     def time_error(self, path: Path, of_tip: float) -> float:
-        """Time-integration error of the strain on a path, given that of the tip deflection [m].
+        """Estimate the strain's time-integration error on a path from that of the tip deflection [m].
 
-        It is nan where that of the tip is not known, and 0 where the beam stays in equilibrium.
+        The error is nan where that of the tip is not known, and 0 where the beam stays in equilibrium.
         """
         if of_tip == 0 or not isinstance(path, Trajectory):
             return of_tip
         root = self.system.root(np.linspace(path.start, path.end, _TIMES_CHECKED))
-        rows = np.zeros((_TIMES_CHECKED, self.system.size))  # per unit of each coordinate
+        rows = np.zeros((_TIMES_CHECKED, self.system.size))  # strain per unit of each coordinate
         for quantity, row in self.moment.position.items():
             rows += np.outer(getattr(root, quantity), row)
         largest = self.per_moment * rows[None, np.abs(rows).sum(axis=1).argmax()]

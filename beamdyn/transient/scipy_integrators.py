@@ -1,6 +1,6 @@
-"""Integration by `scipy.integrate.solve_ivp`, also by steps of Gauss collocation with error control.
+"""Time integration by `scipy.integrate.solve_ivp`, and Gauss collocation with error control as its method.
 
-It has a module of its own, because `scipy.integrate` takes longer to import than many a run.
+The module is separate because importing `scipy.integrate` takes longer than many a run.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from beamdyn.transient.trajectory import SAMPLES
 
 _KNOWN_METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 _JACOBIAN_METHODS = ("Radau", "BDF", "LSODA")
-_SCALING_TOLERANCE = 1e-2  # tolerance of the run that gives the magnitudes of the coordinates
+_SCALING_TOLERANCE = 1e-2  # tolerance of the run that finds the magnitudes of the coordinates
 
 
 @dataclass(frozen=True)
 class SolveIvpPath:
-    """Solution of `solve_ivp` as a path.
+    """Solution of `solve_ivp` as a `Path`.
 
     Parameters
     ----------
@@ -40,12 +40,12 @@ class SolveIvpPath:
 
     @property
     def start(self) -> float:
-        """First time [s]."""
+        """Time at the beginning of the path [s]."""
         return float(self.times[0])
 
     @property
     def end(self) -> float:
-        """Last time [s]."""
+        """Time at the end of the path [s]."""
         return float(self.times[-1])
 
     @property
@@ -54,13 +54,13 @@ class SolveIvpPath:
         return self.times, *self.at(self.times)
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and velocities at times t [s]: shapes (len(t), n)."""
+        """Evaluate coordinates and velocities at times t [s]: shapes (len(t), n)."""
         q, v = np.split(self.solution(t), 2)
         return q.T, v.T
 
 
 def check_method(method: object) -> None:
-    """Refuse anything but a method of `solve_ivp`."""
+    """Refuse an integration method that `solve_ivp` does not know."""
     named = isinstance(method, str) and method in _KNOWN_METHODS
     if not named and not (isinstance(method, type) and issubclass(method, OdeSolver)):
         known = ", ".join(map(repr, _KNOWN_METHODS))
@@ -84,11 +84,11 @@ def integrate_by_solve_ivp(
     y0 : ndarray, shape (2 n,)
         Coordinates and velocities at time 0.
     t_end : float
-        End [s].
+        End of the run [s].
     method : str or OdeSolver
         The method, by name or class.
     tolerance : float
-        Default of rtol; that of atol is a tenth of it, times the largest magnitude of each coordinate.
+        Default of rtol; the default of atol is a tenth of it, times each coordinate's largest magnitude.
     options : dict
         Further options of `solve_ivp` and of the method.
 
@@ -111,7 +111,7 @@ def integrate_by_solve_ivp(
         options = {"system": system, **options}
     elif method in _JACOBIAN_METHODS:
         options = {"jac": system.jacobian, **options}
-    chosen: Any = method  # one of those that `check_method` accepts
+    chosen: Any = method  # a method that `check_method` accepts
     result: Any = solve_ivp(system.rhs, (0.0, t_end), y0, method=chosen, dense_output=True, **options)
     if not result.success:
         raise ArithmeticError(f"solve_ivp stopped at t = {result.t[-1]:g} s: {result.message}")
@@ -123,7 +123,7 @@ def integrate_by_solve_ivp(
 
 
 class GaussCollocation(OdeSolver):
-    """Gauss collocation for `solve_ivp`: dense output, events, `t_eval` and error control as usual.
+    """Gauss collocation for `solve_ivp`: with dense output, events, `t_eval` and error control.
 
     ``solve_ivp(system.rhs, (t0, t1), y0, method=GaussCollocation, system=system)`` integrates
     y = (q, q') of a `LinearSystem`, passed as the option `system`, which must evaluate C(t),
@@ -186,7 +186,7 @@ class GaussCollocation(OdeSolver):
         self.solved_steps: list[tuple[float, np.ndarray, np.ndarray]] = []
 
     def _first_step(self, t0: float, t_bound: float) -> float:
-        """Step size in which the fastest motion advances by one radian, at most half of the run [s]."""
+        """Choose the step size in which the fastest motion advances by 1 rad, at most half the run [s]."""
         _, K, _ = self.system.coefficients(np.array([t0]))
         fastest = np.sqrt(np.abs(np.linalg.eigvals(K[0])).max())
         return min(1 / fastest if fastest else np.inf, (t_bound - t0) / 2)
@@ -202,7 +202,7 @@ class GaussCollocation(OdeSolver):
         return True, None
 
     def augmented(self) -> np.ndarray:
-        """Augmented state (1, q, v)."""
+        """Return the augmented state (1, q, v) at the current time."""
         return np.concatenate([[1.0], self.y])
 
     def _solve_block(self) -> None:
@@ -222,7 +222,7 @@ class GaussCollocation(OdeSolver):
         self.solved_steps = list(zip(ends, maps.step, maps.acceleration, strict=True))
 
     def _local_error(self, maps: StepMaps, starts: np.ndarray, h: float) -> float:
-        """Largest local error of the first and the last step of a block, over its bound."""
+        """Compute the largest ratio of local error to its bound in the first and last step of a block."""
         y = self.augmented()
         first = y
         for step in maps.step[:-1]:
@@ -239,7 +239,7 @@ class GaussCollocation(OdeSolver):
 
 
 class _StepPolynomial(DenseOutput):
-    """Collocation polynomial of one step, as the dense output of `solve_ivp`."""
+    """Collocation polynomial of one step, used as dense output of `solve_ivp`."""
 
     def __init__(self, segment: Segment) -> None:
         super().__init__(segment.start, segment.end)

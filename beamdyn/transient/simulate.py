@@ -48,13 +48,13 @@ def simulate(
         End of the run [s].
     modes : int, "auto" or None
         Number of modes at rest of each field.  "auto" takes modes at the slowest and at the fastest
-        speed: the smallest modal basis whose truncation error meets the tolerance.  It stops short of
-        it with a warning where the next basis would take minutes: past 5e7 steps times squared number of
+        speed: the smallest modal basis whose truncation error meets the tolerance.  The search stops before
+        that with a warning where the next basis would take minutes: past 5e7 steps times squared number of
         coordinates, or past 5e6 if the last modes added reduced the error to no less than a quarter.  None
         keeps all functions of the discretization.
     tolerance : float
-        Time-integration error aimed at, and with ``modes="auto"`` also the modal truncation error, each
-        relative to the largest tip deflection.  An error that exceeds it is named in `warnings`.  If no
+        Target of the time-integration error, and with ``modes="auto"`` also of the modal truncation error,
+        each relative to the largest tip deflection.  An error that exceeds it is named in `warnings`.  If no
         affordable basis meets one below 1e-5, the run is that at 1e-5 where its whole error is smaller.
     method : {"auto", "RK45", "DOP853", "Radau", "BDF", "LSODA", ...} or OdeSolver
         "auto": Gauss collocation with a step size from the tolerance; or any method of `solve_ivp`.

@@ -1,6 +1,6 @@
-"""The smallest modal basis with which a transient meets its tolerance, and those of a sweep.
+"""Search for the smallest modal basis with which a transient, or the cases of a sweep, meet the tolerance.
 
-A sweep takes the modes that sampled speeds need to keep the tolerance.
+A sweep uses the numbers of modes with which some sampled speeds meet the tolerance.
 """
 
 from __future__ import annotations
@@ -17,22 +17,25 @@ from beamdyn.transient.chunks import SweepRequest
 from beamdyn.transient.trajectory import SAMPLES
 from beamdyn.transient.transient import Transient, TransientRequest, warn_of_missed_modes
 
-_MOST_WORK = 5e7  # steps times squared size of a run (some seconds) beyond which "auto" adds no more modes
-_SLOW_WORK = 5e6  # the same if the last modes added have reduced the truncation error by less than _FAST
+# Largest work of a run, its steps times its squared size (some seconds), for which "auto" adds further modes.
+_MOST_WORK = 5e7
+# Largest such work if the modes added last have divided the truncation error by less than _FAST.
+_SLOW_WORK = 5e6
 _FAST = 4.0
-_FEW_MODES, _NEARLY = 4, 30.0  # modes of which one more divides the error by more than this, where they do
-_TIGHT = 1e-5  # tolerance below which, if the modes miss it, this one is tried as well
+# Up to the first number of modes, one more mode may divide the truncation error by the second number.
+_FEW_MODES, _NEARLY = 4, 30.0
+_TIGHT = 1e-5  # tolerance that is tried, too, if the modes miss a smaller tolerance
 
 
 def run_smallest_basis(request: TransientRequest) -> Transient:
-    """Integrate with the smallest basis that meets the tolerance, else with the best that is known.
+    """Integrate with the smallest basis that meets the tolerance, or else with the best basis found.
 
-    The basis of the request is the first that is tried.
+    The search starts with the basis of the request.
     """
     tolerance = request.tolerance
     run = _search(replace(request, method="auto", t_eval=None))
     if run.mode_error > tolerance and tolerance < _TIGHT:
-        # Accurate steps leave less work for modes: with coarser ones the whole error may be smaller.
+        # Accurate steps leave less work for modes: with coarser steps the total error may be smaller.
         coarse = _search(replace(request, method="auto", t_eval=None, tolerance=_TIGHT))
         run = min(run, coarse, key=lambda each: each.time_error + each.mode_error * each.largest)
     missed = tuple(warn_of_missed_modes(run.mode_error, tolerance, str(run.request.basis)))
@@ -42,17 +45,17 @@ def run_smallest_basis(request: TransientRequest) -> Transient:
 
 
 def _search(request: TransientRequest) -> Transient:
-    """Add modes until the truncation error meets the tolerance, or takes too much work."""
+    """Add modes until the truncation error meets the tolerance, or the next run takes too much work."""
     run, tolerance = request.run(), request.tolerance
     if run.mode_error > tolerance and (finer := run.with_more_modes) is not None:
-        # A sudden motion excites many modes: as many modes at rest may then be the better basis.
+        # A sudden motion excites many modes: the same number of modes at rest may then be the better basis.
         at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
         if at_rest.distance_from_path(*finer) < run.distance_from_path(*finer):
             run = _refine_better(at_rest, run, tolerance)
 
     def larger(found: tuple[Transient, float]) -> tuple[Transient, float] | None:
         run, before = found
-        few = (run.request.basis.modes or np.inf) <= _FEW_MODES  # of these, one more may suffice
+        few = (run.request.basis.modes or np.inf) <= _FEW_MODES  # with so few modes, one more may suffice
         nearly = few and run.mode_error <= _NEARLY * tolerance
         more = run.request.run_with_one_more() if nearly else run.refined
         most = _MOST_WORK if run.mode_error * _FAST < before else _SLOW_WORK
@@ -64,9 +67,9 @@ def _search(request: TransientRequest) -> Transient:
 
 
 def _refine_better(at_rest: Transient, at_speeds: Transient, tolerance: float) -> Transient:
-    """Refine modes at rest; where they are far from the tolerance, those at speeds if these converge faster.
+    """Refine modes at rest or, far from the tolerance, modes at speeds if these converge faster.
 
-    Few modes tell little of that: those at rest may be closer, and then fall behind for good.
+    Both are refined before they are compared, as few modes tell little about convergence.
     """
     if at_rest.mode_error <= _NEARLY * tolerance:
         return at_rest
@@ -74,16 +77,16 @@ def _refine_better(at_rest: Transient, at_speeds: Transient, tolerance: float) -
     return min(refined, key=lambda run: run.mode_error, default=at_rest)
 
 
-# Sweeps --------------------------------------------------------------------------------------------
+# Bases for sweeps -----------------------------------------------------------------------------------
 
 
 def first_basis(request: SweepRequest, speeds: tuple[float, ...]) -> ModalBasis:
-    """Smallest modal basis that is tried: modes at the slowest and at the fastest speed of all cases."""
+    """Choose the first modal basis: modes at the slowest and at the fastest speed of all cases."""
     return ModalBasis(FEWEST_MODES, tuple(end_speeds(request, speeds).tolist()))
 
 
 def end_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> np.ndarray:
-    """The slowest and the fastest speed of all cases [rad/s], one where they are the same."""
+    """Return the slowest and the fastest speed of all cases [rad/s]; a single one if they are equal."""
     ends = [
         find_speed_range(motion, request.t_end) for motion in map(request.motion, (speeds[0], speeds[-1]))
     ]
@@ -91,17 +94,17 @@ def end_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> np.ndarray:
 
 
 def list_samples(speeds: tuple[float, ...]) -> list[float]:
-    """Speeds [rad/s] at which `mode_error` is estimated: the slowest that moves, the fastest, and between."""
+    """List speeds [rad/s] at which `mode_error` is estimated: slowest above 0, fastest, and between."""
     slowest = min(1, len(speeds) - 1) if speeds[0] == 0 else 0
     return sorted({speeds[max(slowest, k * (len(speeds) - 1) // 4)] for k in range(5)})
 
 
 @one_blas_thread()
 def run_samples(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transient]:
-    """Run the samples in bases that suffice, each beginning with one mode fewer than the one before needed.
+    """Run sampled cases in sufficient bases, each starting one mode below the need of the one before.
 
-    If some take modes at their speeds and others at rest, all run in one basis: at rest if that keeps the
-    tolerance, as this takes fewer coordinates; else at their speeds if that does, or else in the better.
+    If some use modes at their speeds and others modes at rest, all run in one basis: at rest if that meets
+    the tolerance with fewer coordinates, else at their speeds if that meets it, or else in the better one.
     """
     samples, basis = [], request.basis
     for speed in list_samples(speeds):
@@ -125,7 +128,7 @@ def run_samples(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transi
 
 
 def with_basis_of(request: SweepRequest, speeds: tuple[float, ...], runs: list[Transient]) -> SweepRequest:
-    """The request with the modal bases of its samples."""
+    """Return the request with the modal bases of its sampled cases."""
     at_rest = runs[0].request.basis.is_at_rest
     basis = ModalBasis(_most_modes(runs), (0.0,) if at_rest else request.basis.speeds)
     modes = [run.request.basis.modes or 0 for run in runs]
@@ -133,10 +136,10 @@ def with_basis_of(request: SweepRequest, speeds: tuple[float, ...], runs: list[T
 
 
 def _most_modes(runs: Sequence[Transient]) -> int:
-    """Largest number of modes of some runs."""
+    """Return the largest number of modes of some runs."""
     return max(run.request.basis.modes or 0 for run in runs)
 
 
 def largest_mode_error(runs: Iterable[Transient]) -> float:
-    """Largest modal truncation error of the runs, relative to the largest deflection of each."""
+    """Return the runs' largest modal truncation error, relative to each run's largest deflection."""
     return max((run.mode_error for run in runs), default=0.0)

@@ -1,4 +1,4 @@
-"""Step size of an integration, chosen by the tolerance, and the number of steps that fit into memory."""
+"""Step size of a time integration, chosen by the tolerance; limits of the number of steps."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import ERROR_ORDER, TimeError
 from beamdyn.transient.trajectory import Trajectory
 
-TOLERANCES = (1e-12, 0.1)  # smallest and largest; smaller ones are below the rounding error
+TOLERANCES = (1e-12, 0.1)  # smallest and largest tolerance; smaller ones are below the rounding error
 _REFERENCE_PHASE = 3.84  # step size [rad] for a tolerance of 1e-5, measured on examples
 _LOOSEST_TOLERANCE = 0.01  # tolerance of the free vibration of a mode whose phase is resolved
-_PARTS = 4  # parts of a segment in which the speed changes, each with its own step size
-_MOST_STEPS = 3_000_000  # steps of a run
-_MOST_VALUES = 15_000_000  # steps times coordinates of a run that fits into some 3 GB of memory
+_PARTS = 4  # number of parts of a segment of changing speed, each with its own step size
+_MOST_STEPS = 3_000_000  # largest number of steps of a run
+# Largest number of steps times coordinates of a run, which fits into some 3 GB of memory.
+_MOST_VALUES = 15_000_000
 _ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
-_MOST_REFINED = 50  # _REFERENCE_PHASE over the smallest step size, below which rounding errors grow
+_MOST_REFINED = 50  # ratio of _REFERENCE_PHASE to the smallest step size, below which rounding errors grow
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class StepSize:
     phase : float
         Phase angle per step [rad].
     modes : int
-        Number of the lowest modes whose phase is resolved.  The motion hardly excites the higher ones.
+        Number of lowest modes whose phase is resolved; the motion hardly excites the higher ones.
     """
 
     phase: float
@@ -52,25 +53,27 @@ class StepSize:
         return self.count_steps_of_each(system, np.array([start, end]))[0]
 
     def count_steps_of_each(self, system: ModalSystem, ends: np.ndarray) -> list[int]:
-        """Numbers of equal steps of neighbouring segments, by their ends [s]."""
+        """Count the equal steps of neighbouring segments with given ends [s]."""
         t = np.linspace(ends[:-1], ends[1:], 9, axis=1)
         speed = np.abs(system.motion.at(t).speed).max(axis=1)
         multiple = max((line.multiple for line in system.motion.lines), default=0.0)
         _, K, _ = system.coefficients(t)
-        first = int(system.equations.voltage is not None)  # after a circuit's flux, without stiffness
+        # A circuit's flux, a coordinate without stiffness, comes first.
+        first = int(system.equations.voltage is not None)
         squared = np.sort(np.abs(np.linalg.eigvals(K)), axis=-1)[:, :, max(self.modes - 1, first)]
         natural = np.sqrt(squared.max(axis=1))
         fastest = np.maximum(natural, speed * max(multiple, float(system.equations.gravity != 0)))
         return np.maximum(1, np.ceil(np.diff(ends) * fastest / self.phase)).astype(int).tolist()
 
     def next(self, error: TimeError, bound: float, order: int) -> StepSize:
-        """Next step size, where the error exceeds its bound [m]: more modes resolved, or a smaller angle.
+        """Choose the next step size where the error exceeds its bound [m]: resolve more modes, or shorten.
 
-        The `order` is that at which the error falls with the step size.
+        The error falls with the step size to the power `order`.
         """
         cumulative = np.cumsum((error.modes * error.unresolved)[::-1])[::-1]
-        modes = int((cumulative > bound / 4).sum())  # the errors of all higher modes add up to less
-        if modes > self.modes:  # only as closely as the highest of them contributes
+        # Errors of all higher modes together are below this bound.
+        modes = int((cumulative > bound / 4).sum())
+        if modes > self.modes:  # the step is only as short as the highest resolved mode requires
             share = min(bound / 4 / cumulative[modes - 1], _LOOSEST_TOLERANCE)
             return StepSize(max(self.phase, StepSize.from_tolerance(share).phase), modes)
         shrink = max(0.3, 0.9 * (bound / error.total) ** (1 / order))
@@ -78,13 +81,13 @@ class StepSize:
 
     @property
     def is_finest(self) -> bool:
-        """Whether a smaller step size only adds rounding error."""
+        """Whether a smaller step size would only add rounding error."""
         return self.phase < _REFERENCE_PHASE / _MOST_REFINED
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """A run in steps of one size.
+    """A run in steps of one size, with its error.
 
     Parameters
     ----------
@@ -99,7 +102,7 @@ class Attempt:
     method : str
         Integrator and number of steps, for the provenance.
     order : int
-        Order at which the error falls with the step size.
+        Order of convergence of the error with the step size.
     """
 
     step_size: StepSize
@@ -113,21 +116,21 @@ class Attempt:
 def shorten_steps(
     run: Callable[[StepSize, Attempt | None], Attempt], tolerance: float
 ) -> tuple[Trajectory, float, str]:
-    """Run with the step size of the tolerance, and with shorter ones while the error exceeds it.
+    """Run with the step size for the tolerance, and with shorter steps while the error exceeds it.
 
-    It ends as well where shorter steps have not halved an error that may be one of rounding.
+    The refinement also ends where shorter steps have not halved an error that may be rounding.
 
     Parameters
     ----------
     run : callable
-        A run in steps of a wanted size, after another one, if there was one.
+        Function of a step size and of the previous attempt (or None) that runs an attempt.
     tolerance : float
-        Time-integration error aimed at, relative to the largest deflection.
+        Target of the time-integration error, relative to the largest deflection.
 
     Returns
     -------
     path, error, method
-        As of `integrate`.
+        Results as of `integrate`.
     """
 
     def meets(found: tuple[Attempt, Attempt | None]) -> bool:
@@ -146,11 +149,11 @@ def shorten_steps(
 
 
 class TooManySteps(InvalidValue):
-    """A run that is refused because its steps would not fit into memory."""
+    """Raised for a run whose steps would not fit into memory."""
 
 
 def check_number_of_steps(steps: int, size: int, t_end: float) -> None:
-    """Raise a `TooManySteps` if the steps of a run, of `size` coordinates each, do not fit into memory."""
+    """Raise `TooManySteps` if a run's steps, of `size` coordinates each, do not fit into memory."""
     most = min(_MOST_STEPS, _MOST_VALUES // size)
     if steps > most:
         bound = f"it takes about {steps:.3g} steps in time; {most:.3g} of {size} coordinates fit into memory"
@@ -173,7 +176,7 @@ def chain_segments(
     y0: np.ndarray,
     propagate: Callable[[float, float, int, np.ndarray, np.ndarray], Segment],
 ) -> tuple[Segment, ...]:
-    """Integrate segment by segment, by their ends [s], with the given numbers of steps."""
+    """Integrate consecutive segments with ends `edges` [s] in the given numbers of steps."""
     segments: list[Segment] = []
     for (a, b), count in zip(pairwise(edges), steps, strict=True):
         segments.append(propagate(a, b, count, *np.split(y0, 2)))

@@ -1,4 +1,4 @@
-"""Sweep over speed: peaks of transients, in parallel, resumable, and bitwise reproducible."""
+"""Sweep over speed: peaks of transients, computed in parallel, resumable, and bitwise reproducible."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from itertools import takewhile
 from pathlib import Path
 from threading import Event
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy
@@ -24,6 +24,7 @@ from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.plots import plot_sweep
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import counted, error_at_most, states, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import NO_ANSWER, TOLERANCE, Statement, announced, unannounced
 from beamdyn.equations.effects import modelled_directions
@@ -49,12 +50,9 @@ from beamdyn.transient.smallest_basis import (
 from beamdyn.transient.step_size import TOLERANCES
 from beamdyn.transient.transient import Transient, warn_of_missed_modes
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_DIGITS = 4  # most of the headline
+_DIGITS = 4  # largest number of significant digits in the headline
 _KIND = "beamdyn sweep"
-_VERSIONS = (__version__, np.__version__, scipy.__version__)  # stored bits depend on these
+_VERSIONS = (__version__, np.__version__, scipy.__version__)  # versions on which the stored bits depend
 
 
 class SweepInterrupted(RunInterrupted):
@@ -72,7 +70,7 @@ class SweepInterrupted(RunInterrupted):
 
 @dataclass(frozen=True)
 class Sweep(StatesModelError):
-    """Peaks of transients over speed.
+    """Peaks of the tip deflection in transients, over final speed.
 
     Parameters
     ----------
@@ -83,7 +81,7 @@ class Sweep(StatesModelError):
     largest : ndarray, shape (S,)
         Largest |tip deflection| of the run [m], also between steps; nan where the case failed.
     time_error : ndarray, shape (S,)
-        Estimated time-integration error of the tip deflection [m], and so of `peaks` and `largest`.
+        Estimated time-integration error of the tip deflection [m], which applies to `peaks` and `largest`.
     peaks_by_direction : ndarray, shape (S, 1) or (S, 2)
         Largest |tip deflection| in the window [m] in the direction of bending at the root and, where two
         planes are modelled, in that across; `peaks` and `largest` then are magnitudes of a vector.
@@ -126,7 +124,7 @@ class Sweep(StatesModelError):
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """Speeds, the largest peak and its error in one line; see `Result.headline`."""
+        """Yield speeds, the largest peak and its error for a one-line summary; see `Result.headline`."""
         yield f"{counted(len(self.speeds), 'speed')}, {self.say_speed(self.speeds)}"
         if np.isfinite(self.peaks).any():
             at = int(np.nanargmax(self.peaks))
@@ -138,7 +136,7 @@ class Sweep(StatesModelError):
 
     @property
     def peak_error(self) -> np.ndarray:
-        """Estimated error of `peaks` and `largest` [m]: of time integration and modal truncation, (S,)."""
+        """Estimated error of `peaks` and `largest` [m], by time integration and modal truncation, (S,)."""
         with np.errstate(invalid="ignore"):
             of_modes = np.where(self.largest == 0, 0.0, self.mode_error * self.largest)
         return self.time_error + of_modes
@@ -155,18 +153,18 @@ class Sweep(StatesModelError):
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
-        with unannounced():  # `warnings` has told what the run warns of
+        with unannounced():  # the field `warnings` already has the run's warnings
             run = simulate(replace(self.scene, motion=motion), self.t_end)
         return left_out_of_transient(run.request, run.solution, self.window).at(np.newaxis)
 
     def is_warned(self, tolerance: float) -> np.ndarray:
-        """Whether a warning holds at each speed, (S,), of a run with that tolerance."""
+        """Whether a warning applies at each speed, (S,), for a run with the given tolerance."""
         if any(warn_of_missed_modes(self.mode_error, tolerance, "")):
             return np.ones(len(self.speeds), dtype=bool)
         return np.array([any(_warnings(self._at(i), tolerance)) for i in range(len(self.speeds))])
 
     def _at(self, i: int) -> Sweep:
-        """One of the cases alone."""
+        """Select one of the cases as a sweep of its own."""
         names = "speeds", "peaks", "largest", "time_error", "status"
         return replace(self, **{name: getattr(self, name)[i : i + 1] for name in names})
 
@@ -196,11 +194,11 @@ def sweep(
 ) -> Sweep:
     """Compute the largest |tip deflection| in a time window, from rest, for each final speed of the motion.
 
-    Each case takes steps of its own, so that its result is the same to the bit for any workers, executor,
+    Each case has its own time steps, so that its result is the same to the bit for any workers, executor,
     order, resumption and size of the chunks.
 
-    With ``modes="auto"`` a case takes as many modes as the samples next to it need.  So the result of a case
-    depends within `time_error` and `mode_error` on which other speeds are asked for.
+    With ``modes="auto"`` a case uses as many modes as the sampled cases next to it need.  So its result
+    depends, within `time_error` and `mode_error`, on which other speeds are requested.
 
     Parameters
     ----------
@@ -216,10 +214,10 @@ def sweep(
         Number of modes at rest of each field.  "auto" takes modes at the slowest and at the fastest
         speed of each case: as few as meet the tolerance by their truncation error at five of the speeds.
     tolerance : float
-        Time-integration error aimed at, and with ``modes="auto"`` also the modal truncation error, each
-        relative to the largest deflection of a case.
+        Target of the time-integration error, and with ``modes="auto"`` also of the modal truncation error,
+        each relative to the largest deflection of a case.
     workers : int
-        Number of processes that solve; this one is the first of them.
+        Number of processes that solve cases, including the calling one.
     executor : concurrent.futures.Executor, optional
         Executor in place of the worker processes, such as that of ``dask.distributed.Client.get_executor()``.
     store : str or Path, optional
@@ -260,7 +258,8 @@ def sweep(
     runner = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress, SweepInterrupted)
     basis = given_basis(modes)
     scene = choose_for_motion(scene, end_speeds(request, cases), basis and basis.modes, request.tolerance)
-    request = replace(request, scene=replace(scene, physics_choice=None))  # whose times no key may hold
+    # The times of the choice must not affect keys of the store.
+    request = replace(request, scene=replace(scene, physics_choice=None))
     _check_speeds(request := replace(request, basis=basis or first_basis(request, cases)), cases)
     if store is not None or executor is not None or runner.workers > 1:
         _check_sendable(request, importable=runner.workers > 1)
@@ -277,7 +276,7 @@ def sweep(
                 found = _solve_cases(request, cases, chunk, runner)
             mode_error = beside.result()
     method = f"Gauss collocation, {request.basis_name} of {request.model.discretization}"
-    provenance = Provenance(__version__, method, "", perf_counter() - start)
+    provenance = Provenance.since(start, method)
     peaks, largest, time_error, status, by_direction = zip(*found, strict=True)
     result = Sweep(
         speeds=np.array(cases),
@@ -299,21 +298,21 @@ def sweep(
 
 @dataclass(frozen=True)
 class _Chunk:
-    """Cases that a worker takes and the store keeps at once, by their speeds [rad/s]."""
+    """Chunk of cases, given by speeds [rad/s], that a worker solves and the store keeps at once."""
 
     request: SweepRequest
     speeds: tuple[float, ...]
 
 
 def _solve(chunk: _Chunk) -> list[CaseResult]:
-    """Solve a chunk: workers and executors run this function."""
+    """Solve a chunk; this is the function that workers and executors run."""
     return solve_chunk(chunk.request, chunk.speeds)
 
 
 def _solve_cases(
     request: SweepRequest, speeds: tuple[float, ...], size: int, runner: TaskRunner
 ) -> list[CaseResult]:
-    """Results of all cases, the fastest solved first: they take longest."""
+    """Solve all cases, the fastest speeds first, as they take longest."""
     found: dict[int, list[CaseResult]] = {}
     parts = [speeds[k : k + size] for k in range(0, len(speeds), size)]
     tasks = [Task(partial(_Chunk, request, part), len(part), k) for k, part in enumerate(parts)]
@@ -321,7 +320,7 @@ def _solve_cases(
     return [case for k in range(len(parts)) for case in found[k]]
 
 
-# Requests -----------------------------------------------------------------------------------------
+# Checks of the request ---------------------------------------------------------------------------
 
 
 def _check_request(
@@ -365,9 +364,9 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
 
 @contextmanager
 def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[float]]:
-    """Call a function in a thread of its own, with an event that is set if its result is wanted no more.
+    """Call a function in a thread, with an event that is set when its result is no longer wanted.
 
-    An error meanwhile, such as an interrupt, sets it and does not wait for the end of the function.
+    An error in the context, such as an interrupt, sets the event and does not wait for the function's end.
     """
     thread, unwanted = ThreadPoolExecutor(1), Event()
     try:
@@ -383,7 +382,7 @@ def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[floa
 def _find_mode_error(
     request: SweepRequest, speeds: tuple[float, ...], samples: Sequence[Transient] | None, unwanted: Event
 ) -> float:
-    """Modal truncation error of the samples, which are run unless they are given, as long as it is wanted."""
+    """Find the modal truncation error of sampled cases, running them unless given, while it is wanted."""
     while_wanted = partial(takewhile, lambda _: not unwanted.is_set())
     runs = samples or (request.transient_request(speed).run() for speed in while_wanted(list_samples(speeds)))
     return largest_mode_error(while_wanted(runs))
@@ -395,7 +394,7 @@ def _check_sendable(request: SweepRequest, importable: bool) -> None:
     check_picklable(request.scene.motion)
     try:
         pickled = pickle.dumps(request)
-    except Exception as error:  # its class depends on the object
+    except Exception as error:  # the class of the exception depends on the object
         raise ValueError(f"the scene can be neither stored nor sent to workers: {error}") from None
     if importable and b"__main__" in pickled:
         raise ValueError(
@@ -405,7 +404,7 @@ def _check_sendable(request: SweepRequest, importable: bool) -> None:
 
 
 def _warnings(sweep: Sweep, tolerance: float) -> Iterator[Statement]:
-    """Yield what limits the peaks, by cases and speeds."""
+    """Yield warnings about the peaks, with the cases and speeds that they apply to."""
     speeds, motion = sweep.speeds, sweep.scene.motion
     yield from warn_of_left_out(sweep.scene)
     yield from warn_of_peak(sweep.scene, float(np.nanmax(sweep.largest, initial=0.0)))

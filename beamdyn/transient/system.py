@@ -15,8 +15,8 @@ from beamdyn.scene.motion import Motion, MotionSample
 from beamdyn.transient.gauss import components
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 
-_MEAN_SAMPLES = 257  # samples of the root's motion, for the mean stiffness
-_GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
+_MEAN_SAMPLES = 257  # number of samples of the root's motion for the mean stiffness
+_GOLDEN = 0.6180339887498949  # reciprocal of the golden ratio: such spacing misses no period of the motion
 
 
 @dataclass(frozen=True)
@@ -50,27 +50,27 @@ class ModalSystem:
         return self.tips[0]
 
     def deflections(self, q: np.ndarray) -> np.ndarray:
-        """Deflection of the tip in each direction [m] at coordinates q (..., n): shape (..., 1 or 2)."""
+        """Compute the tip's deflection in each direction [m] at coordinates q (..., n): (..., 1 or 2)."""
         return components(q, self.tips)
 
     def shape(self, q: np.ndarray, xi: np.ndarray, direction: int = 0) -> np.ndarray:
-        """Deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
+        """Compute the deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
         return q @ self.equations.deflection(xi, direction=direction)
 
     def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Deflection [m] over a strip, at xi (k,), eta (l,), as `Equations.surface`: shape (T, k, l)."""
+        """Compute the deflection [m] over a strip at xi (k,) and eta (l,): shape (T, k, l)."""
         return np.tensordot(q, self.equations.surface(xi, eta), 1)
 
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Energy of the vibration [J] at times t (T,): q' q' / 2 + q K q / 2 - f q."""
+        """Compute the energy of the vibration [J] at times t (T,): q' q' / 2 + q K q / 2 - f q."""
         _, K, f = self.coefficients(t)
         return (v**2).sum(axis=1) / 2 + np.einsum("ti,tij,tj->t", q, K, q) / 2 - (f * q).sum(axis=1)
 
     @classmethod
     def from_rest(cls, equations: Equations, motion: Motion, t_end: float) -> ModalSystem:
-        """Equations of a run from rest, without the coordinates that nothing excites.
+        """Build the equations of a run from rest, without coordinates that nothing excites.
 
-        These are planes without loads and coupling, by times spread over the run and its smooth pieces.
+        Left out are planes without loads and coupling, judged at times over the run and its smooth pieces.
         """
         spread = t_end * (_GOLDEN * np.arange(SPEED_SAMPLES) % 1)
         ends = np.clip([0.0, *motion.breakpoints, t_end], 0.0, t_end)
@@ -86,22 +86,22 @@ class ModalSystem:
         return cls(equations, motion)
 
     def root(self, t: np.ndarray) -> RootMotion:
-        """Motion of the root at times t [s]."""
+        """Compute the motion of the root at times t [s]."""
         return self.equations.root(self.motion.at(t))
 
     def coefficients(self, t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
-        """Evaluate C (None if zero), K and f at times t [s] of any shape."""
+        """Evaluate damping C (None if zero), stiffness K and load f at times t [s] of any shape."""
         return self.assemble(self.root(np.asarray(t, dtype=float)))
 
     def assemble(self, root: RootMotion) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
-        """Assemble C (None if zero), K and f for a motion of the root."""
+        """Assemble damping C (None if zero), stiffness K and load f for a motion of the root."""
         C = self.equations.matrix(1, root) if self.equations.matrices[1] else None
         return C, self.equations.matrix(0, root), self.equations.load(root)
 
     def modulated(self, start: float, end: float) -> ModulatedSystem | None:
-        """Split the equations from start to end [s] into what follows the speed and a varying stiffness.
+        """Split the equations from start to end [s]: a part that follows the speed, a varying stiffness.
 
-        None if damping or gyroscopic terms vary otherwise.
+        The result is None if damping or gyroscopic terms vary in another way.
         """
         stiffness, damping, _ = self.equations.matrices
         varying: list[Quantity] = [name for name in stiffness if name not in CONSTANT_AT_STEADY_SPEED]
@@ -126,7 +126,7 @@ class ModalSystem:
         return self._split(slow, self.motion.steady_start <= start, varying, excess, lines)
 
     def about_mean(self, start: float, end: float) -> ModulatedSystem | None:
-        """Split the equations from start to end [s] into those of the mean motion, and what varies about it.
+        """Split the equations from start to end [s] into those of the mean motion and a varying stiffness.
 
         None if damping or gyroscopic terms vary.
         """
@@ -155,7 +155,7 @@ class ModalSystem:
         excess: Callable[[MotionSample, RootMotion], list[np.ndarray]],
         lines: np.ndarray,
     ) -> ModulatedSystem:
-        """The equations with a stiffness that quantities vary by their excess over the slow one."""
+        """Build the equations in which quantities vary the stiffness by their excess over a slow part."""
         stiffness, loads = self.equations.matrices[0], self.equations.vectors
 
         def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -170,7 +170,7 @@ class ModalSystem:
         return ModulatedSystem(slow=slow, steady=steady, G=G, P=P, scalars=scalars, lines=lines)
 
     def _about_fixed_centre(self, sample: MotionSample) -> RootMotion:
-        """Motion of the root about a fixed centre without gravity, which follows the speed."""
+        """Compute the motion of the root about a fixed centre without gravity, which follows the speed."""
         still = MotionSample(np.zeros(()), sample.speed, sample.acceleration, np.zeros(3))
         return root_motion(self.equations.mount, still)
 
@@ -181,7 +181,7 @@ class ModalSystem:
         return np.concatenate([v, f - K @ q - (0 if C is None else C @ v)])
 
     def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Jacobian of y' with respect to y, shape (2 n, 2 n)."""
+        """Compute the Jacobian of y' with respect to y, shape (2 n, 2 n)."""
         C, K, _ = self.coefficients(np.asarray(t))
         n = self.size
         J = np.zeros((2 * n, 2 * n))

@@ -1,6 +1,6 @@
 """Time-integration error, estimated by solving some steps again with two more stages.
 
-Of equal steps some in each segment are solved again; steps over many samples are solved again piece by piece.
+With equal steps, some in each segment are solved again; steps over many samples are solved piece by piece.
 """
 
 from __future__ import annotations
@@ -17,20 +17,21 @@ from beamdyn.transient.record_steps import RecordSegment, RecordSteps, maps_of_r
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import magnitude
 
-STAGES = 8  # stages of the Gauss collocation that is checked
-ERROR_ORDER = 2 * STAGES  # order of its error in the step size
-_MOST_CHECKED = 32  # steps of a segment at which the local error is measured
-_ROUGHEST = 2  # more of them for each coordinate, where the interpolation error is largest
-_GOLDEN = 0.6180339887498949  # 1 / golden ratio: such spacing misses no period of the motion
-INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step with the largest error
+STAGES = 8  # number of stages of the Gauss collocation that is checked
+ERROR_ORDER = 2 * STAGES  # order of convergence of its error with the step size
+_MOST_CHECKED = 32  # number of steps of a segment at which the local error is measured
+_ROUGHEST = 2  # further checked steps per coordinate, those with the largest error of interpolation
+_GOLDEN = 0.6180339887498949  # reciprocal of the golden ratio: such spacing misses no period of the motion
+INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step at which the error is largest
 UNRESOLVED_PHASE = 0.05  # phase error per step [rad] above which a mode counts as unresolved
-_ROUNDING = 1e-14  # rounding error of a step, over the sum of the magnitudes of its terms
+_ROUNDING = 1e-14  # rounding error of a step, relative to the sum of the magnitudes of its terms
 
-_PIECES_CHECKED = 128  # pieces in the steps over samples that are checked, if these are not too few
+_PIECES_CHECKED = 128  # number of pieces in the checked steps over samples, unless these are too few
 _FEWEST_CHECKED = 48
 _POINTS = np.arange(10) / 10  # fractions of a piece at which the error between ends is sought
-_MOST_OF_A_KIND = 24  # longest and roughest steps that are checked besides those spread over the run
-_BATCH = 256  # pieces that are solved at once
+# Number of longest, and of roughest steps that are checked in addition to those spread over the run.
+_MOST_OF_A_KIND = 24
+_BATCH = 256  # number of pieces of steps over samples that are solved at once
 
 
 def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:
@@ -61,12 +62,12 @@ class SegmentError:
 
 @dataclass(frozen=True)
 class SegmentWithError(Segment):
-    """Segment of a trajectory whose error is known from how it was found.
+    """Segment of a trajectory whose error is known from the method of its computation.
 
     Parameters
     ----------
     error : SegmentError
-        Its error.
+        Time-integration error of the segment.
     """
 
     error: SegmentError
@@ -117,7 +118,7 @@ def estimate_time_error(
         The segments of a trajectory.
     outputs : ndarray, shape (d, n)
         The quantity whose error is sought, such as the tip deflection, per unit of each coordinate: the d
-        components of a vector, whose error is the magnitude of that of the vector.
+        components of a vector; the error is the magnitude of the vector's error.
 
     Returns
     -------
@@ -139,15 +140,16 @@ def estimate_time_error(
 
 
 def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarray) -> SegmentError:
-    """Error of a segment by the local errors of some steps: spread over it, and the roughest.
+    """Estimate the error of a segment from local errors of steps spread over it, and of the roughest.
 
     Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
     coherently until its phase is lost, after 2 / delta steps with a phase error delta per step.  The error
-    of a mode that the steps do not resolve is thus bounded by the amplitude of its free vibration.  What the
-    stiffness varies within a step, such as on a wavy road, turns the error of one mode into that of another.
+    of a mode that the steps do not resolve is thus bounded by the amplitude of its free vibration.  A
+    stiffness that varies within a step, as on a wavy road, turns the error of one mode into that of another.
     """
     h, steps, own, more = segment.h, len(segment.acceleration), tableau(STAGES), tableau(STAGES + 2)
-    series = own.b * Legendre.basis(STAGES - 1)(2 * own.c - 1)  # its last term: as the interpolation errs
+    # The last term of the series, which errs as the interpolation does.
+    series = own.b * Legendre.basis(STAGES - 1)(2 * own.c - 1)
     last = np.abs(np.einsum("s,ksn->kn", series, segment.acceleration))
     roughest = np.unique(np.argsort(last, axis=0)[-_ROUGHEST:])
     chosen = np.union1d(choose_checked_steps(steps), roughest)
@@ -169,34 +171,34 @@ def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarr
 
 
 def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
-    """Magnitude of a vector of d components per unit of each coordinate, (n,), from the components (d, n)."""
+    """Compute the magnitude of a vector per unit of each coordinate, (n,), from d components (d, n)."""
     return np.hypot.reduce(np.abs(outputs))
 
 
 def _total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
-    """Error of each coordinate after some steps, from local errors (k, n) and the largest phase error (n,).
+    """Bound the error of each coordinate after some steps by local (k, n) and largest phase errors (n,).
 
-    It is at most the sum of all local errors, and at most what the largest add up to until the phase is lost.
+    The bound is the sum of all local errors, or of the largest ones until the phase is lost, if that is less.
     """
-    until_lost = 2 / np.maximum(delta, 1e-30)  # steps
+    until_lost = 2 / np.maximum(delta, 1e-30)  # number of steps until the phase is lost
     return np.minimum(steps * local.mean(axis=0), until_lost * local.max(axis=0))
 
 
 def local_errors(
     step: np.ndarray, fine: np.ndarray, state: np.ndarray, end_state: np.ndarray, frequencies: np.ndarray
 ) -> np.ndarray:
-    """Local error of each step and coordinate, as an amplitude: of the collocation and of its solution.
+    """Compute the local error of each step and coordinate as an amplitude: collocation and rounding error.
 
     Parameters
     ----------
     step, fine : ndarray, shape (k, 2 n, 2 n + 1)
-        Maps of the steps, and more accurate ones.
+        Maps of the steps, and more accurate maps.
     state : ndarray, shape (k, 2 n + 1)
-        Augmented states at their beginnings.
+        Augmented states at the beginnings of the steps.
     end_state : ndarray, shape (k, 2 n)
-        Computed coordinates and velocities at their ends.
+        Computed coordinates and velocities at the ends of the steps.
     frequencies : ndarray, shape (n,)
-        As `vibration_frequencies` has them.
+        Angular frequencies of the coordinates, of `vibration_frequencies` [rad/s].
 
     Returns
     -------
@@ -205,37 +207,37 @@ def local_errors(
     n = len(frequencies)
     residual = np.einsum("kij,kj->ki", step, state) - end_state
     size = np.einsum("kij,kj->ki", np.abs(step), np.abs(state))
-    residual[np.abs(residual) <= _ROUNDING * size] = 0  # rounding, which does not add up
+    residual[np.abs(residual) <= _ROUNDING * size] = 0  # rounding errors do not add up
     error = np.abs(np.einsum("kij,kj->ki", fine - step, state)) + np.abs(residual)
     return np.hypot(error[:, :n], error[:, n:] / frequencies)
 
 
 def phase_errors(difference: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
-    """Largest phase error of each coordinate per step [rad], from the difference of two step maps."""
+    """Compute each coordinate's largest phase error per step [rad] from the difference of two step maps."""
     n, k = len(frequencies), np.arange(len(frequencies))
     by_velocity = np.abs(difference[:, k, 1 + n + k]) * frequencies
     return np.maximum(np.abs(difference[:, k, 1 + k]), by_velocity).max(axis=0)
 
 
 def vibration_frequencies(system: ModalSystem, duration: float) -> np.ndarray:
-    """Angular frequency of each coordinate, uncoupled, at time 0 [rad/s].
+    """Compute the angular frequency of each uncoupled coordinate at time 0 [rad/s].
 
-    An error of velocity over it is one of the coordinate.  On a hinge it may be 0: the error of velocity
-    then grows to one of the coordinate over the duration [s] of the run; so does that of a circuit's flux.
+    An error of velocity over the frequency is one of the coordinate.  On a hinge the frequency may be 0: the
+    error of velocity then grows to one of the coordinate over the duration [s] of the run, as for a flux.
     """
     _, K, _ = system.coefficients(np.zeros(()))
     slowest = 1 / duration if system.equations.shift or system.equations.voltage else 0.0
     return np.maximum(np.sqrt(np.abs(np.diag(K))), slowest)
 
 
-# Steps over many samples --------------------------------------------------------------------------
+# Error of steps over many samples -----------------------------------------------------------------
 
 
 def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.ndarray) -> TimeError:
-    """Error of a quantity: the checked steps are solved again from sample to sample.
+    """Estimate the error of a quantity by solving checked steps again from sample to sample.
 
-    They have two more stages, or where a step has many samples as many as these need.  Some are spread over
-    the run and stand for all; the others are the longest, and those in which the load is roughest.
+    The solutions have two more stages or, in steps of many samples, as many as these need.  Some steps are
+    spread over the run and stand for all; others are the longest, and those in which the load is roughest.
     """
     steps, count, total, interpolation = segment.steps, len(segment.steps), np.zeros(system.size), 0.0
     unresolved, across = np.zeros(system.size, dtype=bool), count < len(steps.piece_start)
@@ -243,7 +245,8 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
     middle = steps.piece_start + steps.piece_width / 2
     slope = np.diff(system.equations.load(system.root(middle)), axis=0) / np.diff(middle)[:, None]
     bend = np.pad(np.abs(np.diff(slope, axis=0)).sum(axis=1), 1, mode="edge")
-    kinds = steps.h, steps.h**3 * np.maximum.reduceat(bend, steps.first)  # as the bends change displacements
+    # The bends of the load change displacements by the cube of the step.
+    kinds = steps.h, steps.h**3 * np.maximum.reduceat(bend, steps.first)
     worst = np.unique([np.argsort(kind)[-_MOST_OF_A_KIND:] for kind in kinds])
     spread = choose_checked_steps(count, most)
     for chosen, represented in ((spread, count), (worst, len(worst))):
@@ -252,7 +255,7 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
         local = np.concatenate([each[0] for each in found])
         delta = np.max([each[1] for each in found], axis=0)
         added = _total_of_local_errors(local, delta, represented)
-        if across:  # what samples inside a step change in its load adds up by chance
+        if across:  # errors by samples inside a step are random, and add up so
             added = np.maximum(added, np.sqrt(represented) * local.mean(axis=0))
         total += added
         unresolved |= delta > UNRESOLVED_PHASE
@@ -264,7 +267,7 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
 def _check_batch(
     system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, outputs: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Local error of each chosen step, largest phase error and error between ends, against their pieces."""
+    """Compare chosen steps with their pieces: local error, largest phase error, error between ends."""
     steps, state = segment.steps.select(chosen), segment.state[chosen]
     step = maps_of_record(system, steps, STAGES).step
     pieces = maps_of_record(system, steps.pieces(), steps.nodes_in_piece(STAGES + 2))
@@ -279,7 +282,7 @@ def _check_batch(
 
 
 def _compose(steps: RecordSteps, pieces: StepMaps, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compose the maps of pieces to those of their steps, and find the states where the pieces begin."""
+    """Compose the maps of pieces to maps of steps, and compute the states at the beginnings of pieces."""
     size = state.shape[1]
     total = np.tile(np.eye(size), (len(steps), 1, 1))
     at_pieces = np.empty((len(steps.piece_start), size))

@@ -1,4 +1,4 @@
-"""Trajectories: coordinates over time, and their largest deflection."""
+"""Trajectories: coordinates over time, and the largest tip deflection along them."""
 
 from __future__ import annotations
 
@@ -14,16 +14,17 @@ from beamdyn.transient.gauss import Segment
 from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.system import ModalSystem
 
-SAMPLES = 8  # per step, if the caller gives no times
-_CANDIDATES = 12  # number of maxima that are refined; samples are within 1e-3 of the maxima between them
+SAMPLES = 8  # number of samples per step, if the caller gives no times
+_CANDIDATES = 12  # number of maxima that are refined; the samples are within 1e-3 of the maxima between them
 _REFINED = 4  # number of maxima refined after the first refinement
-_REFINEMENTS = 2  # refinements of a maximum, each 17 times as fine; then parabolas err by less than 1e-12
+# Number of refinements of a maximum, each 17 times as fine; parabolas then err by less than 1e-12.
+_REFINEMENTS = 2
 
 Size: TypeAlias = "Callable[[np.ndarray], np.ndarray]"
 
 
 class Path(Protocol):
-    """Coordinates over time, from any integrator.
+    """Coordinates of a motion over time, computed by any integrator.
 
     In order to add an integrator:
 
@@ -38,12 +39,12 @@ class Path(Protocol):
 
     @property
     def start(self) -> float:
-        """First time [s]."""
+        """Time at the beginning of the path [s]."""
         ...
 
     @property
     def end(self) -> float:
-        """Last time [s]."""
+        """Time at the end of the path [s]."""
         ...
 
     @property
@@ -52,24 +53,24 @@ class Path(Protocol):
         ...
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and velocities at times t [s]: shapes (len(t), n)."""
+        """Evaluate coordinates and velocities at times t [s]: shapes (len(t), n)."""
         ...
 
 
 @dataclass(frozen=True)
 class Trajectory:
-    """Consecutive segments, of equal steps or, of a motion given by samples, of unequal ones."""
+    """Consecutive segments of equal steps or, for a motion given by samples, of unequal steps."""
 
     segments: tuple[Segment | RecordSegment, ...]
 
     @property
     def start(self) -> float:
-        """First time [s]."""
+        """Time at the beginning of the trajectory [s]."""
         return self.segments[0].start
 
     @property
     def end(self) -> float:
-        """Last time [s]."""
+        """Time at the end of the trajectory [s]."""
         return self.segments[-1].end
 
     @property
@@ -92,11 +93,11 @@ class Trajectory:
         return t, q, v
 
     def projected(self, outputs: np.ndarray) -> Trajectory:
-        """Path of linear functions of the coordinates, given per unit of each, (d, n), as coordinates."""
+        """Build the path of linear functions (d, n) of the coordinates, as if they were coordinates."""
         return Trajectory(tuple(segment.projected(outputs) for segment in self.segments))
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coordinates and velocities at times t [s]: shapes (len(t), n)."""
+        """Evaluate coordinates and velocities at times t [s]: shapes (len(t), n)."""
         n = self.segments[0].acceleration.shape[2]
         q, v = np.empty((len(t), n)), np.empty((len(t), n))
         index = np.searchsorted([segment.start for segment in self.segments[1:]], t, side="right")
@@ -107,7 +108,7 @@ class Trajectory:
 
 
 def magnitude(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Magnitude of a vector whose d components are linear functions of coordinates.
+    """Compute the magnitude of a vector whose d components are linear functions of coordinates.
 
     Parameters
     ----------
@@ -155,7 +156,8 @@ def largest_in_each(size_of: Size, path: Path, windows: Sequence[tuple[float, fl
     for _ in range(_REFINEMENTS):
         near = np.linspace(np.maximum(t - half_width, start), np.minimum(t + half_width, end), 35, axis=-1)
         found = size_of(path.at(near.ravel())[0]).reshape(near.shape)
-        highest = np.argsort(found.max(axis=2))[:, -_REFINED:]  # the first refinement tells which these are
+        # The first refinement tells which maxima are highest.
+        highest = np.argsort(found.max(axis=2))[:, -_REFINED:]
         best = np.take_along_axis(found.argmax(axis=2), highest, axis=1)
         near = np.take_along_axis(near, highest[:, :, None], axis=1)
         t = np.take_along_axis(near, best[:, :, None], axis=2)[:, :, 0]
@@ -166,47 +168,48 @@ def largest_in_each(size_of: Size, path: Path, windows: Sequence[tuple[float, fl
 
 
 def _top_of_parabola(left: np.ndarray, middle: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Maximum of the parabola through three equidistant values; the middle one if it is not the largest."""
+    """Find the maximum of the parabola through three equidistant values, or the middle one if higher."""
     is_maximum = (middle >= left) & (middle >= right)
     bend = np.where(is_maximum, 2 * middle - left - right, 0.0)
-    tilt = np.divide(right - left, bend, out=np.zeros_like(bend), where=bend > 0)  # at most 1
+    tilt = np.divide(right - left, bend, out=np.zeros_like(bend), where=bend > 0)  # tilt is at most 1
     return middle + (right - left) * tilt / 8
 
 
 def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -> np.ndarray:
-    """Times of the highest samples in a window and its ends, some perhaps twice: shape (_CANDIDATES + 2,).
+    """Choose times of the highest samples in a window and its ends, perhaps repeated: (_CANDIDATES + 2,).
 
-    They are ranked by parabolas through three samples.
+    Samples are ranked by parabolas through three of them.
     """
     first, last = np.searchsorted(times, start), np.searchsorted(times, end, side="right")
     size = size[first:last]
     chosen = np.arange(len(size))
     if len(size) >= 3:
-        size = size / max(size.max(), 1e-300)  # so that squares cannot overflow
+        size = size / max(size.max(), 1e-300)  # scaled so that squares cannot overflow
         height = _top_of_parabola(size[:-2], size[1:-1], size[2:])
         chosen = 1 + np.argpartition(height, -min(_CANDIDATES, len(height)))[-_CANDIDATES:]
     return np.concatenate([times[first + chosen], np.full(_CANDIDATES - len(chosen), start), [start, end]])
 
 
-# The tip ------------------------------------------------------------------------------------------
+# Tip deflection -----------------------------------------------------------------------------------
 
 
 def sample_tip(system: AnySystem, path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Samples of the tip's deflection: times (k,) [s] and deflections (k, 1 or 2) [m]."""
+    """Sample the tip's deflection on a path: times (k,) [s] and deflections (k, 1 or 2) [m]."""
     if isinstance(system, ModalSystem) and isinstance(path, Trajectory):
-        t, deflections, _ = path.projected(system.tips).samples  # far fewer numbers than all coordinates
+        # These are far fewer numbers than all coordinates.
+        t, deflections, _ = path.projected(system.tips).samples
         return t, deflections
     t, q, _ = path.samples
     return t, system.deflections(q)
 
 
 def magnitude_of(deflections: np.ndarray) -> np.ndarray:
-    """Magnitude (...) of deflections in each direction (..., 1 or 2)."""
+    """Compute the magnitude (...) of deflections given in each direction (..., 1 or 2)."""
     return np.hypot.reduce(np.abs(np.moveaxis(deflections, -1, 0)))
 
 
 def in_direction(deflections: np.ndarray, direction: int) -> np.ndarray:
-    """Deflection (...) in a direction, from those in each (..., 1 or 2); 0 where that is not modelled."""
+    """Select the deflection (...) in a direction from (..., 1 or 2); 0 where it is not modelled."""
     if direction >= deflections.shape[-1]:
         return np.zeros(deflections.shape[:-1])
     return deflections[..., direction]

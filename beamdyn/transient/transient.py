@@ -1,4 +1,4 @@
-"""A transient, motion of a beam in time, as the result of `simulate`."""
+"""Transients: the motion of a beam in time, as the result of `simulate`."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.accuracy.refinement import MODES_OF_MOMENTS
 from beamdyn.common.inputs.checks import real, real_array
 from beamdyn.common.plots.export import write_series
 from beamdyn.common.plots.plots import plot_transient
 from beamdyn.common.results.one_line import error_at_most, number, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import TOLERANCE, Statement
 from beamdyn.equations.effects import modelled_directions
@@ -34,14 +34,14 @@ from beamdyn.transient.root_strain import RootStrain
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import Path, Trajectory, in_direction, magnitude_of, sample_tip
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_LIMIT_DIFFERENCE = 0.3  # from the refined run, over the largest deflection, that still bounds the error
-_TIMES_COMPARED = 20_000  # times at which two runs are compared; at most twice as many
+# Ratio of the refined run's distance to the largest deflection that still bounds the error.
+_LIMIT_DIFFERENCE = 0.3
+_TIMES_COMPARED = 20_000  # number of times at which two runs are compared; at most twice as many are used
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
-_OF_TIME_ERROR = 0.1  # share of the path's time error that is part of a distance found along it
-_COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"  # what a copy with further warnings keeps
+# Share of the time error of a path in the truncation error of modes that is found along this path.
+_OF_TIME_ERROR = 0.1
+# Computed attributes that a copy with further warnings keeps.
+_COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"
 
 
 @dataclass(frozen=True)
@@ -99,23 +99,23 @@ class Transient(StatesModelError):
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """Duration, largest deflection and errors in one line; see `Result.headline`."""
+        """Yield duration, largest deflection and errors for a one-line summary; see `Result.headline`."""
         error = f"time {error_at_most(self.time_error / (self.largest or 1.0))}"
         yield from (f"{number(self.path.end, 's')}: up to {self.say_length(self.largest)}", error)
         yield warned(self.warnings)
 
     @property
     def scene(self) -> Scene:
-        """Scene."""
+        """Scene of the transient."""
         return self.request.scene
 
     @property
     def solution(self) -> Solution:
-        """Equations, path, errors and largest deflection."""
+        """Equations, path, errors and largest deflection of the run."""
         return Solution(self.system, self.path, self.time_error, self.largest)
 
     def without_waiting(self) -> Transient:
-        """A copy to be shown at once, without model and modal truncation errors that are not computed yet."""
+        """Return a copy that can be shown at once, without slow errors that are not computed yet."""
         vars(shown := copy(super().without_waiting())).setdefault("mode_error", np.inf)
         return shown
 
@@ -126,9 +126,9 @@ class Transient(StatesModelError):
 
     @cached_property
     def with_more_modes(self) -> tuple[AnySystem, Path] | None:
-        """Equations and motion with the modes of `refined`, where possible in the steps of this run.
+        """Equations and motion with the modes of `refined`, in the same time steps if possible.
 
-        None if there is no larger model.
+        The value is None if there is no larger model.
         """
         linear = isinstance(self.system, ModalSystem) and "refined" not in self.__dict__
         if linear and isinstance(self.path, Trajectory) and self.path.in_equal_steps and self.time_error > 0:
@@ -139,11 +139,11 @@ class Transient(StatesModelError):
     def mode_error(self) -> float:
         """Estimated modal truncation error, over the largest deflection: twice the distance from `refined`.
 
-        Unless `refined` has been computed, the distance is found along the path of this run, or else its
-        modes are integrated in the steps of this run, where these ways do.
+        Unless `refined` has been computed, the distance is estimated along the path of this run, or else the
+        further modes are integrated in the steps of this run, where these methods apply.
 
         The factor of two covers the error of `refined` itself: on random runs it was less than half of the
-        distance (benchmark of the coverage of transients).  Infinite if there is no larger model that fits
+        distance (benchmark of the coverage of transients).  It is inf if there is no larger model that fits
         into memory, or if the distance is so large that the error of `refined` is unknown.
         """
         system, path, difference = self.system, self.path, None
@@ -162,7 +162,7 @@ class Transient(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the largest deflection by effects left out, of shape ()."""
+        """Changes of the largest deflection by effects left out of the model, of shape ()."""
         return left_out_of_transient(self.request, self.solution)
 
     def with_warnings(self, more: tuple[str, ...]) -> Transient:
@@ -173,11 +173,11 @@ class Transient(StatesModelError):
         return copy
 
     def distance_from(self, other: Transient) -> float:
-        """Largest difference of the tip deflection from that of another run of the same scene [m]."""
+        """Find the largest difference of the tip deflection from that of another run of the scene [m]."""
         return self.distance_from_path(other.system, other.path)
 
     def distance_from_path(self, system: AnySystem, path: Path) -> float:
-        """Largest difference of the tip deflection from that of another motion of the same scene [m]."""
+        """Find the largest difference of the tip deflection from another motion of the scene [m]."""
         t, q, _ = self.path.samples
         own = self.system.deflections(q)
         other_t, other = sample_tip(system, path)
@@ -187,7 +187,7 @@ class Transient(StatesModelError):
         return float(magnitude_of(own - other).max())
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, `mode_error` included."""
+        """Convert the result to numbers, lists and strings, including `mode_error`."""
         return {**super().to_dict(), "mode_error": self.mode_error}
 
     def at(self, t: np.ndarray | Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
@@ -201,7 +201,7 @@ class Transient(StatesModelError):
         return self.path.at(self._times_in_run(t))
 
     def _times_in_run(self, t: np.ndarray | Sequence[float] | float) -> np.ndarray:
-        """Times as an array of shape (T,); a ValueError if one is not finite or lies outside the run."""
+        """Convert times to an array of shape (T,); a ValueError if one is not finite or outside the run."""
         t = real_array("t", t if np.iterable(t) else [t])  # pyright: ignore[reportArgumentType]
         if t.size and not (t.min() >= self.path.start and t.max() <= self.path.end * (1 + 1e-12)):
             raise ValueError(f"t: times must lie in the run, from {self.path.start:g} to {self.path.end:g} s")
@@ -210,9 +210,9 @@ class Transient(StatesModelError):
     def shape(
         self, x: np.ndarray | Sequence[float], t: np.ndarray | Sequence[float], direction: int = 0
     ) -> np.ndarray:
-        """Deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x)).
+        """Compute the deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x)).
 
-        The direction is 0 for that of bending at the root, 1 for that across, in which a beam of one plane
+        Direction 0 is that of bending at the root, 1 the one across, in which a beam of one plane
         is rigid.
         """
         xi = np.asarray(x) / self.scene.beam.length
@@ -224,17 +224,17 @@ class Transient(StatesModelError):
         eta: np.ndarray | Sequence[float],
         t: np.ndarray | Sequence[float],
     ) -> np.ndarray:
-        """Deflection [m] over the area of a strip at times t [s]: shape (len(t), len(x), len(eta)).
+        """Compute the deflection [m] over a strip's area at times t [s]: (len(t), len(x), len(eta)).
 
-        The places and the direction are those of `Modes.surface`.
+        Places and direction are defined as in `Modes.surface`.
         """
         xi = np.asarray(x) / self.scene.beam.length
         return self.system.surface(self.at(t)[0], xi, np.asarray(eta))
 
     def root_strain(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Bending strain of the outer fibre at the root at times t [s]: shape (len(t),).
+        """Compute the outer fibre's bending strain at the root at times t [s]: shape (len(t),).
 
-        It is found from the bending moment of the loads and the inertia along the whole beam, see
+        The strain follows from the bending moment of loads and inertia along the whole beam, see
         `beamdyn.equations.root_moment`; its error is `root_strain_error`.
 
         Raises
@@ -247,10 +247,10 @@ class Transient(StatesModelError):
 
     @cached_property
     def root_strain_error(self) -> float:
-        """Estimated error of `root_strain`: three times its distance from `refined`, plus that of time.
+        """Estimated error of `root_strain`: three times its distance from `refined`, plus the time error.
 
-        After a sudden load the modes contribute to the strain as k^-3, so that all those left out together
-        are up to 2.2 times those that `refined` adds.  As for `mode_error`, it is infinite if there is no
+        After a sudden load, mode k contributes to the strain as k^-3, so that all modes left out together
+        contribute up to 2.2 times what `refined` adds.  As for `mode_error`, it is inf if there is no
         larger model, or if the distance is too large; as for `time_error`, it is nan for the methods of
         `solve_ivp`.
         """
@@ -265,34 +265,35 @@ class Transient(StatesModelError):
 
     @cached_property
     def _root_strain(self) -> RootStrain:
-        """The root strain by the state."""
+        """Root strain as a function of the state."""
         return RootStrain.of_scene(self.scene, self.request.model.discretization, self.system)
 
     def deflection(self, t: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
-        """Tip deflection [m] at times t [s]: shape (len(t),); the direction as for `shape`."""
+        """Compute the tip deflection [m] at times t [s]: shape (len(t),); for the direction see `shape`."""
         return self.shape([self.scene.beam.length], t, direction)[:, 0]
 
     def energy(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Energy of the vibration [J] at times t [s]: q' q' / 2 + q K q / 2 - f q; constant if K, f are.
+        """Compute the energy of the vibration [J] at times t [s], q' q' / 2 + q K q / 2 - f q.
 
         With large deflection, kinetic energy relative to the rotating axes, elastic energy and the
-        potential of the centrifugal forces and of the root's acceleration: constant, without damping, if
-        the speed and that acceleration are.
+        potential of the centrifugal forces, of the root's acceleration and of a dead force at the tip:
+        constant, without damping, if the speed and that acceleration are; a moment at the tip, or a load that
+        follows it, does further work.
         """
         t = self._times_in_run(t)
         return self.system.energy(t, *self.path.at(t))
 
     def peak(self, start: float, end: float, direction: int | None = None) -> float:
-        """Largest |tip deflection| [m] from `start` to `end` [s], also between samples.
+        """Find the largest |tip deflection| [m] from `start` to `end` [s], also between samples.
 
-        Where two planes are modelled, it is the magnitude of a vector, or of its component in a direction:
-        0 is that of bending at the root, 1 that across.
+        Where two planes are modelled, this is the magnitude of a vector, or of its component in a direction:
+        0 is the one of bending at the root, 1 the one across.
         """
         self._check_window(start, end)
         return self.solution.peak(start, end, direction)
 
     def _check_window(self, start: float, end: float) -> None:
-        """Refuse a window [s] that does not lie in the run."""
+        """Refuse a time window [s] that is not within the run."""
         (start, end), path = (real("start", start, "s"), real("end", end, "s")), self.path
         if not path.start <= start < end <= path.end * (1 + 1e-12):
             within = f"it must lie in the run, {path.start:g} ... {path.end:g} s"
@@ -307,9 +308,30 @@ class Transient(StatesModelError):
     def export(
         self, path: str | pathlib.Path, start: float, end: float, frames: int = 200, force: bool = False
     ) -> None:
-        """Write the deflected beam from start to end [s] as a time series for ParaView.
+        """Write the deflected beam over time as a mesh with a displacement field at each time, for ParaView.
 
-        A strip that twists or cambers has its own width.
+        A strip that twists or cambers is written as a surface with its true width; any other beam as a ribbon
+        a tenth of its length wide.
+
+        Parameters
+        ----------
+        path : str or Path
+            File to write, .xdmf.
+        start, end : float
+            First and last time [s], within the run.
+        frames : int
+            Number of times, evenly spread from `start` to `end`.
+        force : bool
+            Overwrite a file that exists.
+
+        Raises
+        ------
+        ValueError
+            If the times are not within the run, or the suffix is unknown.
+        FileExistsError
+            If the file exists and `force` is not set.
+        OSError
+            If it cannot be written.
         """
         self._check_window(start, end)
         t, places = np.linspace(start, end, frames), self.request.model.over_strip(41, 11)
@@ -324,7 +346,7 @@ class Transient(StatesModelError):
 
 @dataclass(frozen=True)
 class TransientRequest(TransientProblem):
-    """Checked arguments of `simulate`, which make its result."""
+    """Checked arguments of `simulate`, which run it and build its result."""
 
     def run(self) -> Transient:
         """Integrate with the modal basis of the request."""
@@ -345,14 +367,14 @@ class TransientRequest(TransientProblem):
             time_error=solution.error,
             largest=solution.largest,
             warnings=tuple(self._warnings(solution)),
-            provenance=Provenance(__version__, method, "", perf_counter() - start),
+            provenance=Provenance.since(start, method),
             system=solution.system,
             path=solution.path,
             request=self,
         )
 
     def _warnings(self, solution: Solution) -> Iterator[Statement]:
-        """Yield what limits a solution, also that it misses the tolerance."""
+        """Yield warnings about a solution, including a missed tolerance."""
         scene, largest = self.scene, solution.largest
         yield from warn_of_left_out(scene)
         yield from warn_of_peak(scene, largest)
@@ -385,7 +407,7 @@ class TransientRequest(TransientProblem):
 def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator[Statement]:
     """Warn of a modal truncation error, over the largest deflection (inf if not known), past the tolerance.
 
-    The basis is given in words.
+    The argument `basis` is its name in words.
     """
     size = f"{error:.2g} of the largest deflection" if np.isfinite(error) else "not known"
     more = "and more would take too long or too much memory; a sudden motion excites very many: "

@@ -1,9 +1,9 @@
 """Gauss collocation for a stiffness that varies slowly with the speed, and weakly about that.
 
-The equations: q'' + C(t) q' + (K(t) + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l with constant matrices G_m, P_l.
+The equations are q'' + C(t) q' + (K(t) + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l with constant G_m and P_l.
 C and K follow the speed.  With e = 0 the maps of the steps are smooth functions of time, which are
-interpolated between a few steps by Chebyshev polynomials; at steady speed one step stands for all.  What e
-changes follows from a power series in the values of e at the nodes, up to the second order.  So no step needs
+interpolated between a few steps by Chebyshev polynomials; at steady speed one step represents all.  Changes
+by e follow from a power series in the values of e at the nodes, up to the second order.  So no step needs
 a factorisation of its own, and the maps of many steps are one product of matrices.
 """
 
@@ -26,26 +26,28 @@ from beamdyn.transient.chebyshev import (
     to_part,
 )
 
-_POINTS = (25, 37)  # Chebyshev points of a segment of changing speed that are tried; odd
-_FEWEST_STEPS = 6  # steps for each point, below which solving every step costs no more
-_MOST_VALUES = 4_000_000  # values of the expanded maps of changing speed, some 30 MB
-_LARGEST_SAMPLED = 1.5  # largest e anywhere, over the largest of some samples
-_SQUARINGS = 3  # squarings of a matrix, whose norm then bounds the spectral radius closely
-_SAMPLES = 257  # samples of e, for its largest value
-_SLOWEST = 1e-3  # frequency over the largest, below which errors of velocity count no more
+_POINTS = (25, 37)  # odd numbers of Chebyshev points of a segment of changing speed that are tried
+_FEWEST_STEPS = 6  # number of steps for each point, below which solving every step costs no more
+_MOST_VALUES = 4_000_000  # largest number of values of the expanded maps of changing speed, some 30 MB
+# Assumed ratio of the largest e, the variation of the stiffness, to the largest of its samples.
+_LARGEST_SAMPLED = 1.5
+_SQUARINGS = 3  # number of squarings of a matrix, whose norm then bounds the spectral radius closely
+_SAMPLES = 257  # number of samples of e, the variation of the stiffness, among which the largest is sought
+_SLOWEST = 1e-3  # relative frequency below which errors of velocity are not weighted further
 _SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision
-_STEPS = 192  # steps solved as one batch
-_SAMPLED = 16 * _STEPS  # steps at whose nodes e and g are evaluated at once: calls cost more than numbers
+_STEPS = 192  # number of steps solved as one batch
+# Number of steps at whose nodes e and g are evaluated at once: calls cost more than numbers.
+_SAMPLED = 16 * _STEPS
 
 
 @dataclass(frozen=True)
 class ModulatedSystem:
-    """Equations q'' + C(t) q' + (K(t) + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l.
+    """Equations q'' + C(t) q' + (K(t) + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l with weak factors e.
 
     Parameters
     ----------
     slow : callable
-        From times (...) [s] to C, (..., n, n) or None, and K, (..., n, n), which follow the speed.
+        Function from times (...) [s] to C, (..., n, n) or None, and K, (..., n, n), which follow the speed.
     steady : bool
         Whether C and K are constant.
     G : ndarray, shape (m, n, n)
@@ -53,9 +55,9 @@ class ModulatedSystem:
     P : ndarray, shape (l, n)
         Vectors P_l of the loads.
     scalars : callable
-        From times (...) [s] to e, shape (..., m), and g, shape (..., l).
+        Function from times (...) [s] to e, shape (..., m), and g, shape (..., l).
     lines : ndarray, shape (f,)
-        Angular frequencies [rad/s] that e and g have at steady speed, as far as they are known.
+        Known angular frequencies [rad/s] of e and g at steady speed.
     """
 
     slow: Callable[[np.ndarray], tuple[np.ndarray | None, np.ndarray]]
@@ -67,7 +69,7 @@ class ModulatedSystem:
 
 
 class _Steps(NamedTuple):
-    """Equal steps of length h from `first` on [s], with their collocation and the accuracy of all."""
+    """Equal steps of length h from time `first` [s], with their collocation and the accuracy of all."""
 
     system: ModulatedSystem
     first: float
@@ -79,7 +81,7 @@ class _Steps(NamedTuple):
 
 @dataclass(frozen=True)
 class _StepMapSeries:
-    """Maps of steps that begin at P Chebyshev points, as a power series in e.
+    """Maps of steps that begin at P Chebyshev points, as a power series in the stiffness factors e.
 
     The accelerations at the nodes are a = (L + sum_m D_m Z_m)^-1 (R0 + sum_m D_m R_m) z, D_m = diag(e_m),
     with z = (q, v, g at the nodes) of 2 n + s l entries.  To the second order in D,
@@ -92,7 +94,7 @@ class _StepMapSeries:
     h : float
         Step size [s].
     table : Tableau
-        Collocation.
+        Coefficients of the collocation.
     """
 
     Y: np.ndarray
@@ -104,20 +106,21 @@ class _StepMapSeries:
 
     @classmethod
     def at(cls, system: ModulatedSystem, times: np.ndarray, h: float, table: gauss.Tableau) -> _StepMapSeries:
-        """Expand the accelerations of steps of h [s] that begin at some times (P,) [s]."""
+        """Expand the accelerations of steps of length h [s] that begin at given times (P,) [s]."""
         C, K = system.slow(times[:, None] + h * table.c)
         P, s, n, _ = K.shape
         Y = np.linalg.inv(gauss.left_side(C, K, h, table))
         free = gauss.right_side(C, K, np.zeros((P, s, n)), h, table)[:, :, 1:]
         loads = np.einsum("ij,la->iajl", np.eye(s), system.P).reshape(s * n, -1)
-        drift = np.stack([np.ones(s), h * table.c], axis=1)  # of q and v in the displacement at the nodes
+        # Drift of q and v in the displacement at the nodes.
+        drift = np.stack([np.ones(s), h * table.c], axis=1)
         R = -np.einsum("ix,mab->miaxb", drift, system.G).reshape(-1, s * n, 2 * n)
         R = np.concatenate([R, np.zeros((len(R), *loads.shape))], axis=2)
         Z = h**2 * np.einsum("ij,mab->miajb", table.A2, system.G).reshape(-1, s * n, s * n)
         return cls(Y, np.concatenate([Y @ free, Y @ loads], axis=2), R, Z, h, table)
 
     def every(self, stride: int) -> _StepMapSeries:
-        """The series at every `stride`-th point."""
+        """Select the series at every `stride`-th point."""
         return replace(self, Y=self.Y[::stride], X0=self.X0[::stride])
 
     @property
@@ -126,35 +129,45 @@ class _StepMapSeries:
         return self.Y.shape[1] // len(self.table.c)
 
     def constant(self) -> np.ndarray:
-        """Maps from z to (q, v) at the end of a step with e = 0: shape (P, 1, 2 n, :)."""
+        """Compute the maps from z to states at the end of a step with e = 0: (P, 1, 2 n, :)."""
         return gauss.add_drift(gauss.increment(self.X0, self.h, self.table), self.h, first=0)[:, None]
 
     def _parts(self) -> tuple[np.ndarray, np.ndarray]:
-        """Maps of a load at each node to (q, v), (P, s, 2 n, n), and W = R - Z X0, (P, m, s, n, :)."""
+        """Compute the maps from loads at nodes to (q, v), and W = R - Z X0 in the symbols of the class.
+
+        The shapes are (P, s, 2 n, n) and (P, m, s, n, :).
+        """
         P, s, n = len(self.Y), len(self.table.c), self.size
         ends = gauss.increment(self.Y, self.h, self.table).reshape(P, 2 * n, s, n)
         W = self.R - self.Z @ self.X0[:, None]
         return np.moveaxis(ends, 2, 1), W.reshape(P, len(self.Z), s, n, W.shape[-1])
 
     def first(self) -> np.ndarray:
-        """Factors of e_k, k = (m, node), in the maps to the end of a step: shape (P, m s, 2 n, :)."""
+        """Compute the terms of first order in e in the maps to the end of a step.
+
+        The shape is (P, m s, 2 n, :): a term for each factor m and node.
+        """
         ends, W = self._parts()
         found = ends[:, None] @ W
         return found.reshape(len(found), -1, *found.shape[3:])
 
     def second(self) -> np.ndarray:
-        """Factors of e_k e_l, k <= l, as `first`: shape (P, m s (m s + 1) / 2, 2 n, :)."""
+        """Compute the terms of second order in e in the maps to the end of a step.
+
+        The shape is (P, m s (m s + 1) / 2, 2 n, :), with a term for each pair of values e_k, e_l with k <= l.
+        """
         ends, W = self._parts()
         P, m, s, n, columns = W.shape
         ZY = (self.Z @ self.Y[:, None]).reshape(P, m, s, n, s * n)
         left = (ends[:, None] @ ZY).reshape(P, m * s * 2 * n, s, n).swapaxes(1, 2)
-        pairs = (left[:, None] @ W).reshape(P, m * s, m * s, 2 * n, columns)  # of e_l and, before it, e_k
+        # Terms in which e_k acts first, and e_l on its result.
+        pairs = (left[:, None] @ W).reshape(P, m * s, m * s, 2 * n, columns)
         rows, cols = _pairs(m * s)
         twice = np.where(rows == cols, 0.5, 1.0)[:, None, None]
         return -(pairs[:, rows, cols] + pairs[:, cols, rows]) * twice
 
     def ratio(self) -> np.ndarray:
-        """Bound of the ratio of successive terms of the series for e_m = 1: shape (m,)."""
+        """Bound the ratio of successive terms of the series, per size of each factor e: shape (m,)."""
         A = self.Z @ self.Y[:, None]
         norm = np.linalg.norm(A, axis=(2, 3)) + 1e-300
         A = A / norm[:, :, None, None]
@@ -165,7 +178,7 @@ class _StepMapSeries:
 
 @dataclass(frozen=True)
 class _Expansion:
-    """Maps of all steps: sums of Chebyshev polynomials of the step's beginning, times monomials in e.
+    """Maps of all steps as sums of Chebyshev polynomials of the step's beginning, times monomials in e.
 
     Parameters
     ----------
@@ -189,7 +202,7 @@ class _Expansion:
     def of(cls, steps: _Steps, points: int) -> _Expansion | None:
         """Expand the maps of some steps, with a number of Chebyshev points.
 
-        None if the polynomials through these points are not within the accuracy after all steps.
+        Returns None if the polynomials through these points are not accurate enough after all steps.
         """
         system, first, h, count, table, accuracy = steps
         begin = first + (count - 1) * h * (1 + extrema(points)) / 2
@@ -207,9 +220,10 @@ class _Expansion:
                 return None
             rough = k > 0 and size.sum() * _SINGLE_ROUNDING <= allowed
             maps.append(Polynomials(values, size, allowed).shortened(rough))
-        change = float(ratio @ largest)  # change by the first order, over the order before it
+        change = float(ratio @ largest)  # change by the first order, relative to the order before it
         X0, Y = chebyshev_coefficients(point.X0), chebyshev_coefficients(point.Y)
-        forces = np.tile(rows[point.size :] ** 2, len(table.c))  # from accelerations to displacements
+        # Conversion from accelerations to displacements.
+        forces = np.tile(rows[point.size :] ** 2, len(table.c))
         size = np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2))
         terms = Polynomials(X0, size, min(NEGLIGIBLE * accuracy, 1.0) * size.max())
         size, share = np.abs(Y).max(axis=(1, 2)), accuracy / max(change, accuracy)
@@ -218,7 +232,10 @@ class _Expansion:
         return cls(maps, terms.shortened(rough=False), varied.shortened(rough), ratio, point)
 
     def over(self, start: float, end: float) -> _Block:
-        """The maps of the steps that begin from `start` to `end`, both in [-1, 1], by fewer polynomials."""
+        """Return the maps of the steps that begin from `start` to `end` of the variable in [-1, 1].
+
+        Fewer polynomials suffice for this part than for all steps.
+        """
         parts = *self.maps, self.X0, self.Y
         local = to_part(max(len(part.values) for part in parts), start, end)
         *maps, X0, Y = (part.over(local) for part in parts)
@@ -227,7 +244,7 @@ class _Expansion:
 
 @dataclass(frozen=True)
 class _Block:
-    """Maps of neighbouring steps, as `_Expansion` has them of all, by polynomials of these alone."""
+    """Maps of neighbouring steps, by polynomials that are accurate for these alone."""
 
     maps: tuple[np.ndarray, ...]
     X0: np.ndarray
@@ -235,13 +252,13 @@ class _Block:
     point: _StepMapSeries
 
     def polynomials(self, x: np.ndarray) -> np.ndarray:
-        """The p Chebyshev polynomials that the block needs, at x (N,) in [-1, 1]: shape (N, p)."""
+        """Evaluate the p Chebyshev polynomials that the block needs at x (N,) in [-1, 1]: shape (N, p)."""
         return polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
-        """Maps of steps, (N, 2 n, 2 n + s l), for the polynomials (N, p) at their beginnings, e (N, m s)."""
+        """Compute maps of steps (N, 2 n, 2 n + s l) for polynomials (N, p) at step starts, e (N, m s)."""
         rows, columns = self.maps[0].shape[2:]
-        sums: dict[np.dtype, np.ndarray] = {}  # sums by precision: single where that suffices
+        sums: dict[np.dtype, np.ndarray] = {}  # sums by precision: single precision where that suffices
         for monomials, values in zip(_monomials_by_order(e), self.maps, strict=True):
             kind = values.dtype
             factor = _products(T.astype(kind), monomials.astype(kind), values)
@@ -250,11 +267,11 @@ class _Block:
         return reduce(np.add, sums.values()).reshape(len(e), rows, columns)
 
     def accelerations(self, T: np.ndarray, e: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Accelerations at the nodes, (N, s n), as `steps`, for z (N, 2 n + s l)."""
+        """Compute accelerations at the nodes (N, s n) for polynomials, e, and z (N, 2 n + s l)."""
         R, Z, n = self.point.R, self.point.Z, self.point.size
         factor = np.repeat(
             e.reshape(len(e), len(Z), len(self.point.table.c)).swapaxes(0, 1), n, axis=2
-        )  # (m, N, s n)
+        )  # shape (m, N, s n)
         total = _evaluate(self.X0, T, z)
         more = (factor * (z @ R.swapaxes(1, 2) - total @ Z.swapaxes(1, 2))).sum(axis=0)
         kind = self.Y.dtype
@@ -265,7 +282,7 @@ class _Block:
 
 
 def _products(T: np.ndarray, monomials: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Products of polynomials T (N, :) and monomials (N, k) by which values (p, k, ...) count: (N, p k)."""
+    """Multiply polynomials T (N, :) with monomials (N, k), as weights of values (p, k, ...): (N, p k)."""
     return (T[:, : len(values), None] * monomials[:, None, :]).reshape(len(T), -1)
 
 
@@ -277,16 +294,16 @@ def _evaluate(coefficients: np.ndarray, T: np.ndarray, z: np.ndarray) -> np.ndar
 
 @cache
 def _pairs(d: int) -> tuple[np.ndarray, np.ndarray]:
-    """Indices k <= l of all pairs of d numbers."""
+    """List the indices k <= l of all pairs of d numbers."""
     return np.triu_indices(d)
 
 
 def _scales(
     system: ModulatedSystem, constant: np.ndarray, t: float, table: gauss.Tableau
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Factors of rows (2 n,) and columns (2 n + s l,) that make entries of the maps comparable.
+    """Compute factors of rows (2 n,) and columns (2 n + s l,) that make entries of the maps comparable.
 
-    Errors of velocity count over the frequency, those of loads over the largest effect of each in a step.
+    Errors of velocity are divided by the frequency, errors of loads by each load's largest effect in a step.
     """
     K = system.slow(np.array([t]))[1][0]
     n, frequency = len(K), np.sqrt(np.abs(np.diag(K)))
@@ -307,7 +324,7 @@ def propagate_modulated(
     stages: int,
     accuracy: float,
 ) -> gauss.Segment | None:
-    """Integrate over equal steps, as `beamdyn.transient.gauss.propagate` does, by the expanded maps.
+    """Integrate over equal steps by the expanded maps; like `beamdyn.transient.gauss.propagate`.
 
     Parameters
     ----------
@@ -322,7 +339,7 @@ def propagate_modulated(
     Returns
     -------
     Segment or None
-        None if the stiffness varies too strongly for the series, or too fast for the polynomials.
+        Segment; None if the stiffness varies too strongly for the series, or too fast for the polynomials.
     """
     h, table = (t1 - t0) / steps, gauss.tableau(stages)
     expansion = _expand(_Steps(system, t0, h, steps, table, accuracy))
@@ -356,7 +373,7 @@ def _advance_block(
     """Fill state[1:] of a block of N steps from state[0], and the accelerations at their nodes."""
     N, columns = len(e), state.shape[1]
     T = local.polynomials(2 * np.arange(N) / max(N - 1, 1) - 1)
-    e, g = np.moveaxis(e, 2, 1).reshape(N, -1), g.reshape(N, -1)  # e over (step, (m, node))
+    e, g = np.moveaxis(e, 2, 1).reshape(N, -1), g.reshape(N, -1)  # e of shape (N, m nodes)
     maps = local.steps(T, e)
     affine = np.empty((N, columns - 1, columns))
     np.matmul(maps[:, :, columns - 1 :], g[:, :, None], out=affine[:, :, :1])
@@ -367,7 +384,7 @@ def _advance_block(
 
 
 def _expand(steps: _Steps) -> _Expansion | None:
-    """Expand the maps of some steps by as few points as suffice, if any do."""
+    """Expand the maps of steps by as few points as suffice; None if none suffice."""
     system, s = steps.system, len(steps.table.c)
     if system.steady:
         return _Expansion.of(steps, 1)
@@ -383,6 +400,9 @@ def _expand(steps: _Steps) -> _Expansion | None:
 
 
 def _monomials_by_order(e: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Monomials of each row of e (N, d): 1, (N, 1); e_k, (N, d); e_k e_l with k <= l, (N, d (d + 1) / 2)."""
+    """Compute the monomials of each row of e (N, d) up to the second order, one array for each order.
+
+    They are 1, all e_k, and all e_k e_l with k <= l.
+    """
     rows, columns = _pairs(e.shape[1])
     return np.ones((len(e), 1)), e, e[:, rows] * e[:, columns]

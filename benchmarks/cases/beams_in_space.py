@@ -1,4 +1,4 @@
-"""Beams in space: uniform ones under loads at the tip, and their closed forms."""
+"""Uniform beams in space under loads at the tip, and their closed forms."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from scipy.optimize import brentq
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam, elastic_stiffness
 from beamdyn.equations.beam_in_space.finite_rotations import quaternion_about
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses
+from beamdyn.equations.beam_in_space.tip_forces import LoadedBeam, TipForces
 from beamdyn.equations.discretization import FIXED, ArcQuadrature, Cells
 from beamdyn.equations.ritz import Ritz, RitzSpaces
 from beamdyn.modes.modal.continuation import solve_at
-from benchmarks.cases.loaded_beam import LoadedBeam, TipLoad
 
 BENDING = ("twist rate", "second curvature", "curvature")
 E1, E2, E3 = np.eye(3)
@@ -36,7 +36,7 @@ def uniform(
     kinks: np.ndarray | None = None,
     hinges: np.ndarray | None = None,
 ) -> BeamInSpace:
-    """A beam of one section: its law (6, 6), and per length mass, centre of mass and inertia (3, 3)."""
+    """Make a beam of one section: law (6, 6), and per length mass, centre of mass and inertia (3, 3)."""
     points = functions + 16
     quadrature = ArcQuadrature(Cells(np.array(ends), points))
     stations, xi = BeamStations(quadrature, length, np.empty(0)), quadrature.xi
@@ -71,8 +71,8 @@ def _of_strain(name: str, functions: np.ndarray) -> np.ndarray:
     return strains
 
 
-def bend(beam: BeamInSpace, load: TipLoad, steps: int = 4) -> BentBeam:
-    """The beam in equilibrium with a load, which grows in steps."""
+def bend(beam: BeamInSpace, load: TipForces, steps: int = 4) -> BentBeam:
+    """Solve the equilibrium of a beam with a load, which grows in steps."""
     problem, q = LoadedBeam(beam, load), np.zeros(beam.size)
     for step in range(steps):
         q = solve_at(problem, q, (step + 1) / steps)
@@ -83,15 +83,15 @@ def bend(beam: BeamInSpace, load: TipLoad, steps: int = 4) -> BentBeam:
 
 
 def bend_of_45_deg(torsion: float, strains: Sequence[str] = STRAINS) -> np.ndarray:
-    """Displacement of the tip of Bathe and Bolourchi's arc [in], along the root, to the centre, across."""
+    """Compute the displacement [in] of the tip of Bathe and Bolourchi's arc: along, to centre, across."""
     modulus, radius, second = 1e7, 100.0, 1 / 12
     law = modulus * np.diag([1.0, 0.5, 0.5, torsion / 2, second, second])
     arc = uniform(radius * np.pi / 4, law, strains, functions=8, initial=(0, 0, 0, 0, 0, 1 / radius))
-    return bend(arc, TipLoad(force=600.0 * E3)).tip - arc.at(np.zeros(arc.size)).tip
+    return bend(arc, TipForces(force=600.0 * E3)).tip - arc.at(np.zeros(arc.size)).tip
 
 
 def helix(length: float, stiffness: float, couple: np.ndarray) -> np.ndarray:
-    """Tip of a beam of equal bending stiffnesses under a couple: the tangent turns about it steadily."""
+    """Compute the tip of a beam of equal bending stiffnesses under a couple, about which it winds."""
     size = float(np.linalg.norm(couple))
     axis, turn = couple / size, size * length / stiffness
     along = axis * (axis @ E1)
@@ -100,19 +100,19 @@ def helix(length: float, stiffness: float, couple: np.ndarray) -> np.ndarray:
 
 
 def lateral_buckling_load() -> float:
-    """P L^2/(EI GJ)^(1/2) of a cantilever that is rigid in the direction of the load at its tip."""
+    """Compute P L^2/(EI GJ)^(1/2) at lateral buckling of a cantilever rigid in the direction of its load."""
     weak, torsion = 2.0, 0.7
     beam = uniform(1.3, np.diag([1, 1, 1, torsion, weak, 1]), ("twist rate", "second curvature"))
     straight = beam.at(np.zeros(beam.size))
-    by_load = straight.work_change(TipLoad(force=E2).on(straight))
+    by_load = straight.work_change(TipForces(force=E2).on(straight))
     return 1.3**2 / np.sqrt(weak * torsion) / eigh(by_load, beam.stiffness, eigvals_only=True)[-1]
 
 
 def flutter_load() -> float:
-    """P L^2/EI of a cantilever under a load at its tip that follows it (Beck): two frequencies meet."""
+    """Compute P L^2/EI at flutter of a cantilever under a follower load at its tip (Beck)."""
     beam = uniform(1.0, np.eye(6), ("curvature",), mass=1.0)
     straight = beam.at(np.zeros(beam.size))
-    by_load = straight.work_change(TipLoad(force=-E1, follows=True).on(straight))
+    by_load = straight.work_change(TipForces(force=-E1, follows=True).on(straight))
 
     def squared_distance(load: float) -> float:
         squares = eigvals(np.linalg.solve(straight.mass, beam.stiffness - load * by_load))

@@ -16,7 +16,7 @@ NAMES = ("iea_15", "nrel_5", "bmodes_test01")
 
 
 def reference_blade(name: str, twisted: bool = True) -> tuple[Blade, float]:
-    """The blade for the second method, over mass and stiffness of its root, and its unit of time [s]."""
+    """Return a blade for the second method, in units of its root, and its unit of time [s]."""
     data = stations(name)
     x, length = data["stations"], data["length"]
     mass, stiffness = data["mass_per_length"][0], data["flap_stiffness"][0]

@@ -17,7 +17,7 @@ DIGITS = 40
 
 
 def _arms(shoe: Shoe) -> tuple[mpf, mpf, mpf, mpf, mpf, mpf]:
-    """Integrals K, S, C and arms n, d [m] as in `shoe_torque`, and where the pressure vanishes [rad]."""
+    """Compute integrals K, S, C and arms n, d [m] as in `shoe_torque`, and the angle of no pressure [rad]."""
     b, y = map(mpf, shoe.pivot)
     zero = mpmath.atan2(b, -y) if shoe.pressure_zero == "pivot" else mpf(0)
     a1, a2 = (mpf(end) - zero for end in shoe.lining)
@@ -29,14 +29,14 @@ def _arms(shoe: Shoe) -> tuple[mpf, mpf, mpf, mpf, mpf, mpf]:
 
 
 def locking_friction_of_shoe(shoe: Shoe, leading: bool) -> mpf | None:
-    """Friction at which a shoe locks, if there is one."""
+    """Compute the friction at which a shoe locks; None if there is none."""
     *_, n, d, _ = _arms(shoe)
     limit = n / d if leading else -n / d
     return limit if limit > 0 else None
 
 
 def forces_on_shoe(shoe: Shoe, friction: float, force: float, leading: bool) -> dict[str, Any]:
-    """What `ShoeResult` states of a shoe that slides, by its names; vectors are complex."""
+    """Compute the fields of `ShoeResult` for a shoe that slides, by name; vectors are complex."""
     s, mu, P = (-1 if leading else 1), mpf(friction), mpf(force)
     K, S, C, n, d, zero = _arms(shoe)
     arm, bracket = mpf(shoe.force_arm) - mpf(shoe.pivot[1]), n + s * mu * d
@@ -54,12 +54,13 @@ def forces_on_shoe(shoe: Shoe, friction: float, force: float, leading: bool) -> 
 
 
 def exact_levers(brake: DuoServo, clearance: float) -> dict[str, mpf]:
-    """Lever arms and angles of a duo-servo brake by their names, by intersecting circles and lines."""
+    """Compute lever arms and angles of a duo-servo brake by name, by intersecting circles and lines."""
     r, tilt = mpf(brake.drum_radius), mpf(brake.face_tilt)
     pin, tip = (mpmath.mpc(*point) for point in (brake.adjuster, brake.tip))
     point = (r - mpf(clearance)) * mpmath.expj(mpf(brake.contact_angle))
     far, near = abs(point - pin), abs(pin)
-    opening = mpmath.acos((r**2 - near**2 - far**2) / (2 * near * far))  # from the pin's radius to the point
+    # Angle from the pin's radius to the point.
+    opening = mpmath.acos((r**2 - near**2 - far**2) / (2 * near * far))
     seated = pin + (tip - pin) * mpmath.expj(mpmath.arg(pin) + opening - mpmath.arg(point - pin))
     bottom = (tip.real - tip.imag * mpmath.tan(tilt) - mpf(brake.piston_bottom)) * mpmath.cos(tilt)
     psi = mpmath.acos(bottom / abs(seated)) - tilt - mpmath.arg(seated)
@@ -70,7 +71,7 @@ def exact_levers(brake: DuoServo, clearance: float) -> dict[str, mpf]:
 
 
 def given_levers(levers: Levers) -> dict[str, mpf]:
-    """Lever arms and angles as they are given."""
+    """Return lever arms and angles as they are given."""
     phi = {
         "phi1": mpf(levers.alpha1) + mpf(levers.gamma),
         "phi2": mpf(levers.alpha2) - mpf(levers.gamma),
@@ -80,13 +81,13 @@ def given_levers(levers: Levers) -> dict[str, mpf]:
 
 
 def locking_friction(levers: dict[str, mpf]) -> mpf | None:
-    """Friction at which a duo-servo brake locks, if there is one."""
+    """Compute the friction at which a duo-servo brake locks; None if there is none."""
     sigma = min(levers["a1"], levers["b"]) / levers["r"]
     return sigma / mpmath.sqrt(1 - sigma**2) if sigma < 1 else None
 
 
 def forces_from_friction(levers: dict[str, mpf], piston: float, friction: Any) -> dict[str, mpf]:
-    """What `InternalForces` states at a friction below self-locking, by its names."""
+    """Compute the fields of `InternalForces` at a friction below self-locking, by name."""
     r, b, mu, P_T = levers["r"], levers["b"], mpf(friction), mpf(piston)
     s = r * mu / mpmath.sqrt(1 + mu**2)
     Q = _across(P_T, levers["a2"], b, levers["phi2"], s)
@@ -110,7 +111,7 @@ def forces_from_friction(levers: dict[str, mpf], piston: float, friction: Any) -
 
 
 def slope_at_friction(levers: dict[str, mpf], piston: float, friction: float) -> dict[str, mpf]:
-    """Derivative of C* with respect to the friction, by central differences."""
+    """Compute the derivative of C* by the friction, by central differences."""
     step = locking_friction(levers)
     step = (step - mpf(friction) if step else mpf(friction)) * mpf(10) ** -8
     ends = (forces_from_friction(levers, piston, friction + sense * step)["c_star"] for sense in (1, -1))
@@ -118,7 +119,7 @@ def slope_at_friction(levers: dict[str, mpf], piston: float, friction: float) ->
 
 
 def _across(P: mpf, a: mpf, b: mpf, phi: mpf, s: mpf) -> mpf:
-    """The positive X of X b - P a = s |P + X|, by squaring."""
+    """Compute the positive root X of X b - P a = s |P + X|, by squaring."""
     square, linear = b**2 - s**2, -2 * P * (a * b + s**2 * mpmath.cos(phi))
     constant = P**2 * (a**2 - s**2)
     return (-linear + mpmath.sqrt(linear**2 - 4 * square * constant)) / (2 * square)
@@ -129,7 +130,7 @@ def _sum(P: mpf, Q: mpf, phi: mpf) -> mpf:
 
 
 def friction_of_torque(levers: dict[str, mpf], piston: float, torque: float, near: float) -> mpf:
-    """The friction that gives a torque, near an estimate."""
+    """Find the friction that gives a torque, near an estimate."""
     wanted, limit = mpf(torque), locking_friction(levers)
 
     def missing(mu: mpf) -> mpf:
@@ -149,7 +150,7 @@ def friction_of_torque(levers: dict[str, mpf], piston: float, torque: float, nea
 
 
 def exact_stop(truck: Truck, conditions: StopConditions) -> dict[str, mpf]:
-    """What `Stop` states of a truck that stops, by its names; loads over the weight."""
+    """Compute the fields of `Stop` for a truck that stops, by name; loads are over the weight."""
     m, ml = mpf(truck.empty_mass), mpf(truck.load_mass)
     a, y = ((m * mpf(e) + ml * mpf(w)) / (m + ml) for e, w in zip(truck.empty_cg, truck.load_cg, strict=True))
     V, mu, t1, t2, g = (

@@ -1,4 +1,4 @@
-"""Beams that bend far: published rows as scenes, and cases of our own for the second method."""
+"""Beams that bend far: published rows as scenes, and our own cases for the second method."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ Branch = Literal["straight", "bent"]
 
 
 def published() -> dict[str, Any]:
-    """Tables `case`, `harvester`, `pitchfork`, `least_frequency`, `fold`, `beside`."""
+    """Load the tables `case`, `harvester`, `pitchfork`, `least_frequency`, `fold` and `beside`."""
     return load("elastica")
 
 
 def scene_of(row: dict[str, Any]) -> bd.Scene:
-    """The scene of a published nondimensional row; its speed is in rad/s."""
+    """Make the scene of a published nondimensional row; its speed is in rad/s."""
     angles = (math.radians(row[name]) for name in ("setting_angle_deg", "bending_angle_deg"))
     beam, physics = bd.Beam.from_stiffness(1.0, 1.0, 1.0), _physics(branch=row["branch"])
     return bd.Scene(beam, bd.Mount(row["radius"], *angles), physics=physics)
 
 
 def harvester_at(setting_angle_deg: float, branch: Branch = "straight") -> bd.Scene:
-    """The harvester of Lee and Yoo (2019) at a setting angle."""
+    """Make the harvester of Lee and Yoo (2019) at a setting angle."""
     mount = replace(HARVESTER.mount, setting_angle=math.radians(setting_angle_deg))
     return replace(HARVESTER, mount=mount, physics=_physics(branch=branch))
 
@@ -45,7 +45,7 @@ def _physics(rotary_inertia: bool = False, branch: Branch = "straight") -> bd.Ph
 
 @dataclass(frozen=True)
 class Case:
-    """A scene at a speed; properties are coefficients of polynomials in x/L, one list a piece.
+    """A scene at a speed; properties are lists of polynomial coefficients in x/L, one for each piece.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ class Case:
 
 @cache
 def reference_answer(number: int) -> SceneAnswer:
-    """By the second method, of the case with this place in `CASES`."""
+    """Compute the answer of the second method to the case at an index of `CASES`."""
     case = CASES[number]
     if case.bent_to:
         return bent_answer(case.scene, case.speed, case.bent_to)

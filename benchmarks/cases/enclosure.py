@@ -1,4 +1,4 @@
-"""Random nondimensional scenes with exact eigenvalues, and whether guaranteed bounds enclose these."""
+"""Random nondimensional scenes with exact eigenvalues, and whether guaranteed bounds enclose them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class NondimensionalScene:
     tip: Tip | None
 
     def exact(self, modes: int) -> list[mpf]:
-        """The eigenvalues lambda^2 to 25 digits."""
+        """Compute the eigenvalues lambda^2 to 25 digits."""
         psi = self.scene.mount.bending_angle
         return bending_eigenvalues(
             self.gamma, self.delta, psi, self.mass, self.stiffness, self.tip, modes, digits=25
@@ -34,7 +34,7 @@ class NondimensionalScene:
 
 
 def random_nondimensional_scene(rng: np.random.Generator) -> NondimensionalScene:
-    """Uniform or tapered, with or without tip body, inward or outward, below or past the critical speed."""
+    """Draw a scene: uniform or tapered, with or without tip body, inward or outward, also past buckling."""
     taper, delta = _random_taper(rng), round(rng.uniform(-10, 5), 4)
     mass, stiffness = ([1.0, -taper], _power(taper, 3)) if rng.random() < 0.7 else ([1.0], [1.0])
     tip = _random_tip(rng) if rng.random() < 0.5 else None
@@ -53,7 +53,7 @@ def _random_taper(rng: np.random.Generator) -> float:
 
 
 def _power(taper: float, exponent: int) -> list[float]:
-    """Coefficients of (1 - taper x)^exponent, rounded to 12 digits: the rounded ones define the beam."""
+    """Return coefficients of (1 - taper x)^exponent, rounded to 12 digits, which define the beam."""
     return [round(float(c), 12) for c in (Polynomial([1.0, -taper]) ** exponent).coef]
 
 
@@ -64,19 +64,19 @@ def _random_tip(rng: np.random.Generator) -> Tip:
 
 
 def _random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
-    """At most 12 and six times the critical speed, limits of the reference; half of them near the latter."""
+    """Draw a speed up to 12 and six times the critical speed; half of them near that."""
     critical = bd.critical_speed(scene)
     near = rng.random() < 0.5 and critical < 12
     return float(critical * rng.uniform(0, 1.5) if near else rng.uniform(0, min(12, 6 * critical)))
 
 
 def encloses(bounds: FrequencyBounds, exact: list[mpf]) -> np.ndarray:
-    """Whether each exact value lies between its bounds; a missing (nan) bound excludes nothing."""
+    """Decide whether each exact value lies between its bounds; a missing (nan) bound excludes nothing."""
     low, high = bounds.lower_squared, bounds.upper_squared
     below = [np.isnan(a) or mpf(float(a)) <= z for a, z in zip(low, exact, strict=True)]
     return np.array(below) & [z <= mpf(float(b)) for b, z in zip(high, exact, strict=True)]
 
 
 def relative_width(bounds: FrequencyBounds) -> np.ndarray:
-    """Width of the bounds of the squared frequencies, relative to these."""
+    """Compute the width of the bounds of the squared frequencies, relative to these."""
     return (bounds.upper_squared - bounds.lower_squared) / np.abs(bounds.upper_squared)

@@ -1,4 +1,4 @@
-"""Random scenes whose root spring, thickness and tip mass shall be found from their frequencies."""
+"""Random scenes whose root spring, thickness and tip mass are to be found from their frequencies."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from beamdyn.scene.scene import Scene
 STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 OUTWARD = bd.Scene(STRIP, bd.Mount(radius=0.215, setting_angle=np.pi))
 SPEEDS, MODES = np.linspace(0.0, 150.0, 5), 3
-STIFFNESS = 200e9 * 0.01 * 0.0002**3 / 12 / 0.05  # EI/L [N m/rad]
-MASS = 7850.0 * 0.05 * 0.01 * 0.0002  # of the strip [kg]
+STIFFNESS = 200e9 * 0.01 * 0.0002**3 / 12 / 0.05  # unit of the root spring, EI/L [N m/rad]
+MASS = 7850.0 * 0.05 * 0.01 * 0.0002  # mass of the strip [kg]
 
 
 def unknowns(seed: int) -> dict[str, float]:
-    """A spring of 0.3 to 30 EI/L, a thickness within 30 %, and a body at the tip up to the beam's mass."""
+    """Draw a spring of 0.3 to 30 EI/L, a thickness within 30 %, and a tip body of up to the beam's mass."""
     random = np.random.default_rng(seed)
     return {
         "mount.root_stiffness": STIFFNESS * float(np.exp(random.uniform(np.log(0.3), np.log(30.0)))),
@@ -27,7 +27,7 @@ def unknowns(seed: int) -> dict[str, float]:
 
 
 def measured(true: dict[str, float], noise: float = 0.0, seed: int = 0) -> bd.MeasuredFrequencies:
-    """Three modes at five speeds of the scene with some values; relative noise is normally distributed."""
+    """Compute three modes at five speeds of the scene with some values, and add normal relative noise."""
     with unannounced():
         exact = bd.frequency_locus(with_numbers(OUTWARD, true), SPEEDS, MODES).frequency
     shown = exact * (1 + noise * np.random.default_rng([seed, 1]).standard_normal(exact.shape))
@@ -37,5 +37,5 @@ def measured(true: dict[str, float], noise: float = 0.0, seed: int = 0) -> bd.Me
 def identify(
     true: dict[str, float], noise: float = 0.0, seed: int = 0, scene: Scene = OUTWARD
 ) -> bd.Identification:
-    """The numbers found from data of some values, without a guess of them."""
+    """Identify numbers from data of some values, without a guess of them."""
     return bd.identify(scene, measured(true, noise, seed), dict.fromkeys(true))

@@ -1,4 +1,4 @@
-"""Measured beams, each as a clamped one: Epps and Chandra's straight beam, Carnegie's twisted blade."""
+"""Measured beams, each modelled as clamped: Epps and Chandra's straight beam, Carnegie's twisted blade."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ UNKNOWN_ROOT = "measured; of root and rig nothing is known, ours is clamped"
 
 
 def straight_beam() -> bd.Scene:
-    """Pointing outward, bending out of the plane of rotation."""
+    """Make the straight beam, pointing outward and bending out of the plane of rotation."""
     given = {name: entry["value"] for name, entry in load("epps_chandra_1996")["input"].items()}
     beam = bd.Beam.rectangular(
         given["length"] * INCH,
@@ -31,7 +31,7 @@ def straight_beam() -> bd.Scene:
 
 
 def swept_beam(sweep_deg: float) -> bd.Scene:
-    """The same beam with its tip swept back, bending in two directions, and turning."""
+    """Make the beam with its tip swept back, bending in two directions, and with torsion."""
     straight, given = straight_beam(), load("epps_chandra_1996")["input"]
     beam = bd.Beam.rectangular(
         straight.beam.length,
@@ -51,7 +51,7 @@ def _kink_at(place: float, angle: float) -> bd.Table:
 
 
 def compare() -> Iterator[Comparison]:
-    """All measured frequencies [Hz] beside ours."""
+    """Compare all measured frequencies [Hz] with computed ones."""
     scene = straight_beam()
     for row in load("epps_chandra_1996")["measured"]:
         printed = row["frequency"]
@@ -64,7 +64,7 @@ def compare() -> Iterator[Comparison]:
 
 
 def compare_carnegie() -> Iterator[Comparison]:
-    """His theory, which approximates our model, and his experiment [Hz]."""
+    """Compare Carnegie's theory, which approximates our model, and his experiment [Hz] with computed ones."""
     known = load("twisted_beams")["carnegie"]
     modes = bd.natural_modes(carnegie_scene(), 0.0, len(known["frequency"]))
     reasons = {"printed": APPROXIMATE, "measured": "measured: the blade was not ideally clamped"}

@@ -1,6 +1,6 @@
-"""Equilibrium of drawn mechanisms to many digits: forces and moments on each body, from the joints' inputs.
+"""Equilibrium of drawn mechanisms to many digits, from forces and moments on each body.
 
-Shares nothing with the package but the classes of joints and loads: no rows, no gradients, no scales.
+Nothing is shared with the package but the classes of joints and loads: no rows, no gradients, no scales.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ DIGITS = 40
 _SETTLED = mpf(10) ** -30  # relative change of the forces at which friction has settled
 _STEPS = 60
 
-Wrench = dict[str, tuple[mpf, mpf, mpf]]  # force along x and y, and moment about (0, 0), by body
+Wrench = dict[str, tuple[mpf, mpf, mpf]]  # forces along x and y, and moment about (0, 0), by body
 
 
 @dataclass(frozen=True)
 class Unknown:
-    """A component of a joint's force, or an unknown load: the forces of its unit size on the bodies."""
+    """A component of a joint's force, or an unknown load, as forces of unit size on the bodies."""
 
     name: str
     wrench: Wrench
@@ -51,7 +51,7 @@ def _scaled(wrench: Wrench, size: Any) -> Wrench:
 
 
 def _pair(body: str, other: str, at: Sequence[float], fx: Any, fy: Any) -> Wrench:
-    """A force on a body at a point, and its opposite on the other body there."""
+    """Return a force on a body at a point, and its opposite on the other body there."""
     return _sum(_force(body, at, fx, fy), _force(other, at, -fx, -fy))
 
 
@@ -62,14 +62,14 @@ def _unit(v: Sequence[float]) -> tuple[mpf, mpf]:
 
 
 def _normal(contact: planar.Contact) -> tuple[mpf, mpf]:
-    """Normal of a straight face, or away from the centre of a round one."""
+    """Return the normal of a straight face, or the direction away from the centre of a round one."""
     if contact.centre is None:
         return _unit(contact.normal or (0.0, 1.0))
     return _unit([mpf(p) - mpf(c) for p, c in zip(contact.at, contact.centre, strict=True)])
 
 
 def _pull(bodies: Sequence[str], points: Sequence[Sequence[float]]) -> Wrench:
-    """Unit tension along a polyline through points of bodies."""
+    """Return a unit tension along a polyline through points of bodies."""
     parts = []
     for (a, p), (b, q) in zip(
         zip(bodies, points, strict=True), list(zip(bodies, points, strict=True))[1:], strict=False
@@ -80,7 +80,7 @@ def _pull(bodies: Sequence[str], points: Sequence[Sequence[float]]) -> Wrench:
 
 
 def joint_forces(joint: planar.Joint) -> list[Unknown]:
-    """The unknown forces of a joint."""
+    """List the unknown forces of a joint."""
     match joint:
         case planar.Pin():
             axes = (1, 0), (0, 1)
@@ -101,7 +101,7 @@ def joint_forces(joint: planar.Joint) -> list[Unknown]:
 
 
 def load_force(load: planar.Load) -> tuple[Wrench, mpf | None]:
-    """The forces of a unit load, and its size in the drawing; None if unknown."""
+    """Return the forces of a unit load, and its size in the drawing; None if unknown."""
     match load:
         case planar.Force():
             return _force(load.body, load.at, *_unit(load.direction)), _size(load.magnitude)
@@ -124,7 +124,7 @@ def _size(magnitude: float | None) -> mpf | None:
 
 
 def friction_force(joint: Any) -> tuple[Wrench, mpf]:
-    """The forces of unit friction in the sense of the package, and its coefficient by the joint's force."""
+    """Return the forces of unit friction in the package's sense, and its coefficient by the joint's force."""
     if isinstance(joint, planar.Pin):
         mu = mpf(joint.friction)
         arm = mpf(joint.radius) * mu / mpmath.sqrt(1 + mu * mu)
@@ -137,7 +137,7 @@ def friction_force(joint: Any) -> tuple[Wrench, mpf]:
 def exact_forces(
     mechanism: planar.Mechanism, senses: Mapping[str, float], start: Mapping[str, Sequence[float]]
 ) -> dict[str, list[mpf]] | None:
-    """Forces of joints by component, and loads, by name [N, N m]; None if friction does not settle.
+    """Compute forces of joints by component, and loads, by name [N, N m]; None if friction does not settle.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def _solve(
     senses: Mapping[str, float],
     directions: Mapping[str, Sequence[mpf]],
 ) -> dict[str, list[mpf]]:
-    """Forces that balance the known loads, friction being in proportion to those along the directions."""
+    """Solve for forces that balance the known loads, with friction proportional to those along directions."""
     seen: dict[str, int] = {}
     matrix = mpmath.zeros(3 * len(bodies), len(unknown))
     for j, each in enumerate(unknown):

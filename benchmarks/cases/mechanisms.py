@@ -47,7 +47,7 @@ JOINTS = (
 
 
 def eebrake(tension=None, right=1.0, left=1.0, joints=JOINTS) -> Mechanism:
-    """The eeBrake reconstructed: levers R and L, upper-left lever V; strut S and link K as bars."""
+    """Build the eeBrake as reconstructed: levers R and L, upper-left lever V, strut S and link K as bars."""
     return Mechanism(
         ("R", "L", "V"),
         joints,
@@ -64,7 +64,7 @@ def eebrake(tension=None, right=1.0, left=1.0, joints=JOINTS) -> Mechanism:
 
 KINDS = ("Pin", "Bar", "Slot", "Contact", "RotationLock", "Cable")
 LOADS = ("Force", "Follower", "Moment", "CablePair", "Spring", "TorsionSpring")
-_STEP = 1e-30  # of the complex step: exact to rounding
+_STEP = 1e-30  # size of the complex step, with which derivatives are exact to rounding
 
 
 def _rotated(angle, x, y):
@@ -72,7 +72,7 @@ def _rotated(angle, x, y):
 
 
 class Motion:
-    """Every coordinate of every body moved by a complex step, one at a time: arrays of shape (3 n,)."""
+    """A motion that moves every coordinate of every body by a complex step, one at a time: arrays (3 n,)."""
 
     def __init__(self, bodies, poses):
         size = 3 * len(bodies)
@@ -94,7 +94,7 @@ class Motion:
         return sum(np.sqrt((q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2) for p, q in pairwise(places))
 
     def offset(self, joint, normal):
-        """n.(p - o), n turning with the other body."""
+        """Compute n.(p - o), with n turning with the other body."""
         p, o = (
             self.point(joint.body, joint.at),
             self.point(joint.other, joint.at if joint.on is None else joint.on),
@@ -104,7 +104,7 @@ class Motion:
 
 
 def joint_functions(motion, joint):
-    """What a joint keeps constant, growing in the sense in which its force pushes the body named first."""
+    """Return the quantities that a joint keeps constant, which grow as its force pushes the first body."""
     if isinstance(joint, Pin):
         p, q = motion.point(joint.body, joint.at), motion.point(joint.other, joint.at)
         return [p[0] - q[0], p[1] - q[1]]
@@ -120,7 +120,7 @@ def joint_functions(motion, joint):
 
 
 def load_function(motion, load):
-    """What a load of unit magnitude does work on; of a spring minus its energy."""
+    """Return the quantity on which a unit load does work; for a spring minus its energy."""
     if isinstance(load, Force):
         x, y = motion.point(load.body, load.at)
         turned = motion.angle(load.body).real if load.follows else 0.0
@@ -174,13 +174,13 @@ def random_load(rng, kind, name, bodies, magnitude):
 
 
 def least(rows):
-    """Smallest singular value of rows scaled to length 1."""
+    """Compute the smallest singular value of rows scaled to length 1."""
     rows = np.array(rows)
     return np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True))[1][-1] if len(rows) else 1.0
 
 
 def random_mechanism(rng):
-    """Two to five bodies, joints and loads of all kinds; statically determined, mobility 0 to 3."""
+    """Draw two to five bodies with joints and loads of all kinds, statically determined, mobility 0 to 3."""
     bodies = tuple(f"b{k}" for k in range(rng.integers(2, 6)))
     mobility = int(rng.integers(0, 4))
     motion = Motion(bodies, np.zeros((len(bodies), 3)))
@@ -204,7 +204,7 @@ def random_mechanism(rng):
 
 
 def virtual_work(mechanism, answer):
-    """Work of joints and loads on every virtual motion, and of the loads on those the joints let through.
+    """Compute the work of joints and loads on every virtual motion, and of loads on the possible motions.
 
     Both over the largest single contribution, from the sizes that an `Equilibrium` at one position reports.
     """
@@ -230,7 +230,7 @@ def virtual_work(mechanism, answer):
 
 
 def worst_virtual_work(count, seed=0):
-    """Largest virtual work of random mechanisms, drawn and, with mobility 1, moved along a stroke."""
+    """Compute the largest virtual work of random mechanisms, as drawn and along a stroke."""
     rng = np.random.default_rng(seed)
     worst, moved = np.zeros(2), 0
     for _ in range(count):
@@ -248,5 +248,5 @@ def worst_virtual_work(count, seed=0):
 
 
 def _driver(mechanism):
-    """The load of unknown amplitude, which moves with every free motion."""
+    """Return the name of the load of unknown amplitude, which moves with every free motion."""
     return next(load.name for load in mechanism.loads if getattr(load, "magnitude", 0.0) is None)

@@ -119,7 +119,7 @@ EXTRAS = (
 
 
 def _at_one(pattern: re.Pattern[str], change: Callable[[str, Random], str]) -> Mutation:
-    """A mutation that replaces one of the places that a pattern finds."""
+    """Make a mutation that replaces one of the places that a pattern finds."""
 
     def mutate(text: str, random: Random) -> str:
         places = [match.span() for match in pattern.finditer(text)]
@@ -195,12 +195,13 @@ MUTATIONS: dict[str, Mutation] = {
     "cut": cut,
     "shuffled": shuffle,
 }
-_OFTEN = ("magnitude", "sign", "other digits", "other name")  # mostly still what a file may say
-_RARE = ("cut", "shuffled", "inserted")  # hardly ever TOML after it
+# Mutations after which a text mostly is still valid.
+_OFTEN = ("magnitude", "sign", "other digits", "other name")
+_RARE = ("cut", "shuffled", "inserted")  # mutations after which a text hardly ever is TOML
 
 
 def mutate(text: str, random: Random) -> tuple[str, str]:
-    """A text after one to three mutations, and their names."""
+    """Mutate a text one to three times; return it with the names of the mutations."""
     weights = [4.0 if name in _OFTEN else 0.2 if name in _RARE else 1.0 for name in MUTATIONS]
     names = random.choices([*MUTATIONS], weights, k=random.choice((1, 1, 1, 2, 3)))
     for name in names:

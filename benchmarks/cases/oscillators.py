@@ -6,11 +6,11 @@ import numpy as np
 
 
 class Oscillator:
-    """q'' + q = 0: its energy (q^2 + q'^2) / 2 is constant."""
+    """The oscillator q'' + q = 0, whose energy (q^2 + q'^2) / 2 is constant."""
 
     size = 1
 
     def coefficients(self, t: np.ndarray) -> tuple[None, np.ndarray, np.ndarray]:
-        """C, K and f at times: nothing, 1 and 0."""
+        """Return C (None), K = 1 and f = 0 at times."""
         t = np.asarray(t)[..., None]
         return None, 1 + 0 * t[..., None], 0 * t

@@ -17,7 +17,7 @@ _INERTIAS = ("rotary_inertia", "second_rotary_inertia")
 
 
 def random_inputs_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """A scene and a speed, to 0.999 critical: any physics, points, springs, damping, twist and precone."""
+    """Draw a scene and a speed up to 0.999 critical: any physics, points, damping, twist, precone."""
     planes = int(rng.integers(1, 3))
     effects = [bool(rng.integers(2)) for _ in range(2)]
     physics = bd.Physics(
@@ -33,7 +33,7 @@ def random_inputs_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def _beam(rng: np.random.Generator, planes: int) -> bd.Beam:
-    """Rectangular, of constant properties, tapered, or by stations; with a tip body, masses and springs."""
+    """Draw a beam: rectangular, constant, tapered or by stations; with tip body, masses and springs."""
     length, slenderness, ratio = (
         10 ** rng.uniform(-2, 1),
         10 ** rng.uniform(1, 2.5),
@@ -60,7 +60,7 @@ def _axial(section: dict[str, float]) -> float:
 
 
 def _varied(rng: np.random.Generator, section: dict[str, float], kind: int) -> dict[str, Any]:
-    """Constant properties; each with a taper of its own; or linear between three stations."""
+    """Draw properties: constant, each with its own taper, or linear between three stations."""
     if kind == 1:
         return dict(section)
     if kind == 2:
@@ -73,7 +73,7 @@ def _varied(rng: np.random.Generator, section: dict[str, float], kind: int) -> d
 
 
 def _tip(rng: np.random.Generator, mass: float, length: float) -> bd.TipMass:
-    """A body of up to three beam masses, a third of them points, some of no mass."""
+    """Draw a tip body of up to three beam masses; a third of them are points, some have no mass."""
     body = mass * float(rng.choice([0.0, 10 ** rng.uniform(-3, 0.5)], p=[0.2, 0.8]))
     squares = (length * rng.uniform(0.02, 0.2, 3)) ** 2 * body / 2 * (rng.random() < 0.67)
     moments = squares.sum() - squares
@@ -85,9 +85,10 @@ def _twist(rng: np.random.Generator) -> Any:
 
 
 def _points(rng: np.random.Generator, mass: float, stiffness: float, length: float, planes: int) -> dict:
-    """Up to two masses and a spring, apart from each other; one mass in eight at the tip."""
+    """Draw up to two masses and a spring, apart from each other; one mass in eight is at the tip."""
     count = int(rng.choice([0, 1, 2], p=[0.4, 0.4, 0.2]))
-    places = rng.choice(np.arange(5, 30), count + 1, replace=False) / 31 * length  # off the stations
+    # Positions that no station has.
+    places = rng.choice(np.arange(5, 30), count + 1, replace=False) / 31 * length
     if count and rng.random() < 0.125:
         places[0] = length
     masses = [bd.PointMass(float(x), mass * float(_amount(rng, -2, 0))) for x in places[:count]]
@@ -99,7 +100,7 @@ def _points(rng: np.random.Generator, mass: float, stiffness: float, length: flo
 
 
 def _amount(rng: np.random.Generator, least: float, most: float) -> float:
-    """A power of ten, or, one in eight, 0."""
+    """Draw a power of ten, or in one of eight cases 0."""
     return 0.0 if rng.random() < 0.125 else 10 ** rng.uniform(least, most)
 
 
@@ -107,7 +108,7 @@ def _amount(rng: np.random.Generator, least: float, most: float) -> float:
 
 
 def _mount(rng: np.random.Generator, beam: bd.Beam) -> bd.Mount:
-    """All directions, with precone where it may be; clamped, on a spring or hinged."""
+    """Draw a mount: all directions, precone where allowed; clamped, on a spring or hinged."""
     unit = float(beam.bending_stiffness(np.zeros(1))[0]) / beam.length
     setting = float(rng.choice([0.0, math.pi, math.pi, rng.uniform(-math.pi, math.pi)]))
     springs = [float(rng.choice([math.inf, unit * _amount(rng, -2, 3)], p=[0.6, 0.4])) for _ in range(2)]
@@ -121,12 +122,12 @@ def _mount(rng: np.random.Generator, beam: bd.Beam) -> bd.Mount:
 
 
 def _damped(rng: np.random.Generator, scene: bd.Scene) -> bd.Scene:
-    """Without damping, or with one kind or two of it, far from critical."""
+    """Add no damping, or one or two kinds of it, far from critical."""
     first = 2 * np.pi * float(bd.natural_modes(scene.undamped, 0.0, 3).frequency[-1])
     mass = float(scene.beam.mass_per_length(np.zeros(1))[0]) * scene.beam.length
     kind = rng.integers(6)
     if kind in (1, 2) and (scene.physics.planes == 2 or scene.physics.shear):
-        kind += 3  # modes at rest in 40 digits take minutes where there are hundreds
+        kind += 3  # modes at rest in 40 digits take minutes if there are hundreds
     if kind == 1:
         return bd.Scene(scene.beam, scene.mount, physics=scene.physics, damping_ratio=rng.uniform(0.001, 0.1))
     damping = (

@@ -21,12 +21,12 @@ MOST_TENSION = 1e4  # largest tension, over the smallest EI / L^2
 _QUARTER = np.pi / 2
 _STEEL = 200e9, 7850.0
 _POISSONS_RATIO = 0.3
-_FUNCTIONS = 20  # for the critical speed, over all segments
+_FUNCTIONS = 20  # number of functions for the critical speed, on all segments together
 
 
 @dataclass(frozen=True)
 class Section:
-    """Properties of a uniform section of steel, rectangular as far as its inertias and shear go.
+    """A uniform steel section; its inertias and shear are those of a rectangle.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Section:
     ratio: float
 
     def properties(self) -> dict[str, float]:
-        """Arguments of `Beam.from_stiffness`; shear stiffness and rotary inertia fit the bending."""
+        """Return arguments of `Beam.from_stiffness`; shear stiffness and rotary inertia suit the bending."""
         (E, rho), h = _STEEL, self.length / self.slenderness
         area, nu = h**2 * np.sqrt(self.ratio), _POISSONS_RATIO
         inertia = area * h**2 / 12
@@ -58,7 +58,7 @@ class Section:
 
 
 def random_physics_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """A scene and a speed: any physics but stretch, to 0.999 of the critical speed.
+    """Draw a scene and a speed up to 0.999 of the critical one, with any physics but stretch.
 
     Stiffness ratios 0.05 to 1e4, slenderness 5 to 1000 of the stockier plane where it shears or has rotary
     inertia, springs 1e-6 to 1e6 EI/L, hinges, gamma <= 50.
@@ -68,7 +68,7 @@ def random_physics_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def random_still_scene(rng: np.random.Generator) -> bd.Scene:
-    """Such a scene without its speed; two planes in three of four scenes."""
+    """Draw such a scene without its speed; three in four have two planes."""
     planes, shear, rotary = int(rng.integers(1, 3)), bool(rng.integers(2)), bool(rng.integers(2))
     planes = 2 if rng.random() < 0.5 else planes
     beam = random_physics_beam(rng, stocky=shear or rotary)
@@ -77,7 +77,7 @@ def random_still_scene(rng: np.random.Generator) -> bd.Scene:
 
 
 def random_physics_beam(rng: np.random.Generator, stocky: bool, slenderest: float = 1000.0) -> bd.Beam:
-    """Uniform, tapered or by stations; half with a tip body; two of three twisted."""
+    """Draw a beam: uniform, tapered or by stations; half with a tip body, two of three twisted."""
     length = 10 ** rng.uniform(-2, 1)
     ratio = 10 ** rng.uniform(np.log10(0.05), 4)
     slenderness = 10 ** rng.uniform(np.log10(5), np.log10(slenderest))
@@ -88,13 +88,13 @@ def random_physics_beam(rng: np.random.Generator, stocky: bool, slenderest: floa
     twist = random_twist(rng) if rng.integers(3) else None
     properties = vary(rng, section)
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "twist reaches")  # several turns are meant
+        warnings.filterwarnings("ignore", "twist reaches")  # twist by several turns is intended
         return bd.Beam.from_stiffness(length, **properties, tip=tip, twist=twist)
 
 
 # Variation along the beam -------------------------------------------------------------------------
 
-_POWERS = {  # of width and thickness in each property
+_POWERS = {  # powers of width and thickness in each property
     "mass_per_length": (1, 1),
     "bending_stiffness": (1, 3),
     "second_bending_stiffness": (3, 1),
@@ -109,13 +109,13 @@ def _keep(rng: np.random.Generator, section: dict[str, float]) -> dict[str, floa
 
 
 def _taper(rng: np.random.Generator, section: dict[str, float]) -> dict[str, Polynomial]:
-    """Width and thickness that shrink to a fifth at most."""
+    """Draw width and thickness that shrink to a fifth at most."""
     width, thickness = (Polynomial([1.0, -taper]) for taper in rng.uniform(0, 0.8, 2))
     return {name: section[name] * width**a * thickness**b for name, (a, b) in _POWERS.items()}
 
 
 def _stations(rng: np.random.Generator, section: dict[str, float]) -> dict[str, bd.Table]:
-    """Properties that are linear between three to six stations, with a jump in every other beam."""
+    """Draw properties that are linear between three to six stations; every other beam has a jump."""
     stations = _random_stations(rng, int(rng.integers(3, 7)), jump=bool(rng.integers(2)))
     width, thickness = rng.uniform(0.5, 1.5, (2, len(stations)))
     return {
@@ -125,14 +125,14 @@ def _stations(rng: np.random.Generator, section: dict[str, float]) -> dict[str, 
 
 
 def _random_stations(rng: np.random.Generator, count: int, jump: bool) -> list[float]:
-    """Stations x/L, apart by at least 1 %; with a jump, one between the ends stands twice."""
+    """Draw stations x/L, at least 1 % apart; for a jump, one between the ends is repeated."""
     inner = np.sort(rng.choice(np.arange(1, 100), count - 2, replace=False)) / 100
     twice = rng.choice(inner, 1) if jump else []
     return np.sort(np.concatenate([[0.0, 1.0], inner, twice])).tolist()
 
 
 def random_twist(rng: np.random.Generator) -> float | Polynomial | bd.Table | Profile:
-    """Constant, linear, polynomial, or by stations with kinks and jumps; to 1.5 rad, or some turns."""
+    """Draw a twist: constant, linear, polynomial, or by stations with kinks and jumps."""
     most = rng.uniform(-1.5, 1.5) if rng.random() < 0.9 else rng.uniform(-20.0, 20.0)
     kind = rng.integers(5)
     if kind == 0:
@@ -147,7 +147,7 @@ def random_twist(rng: np.random.Generator) -> float | Polynomial | bd.Table | Pr
 
 
 def _random_tip(rng: np.random.Generator, beam_mass: float, length: float) -> bd.TipMass:
-    """A body of up to ten beam masses, half of them points; its moments are those of a cuboid."""
+    """Draw a tip body of up to ten beam masses, half of them points, with the moments of a cuboid."""
     mass = beam_mass * 10 ** rng.uniform(-3, 1)
     squares = (length * rng.uniform(0, 0.3, 3) * rng.integers(0, 2)) ** 2 * mass / 2
     moments = squares.sum() - squares
@@ -158,7 +158,7 @@ def _random_tip(rng: np.random.Generator, beam_mass: float, length: float) -> bd
 
 
 def random_mount(rng: np.random.Generator, beam: bd.Beam) -> bd.Mount:
-    """All directions; each plane clamped, on a spring or, rarely, hinged."""
+    """Draw a mount in any direction; each plane is clamped, on a spring or, rarely, hinged."""
     unit = float(beam.bending_stiffness(np.zeros(1))[0]) / beam.length
     return bd.Mount(
         beam.length * rng.choice([0.0, rng.uniform(0, 10), 10 ** rng.uniform(-2, 1)]),
@@ -174,7 +174,7 @@ def _random_spring(rng: np.random.Generator) -> float:
 
 
 def random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
-    """At most 0.999 critical, gamma = 50 and a tension of `MOST_TENSION`; every tenth at rest."""
+    """Draw a speed up to 0.999 critical, gamma = 50 and a tension of `MOST_TENSION`; every tenth is 0."""
     share = rng.choice([0.0, rng.uniform(0, 0.999), 1 - 10 ** rng.uniform(-3, 0)], p=[0.1, 0.45, 0.45])
     gamma = rng.uniform(0, 50)
     fastest = np.sqrt(MOST_TENSION / largest_tension(scene))
@@ -184,7 +184,7 @@ def random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
 
 
 def speed_of_deflection(scene: bd.Scene, ratio: float) -> float:
-    """The least speed at which the tip bends by a share of the length in linear theory, or the largest.
+    """Find the least speed at which the tip bends by a share of the length in linear theory, or the largest.
 
     The largest is 0.95 critical, gamma = 50, or that with a tension of `MOST_TENSION`.
     """
@@ -197,7 +197,7 @@ def speed_of_deflection(scene: bd.Scene, ratio: float) -> float:
 
 
 def largest_tension(scene: bd.Scene) -> float:
-    """Largest tension over the smaller EI / L^2 at unit speed [s^2]."""
+    """Compute the largest tension over the smaller EI / L^2 at unit speed [s^2]."""
     beam, mount, xi = scene.modelled_beam, scene.mount, np.linspace(0, 1, 101)
     stiffnesses = [p for p in (beam.bending_stiffness, beam.second_bending_stiffness) if p is not None]
     n_a, n_b = axial_tension(beam)

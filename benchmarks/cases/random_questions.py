@@ -1,4 +1,4 @@
-"""Random questions backwards: of a brake or vehicle near its example, one input and one result."""
+"""Random questions backwards about a brake or vehicle near its example: one input and one result."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ master_bore = "22.22 mm"
 cylinder_bore = "31.75 mm"
 """
 TYPES = {name: load() for name, (_, load) in STANDARD.items()} | {"forklift": FORKLIFT}
-ROUNDING = ("error", "closure", "residual")  # results that are nothing but rounding
-SPREAD, SOUGHT = 1.3, 1.5  # factors: of each number of a design, and of the bounds of the search
+ROUNDING = ("error", "closure", "residual")  # results that are rounding errors only
+SPREAD, SOUGHT = 1.3, 1.5  # factors that spread the numbers of a design, and the bounds of a search
 
 
 class Asked(NamedTuple):
@@ -56,14 +56,14 @@ class Asked(NamedTuple):
 
     @property
     def distance(self) -> float:
-        """Relative difference of the known value from the nearest that is found; inf if none is."""
+        """Relative distance of the known value from the nearest found one; inf if none is found."""
         within = np.clip(self.value, *self.found.ranges.T)
         return float(np.min(np.abs(np.append(self.found.values, within) / self.value - 1), initial=np.inf))
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the question with a number gave, as plain numbers."""
+    """The outcome of the question with a number, as plain numbers."""
 
     number: int
     what: str
@@ -73,27 +73,28 @@ class Outcome:
 
 
 def measure(number: int, seed: int) -> list[Outcome]:
-    """The outcome of the question with a number."""
+    """Solve the question with a number, and return its outcome."""
     asked = draw(number, seed)
     answers = len(asked.found.values) + len(asked.found.ranges)
     return [Outcome(number, asked.what, asked.residual, asked.distance, answers)]
 
 
 def draw(number: int, seed: int, names: Sequence[str] = tuple(TYPES)) -> Asked:
-    """Draw the question with a number: of each of the types of brakes with these names in turn."""
+    """Draw the question with a number; the named types of brakes take turns."""
     name = names[number % len(names)]
     tries = (_question(TYPES[name], name, np.random.default_rng([seed, number, k])) for k in count())
     return next(asked for asked in tries if asked is not None)
 
 
 def _question(brake: BrakeType[Any], name: str, rng: np.random.Generator) -> Asked | None:
-    """A question; None where the design has no answer, or the result does not depend on the input."""
+    """Draw a question; None where the design has no answer, or the result does not depend on the input."""
     text = base(name).replace('piston_force = "11650 N"', "lining_friction = 0.3")
     tables = tomllib.loads(text + PEDAL * (name == "forklift"))
     design = brake.read(tables, name)
     inputs = [each for each in brake.sweep_inputs(design, tables) if part_at(design, each.path)]
     given = ((each, part_at(tables, each.path)) for each in inputs if not each.choices)
-    entries = [each for each, value in given if isinstance(value, str | float)]  # no counts, no whole shares
+    # Numbers of the file, but no counts and no shares.
+    entries = [each for each, value in given if isinstance(value, str | float)]
     values = {e.path: part_at(design, e.path) * SPREAD ** rng.uniform(-1, 1) for e in entries}
     written = {e.path: f"{values[e.path]!r} {e.quantity.unit}" for e in entries if e.quantity.unit}
     tables = with_parts(tables, values | written)

@@ -9,12 +9,13 @@ import beamdyn as bd
 from beamdyn.equations.mass import axial_tension
 from benchmarks.cases.scenes import time_unit
 
-_MATERIALS = ((200e9, 7850.0), (70e9, 2700.0), (5e9, 1200.0))  # Young's modulus [Pa], density [kg/m3]
+# Young's modulus [Pa] and density [kg/m3] of each material.
+_MATERIALS = ((200e9, 7850.0), (70e9, 2700.0), (5e9, 1200.0))
 MOST_TENSION = 1e5  # largest tension, over EI / L^2, for which the series converges in seconds
 
 
 def random_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """A scene and a speed: slenderness 20...2000, gamma <= 50, |delta| <= 10, to 0.999 critical.
+    """Draw a scene and a speed: slenderness 20 to 2000, gamma up to 50, |delta| up to 10, 0.999 critical.
 
     The tension is at most 1e5 EI / L^2 anywhere: past it the series of the reference takes minutes.
     """
@@ -32,7 +33,7 @@ def random_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def largest_tension(scene: bd.Scene) -> float:
-    """Largest tension over EI / L^2 at unit speed [s^2]."""
+    """Compute the largest tension over EI / L^2 at unit speed [s^2]."""
     beam, mount, xi = scene.beam, scene.mount, np.linspace(0, 1, 101)
     n_a, n_b = axial_tension(beam)
     force = n_b(xi) - np.cos(mount.setting_angle) * mount.radius * n_a(xi)
@@ -40,7 +41,7 @@ def largest_tension(scene: bd.Scene) -> float:
 
 
 def random_beam(rng: np.random.Generator) -> bd.Beam:
-    """A beam of rectangular section, half of them tapered, half with a tip body."""
+    """Draw a beam of rectangular section; half of them are tapered, half have a tip body."""
     length = 10 ** rng.uniform(-2, 1)
     thickness = length / 10 ** rng.uniform(np.log10(20), np.log10(2000))
     width = thickness * 10 ** rng.uniform(0.7, 1.5)
@@ -54,7 +55,7 @@ def random_beam(rng: np.random.Generator) -> bd.Beam:
 
 
 def random_tip(rng: np.random.Generator, beam_mass: float, length: float) -> bd.TipMass | None:
-    """None, or a slender or stout body of up to ten beam masses."""
+    """Draw no tip body, or a slender or stout one of up to ten beam masses."""
     if rng.integers(0, 2):
         return None
     mass = beam_mass * 10 ** rng.uniform(-3, 1)

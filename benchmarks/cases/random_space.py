@@ -1,4 +1,4 @@
-"""Random beams in space: bent far, twisted, swept, sheared and stretched, with offsets, at random angles."""
+"""Random beams in space: bent far, twisted, swept, sheared and stretched, with offsets, at any angles."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _OFF = 0.4  # share of the scenes that lack an effect
 
 
 def random_space_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """A beam of unit length, mass and first bending stiffness, and a speed."""
+    """Draw a beam of unit length, mass and first bending stiffness, and a speed."""
 
     def maybe(value: object) -> object:
         return value if rng.random() > _OFF else None

@@ -9,16 +9,16 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.modes.modal.model import Model
 
-_FEWEST, _MOST = 10, 100  # stations
-_DECADES = 8.0  # by which a stiffness falls from the root to the tip, at most
-_ROUGHNESS = 0.2  # of the logarithm of a property, from station to station
+_FEWEST, _MOST = 10, 100  # least and largest number of stations
+_DECADES = 8.0  # most decades by which a stiffness falls from the root to the tip
+_ROUGHNESS = 0.2  # scatter of the logarithm of a property from station to station
 _JUMPS = 0.1  # share of stations at which the properties jump
-_CLOSEST = 1e-3  # distance of two stations
-_FASTEST = 3.0  # speed over the first angular frequency at rest
+_CLOSEST = 1e-3  # least distance of two stations
+_FASTEST = 3.0  # largest speed, over the first angular frequency at rest
 
 
 def random_station_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """A blade and a speed: in one plane or two, of which half are twisted; every fifth with a tip body."""
+    """Draw a blade and a speed: one plane or two, of which half are twisted; every fifth has a tip body."""
     stations = _random_stations(rng)
     fall = rng.uniform(0, _DECADES)
     beam = bd.Beam.from_stiffness(
@@ -37,7 +37,7 @@ def random_station_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def _random_stations(rng: np.random.Generator) -> np.ndarray:
-    """Positions x/L; a station given twice is a jump."""
+    """Draw positions x/L; a repeated one is a jump."""
     count = int(rng.integers(_FEWEST, _MOST + 1))
     inner = np.sort(rng.uniform(0, 1, count - 2))
     inner = inner[np.diff(inner, prepend=0.0, append=1.0)[:-1] > _CLOSEST]
@@ -47,12 +47,12 @@ def _random_stations(rng: np.random.Generator) -> np.ndarray:
 
 
 def _random_table(rng: np.random.Generator, stations: np.ndarray, fall: float, root: float = 1.0) -> bd.Table:
-    """Values that fall by some decades on the way to the tip, with roughness."""
+    """Draw values that fall by some decades on the way to the tip, with roughness."""
     rough = _ROUGHNESS * rng.standard_normal(len(stations))
     return bd.Table(stations.tolist(), (root * np.exp(rough) * 10 ** (-fall * stations)).tolist())
 
 
 def _random_twist(rng: np.random.Generator, stations: np.ndarray) -> bd.Table:
-    """Twist [rad] from the root to the tip, with kinks but no jumps."""
+    """Draw a twist [rad] from the root to the tip, with kinks but no jumps."""
     places = np.unique(stations)
     return bd.Table(places.tolist(), (rng.uniform(-0.5, 0.5) * (1 - places) ** 2).tolist())

@@ -1,4 +1,4 @@
-"""Random beams with a body at the tip, on fast carriers: where modes live in short layers at either end."""
+"""Random beams with a body at the tip on fast carriers, whose modes live in short layers at the ends."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from numpy.polynomial import Polynomial
 import beamdyn as bd
 from beamdyn.modes.modal.model import Model
 
-# Places x/L between which a reference has functions of its own: layers at the ends are as short as 1e-3.
+# Places x/L between which a reference has separate functions: layers at the ends are as short as 1e-3.
 _PLACES = (0.003, 0.02, 0.1, 0.9, 0.98, 0.997)
-_FEWEST, _MOST = 10, 80  # functions of the reference on each segment
-MOST_GAMMA = 3000.0  # largest speed over sqrt(EI / (rho A L^4)) at the root
+_FEWEST, _MOST = 10, 80  # least and largest number of functions of the reference on each segment
+MOST_GAMMA = 3000.0  # largest speed, over sqrt(EI / (rho A L^4)) at the root
 _EPS = np.finfo(float).eps
 
 
 def random_tip_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """A scene of length, mass and stiffness 1 at the root, and a speed to 0.999 of the critical one."""
+    """Draw a scene of length, mass and stiffness 1 at the root, and a speed up to 0.999 critical."""
     wide, thick = (Polynomial([1.0, -taper]) for taper in rng.uniform(0, 0.8, 2) * rng.integers(0, 2, 2))
     beam = bd.Beam.from_stiffness(1.0, wide * thick, wide * thick**3, tip=_random_body(rng))
     radius = rng.choice([0.0, rng.uniform(0, 10), 10 ** rng.uniform(-2, 1)])
@@ -31,7 +31,7 @@ def random_tip_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def _random_body(rng: np.random.Generator) -> bd.TipMass:
-    """A body of up to twenty beam masses; every other one is a point, every fifth sits at the tip."""
+    """Draw a body of up to twenty beam masses; every other one is a point, every fifth at the tip."""
     mass, size = 10 ** rng.uniform(-3, 1.3), rng.uniform(0, 0.3, 3) * rng.integers(0, 2)
     squares = mass * size**2 / 2
     offset = rng.choice([-1, 1]) * 10 ** rng.uniform(-3, -0.7) * rng.choice([0, 1], p=[0.2, 0.8])
@@ -41,7 +41,7 @@ def _random_body(rng: np.random.Generator) -> bd.TipMass:
 def reference_frequencies(
     scene: bd.Scene, speed: float, modes: int, accuracy: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Squared angular frequencies, and how well they are known, relative to themselves: shape (k,) each.
+    """Compute squared angular frequencies, and their relative uncertainties: shape (k,) each.
 
     The functions are doubled until the frequencies hold to the accuracy, which is relative, or to rounding.
     """
@@ -57,7 +57,7 @@ def reference_frequencies(
 
 
 def reference_critical_speed(scene: bd.Scene, accuracy: float) -> tuple[float, float]:
-    """Critical speed, inf if there is none, and how well it is known."""
+    """Compute the critical speed, inf if there is none, and its relative uncertainty."""
     last = np.nan
     for functions in _doubled():
         solver = _refined(scene, functions).solver
@@ -74,7 +74,7 @@ def _doubled() -> list[int]:
 
 
 def _refined(scene: bd.Scene, functions: int) -> Model:
-    """The scene's model by assumed modes, with segments that shrink towards both ends."""
+    """Make the scene's model by assumed modes, with segments that shrink towards both ends."""
     beam = scene.beam
     ends = (0.0, *_PLACES, 1.0)
     split = replace(

@@ -21,16 +21,17 @@ HARVESTER = bd.Scene(
 
 
 def rolling_harvester(speed: float | bd.SpinUp) -> bd.Scene:
-    """The harvester of Lee and Yoo (2019) in its wheel on the wavy road, at or up to a speed [rad/s]."""
+    """Make the harvester of Lee and Yoo (2019) in its wheel on the wavy road, at or up to a speed [rad/s]."""
     road = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
     return replace(HARVESTER, motion=bd.RollingWheel(rolling_radius=0.3, speed=speed, road=road))
 
 
-ROLLING = rolling_harvester(bd.SpinUp(55.0, duration=10.0))  # Table 3
+ROLLING = rolling_harvester(bd.SpinUp(55.0, duration=10.0))  # scene of Table 3
 STEADY_ROLLING = rolling_harvester(55.0)
 STEADY_ROLLING_IN_GRAVITY = replace(STEADY_ROLLING, gravity=9.81)
-SHORT_SPIN_UP = rolling_harvester(bd.SpinUp(55.0, duration=0.2))  # a sweep over it takes a moment
-AFTER_SHORT_SPIN_UP = (0.3, 0.5)  # a window of time in which peaks of `SHORT_SPIN_UP` are taken [s]
+# A short spin-up, over which a sweep takes a moment.
+SHORT_SPIN_UP = rolling_harvester(bd.SpinUp(55.0, duration=0.2))
+AFTER_SHORT_SPIN_UP = (0.3, 0.5)  # window in which peaks of `SHORT_SPIN_UP` are taken [s]
 BLADE_SPIN_UP = bd.Scene(
     bd.Beam.from_stiffness(10.0, 1.2, 1.4e4, axial_stiffness=2.8e7),
     bd.Mount(0.0, math.pi),
@@ -46,7 +47,7 @@ def steel_strip(
     bending: float = 0.0,
     tip: float = 0.0,
 ) -> bd.Scene:
-    """A steel strip ten thicknesses wide; the hub's radius in lengths, the tip body in beam masses."""
+    """Make a steel strip ten thicknesses wide; hub radius in lengths, tip body in beam masses."""
     thickness = length / slenderness
     body = bd.TipMass(tip * 7850 * 10 * thickness**2 * length) if tip else None
     beam = bd.Beam.rectangular(length, 10 * thickness, thickness, 200e9, 7850.0, body)
@@ -54,13 +55,13 @@ def steel_strip(
 
 
 def time_unit(beam: bd.Beam) -> float:
-    """sqrt(rho A L^4 / EI) at the root [s]."""
+    """Compute sqrt(rho A L^4 / EI) at the root [s]."""
     root = np.zeros(1)
     return float(beam.length**2 * np.sqrt(beam.mass_per_length(root) / beam.bending_stiffness(root))[0])
 
 
 def of_case(case: dict[str, Any]) -> bd.Scene:
-    """The scene of a nondimensional case of the published or generated tables."""
+    """Make the scene of a nondimensional case of the published or generated tables."""
     alpha, delta = case.get("alpha"), case["delta"]
     beam = bd.Beam.from_stiffness(
         length=1.0,
@@ -75,11 +76,11 @@ def of_case(case: dict[str, Any]) -> bd.Scene:
 
 
 def published_cases() -> list[dict[str, Any]]:
-    """Cases printed in the literature, to the digits of the published file."""
+    """Load cases printed in the literature, with the digits of the published file."""
     return load("rotating_beams")["case"]
 
 
 def generated_cases() -> list[dict[str, Any]]:
-    """Cases of the power-series reference, to 20 digits."""
+    """Load cases of the power-series reference, with 20 digits."""
     path = Path(__file__).parent / "data" / "rotating_beams_more.toml"
     return tomllib.loads(path.read_text())["case"]

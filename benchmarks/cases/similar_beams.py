@@ -1,4 +1,4 @@
-"""Steel beams of any length that are nondimensionally one: the same answers in their own units."""
+"""Steel beams of any length that are the same without dimensions: equal answers in their own units."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ import beamdyn as bd
 
 _MODULUS, _DENSITY = 200e9, 7850.0
 _BAND = 0.1, 30.0  # frequencies of the excitation, over the first angular frequency
-_SPEED = 0.3  # over the same
+_SPEED = 0.3  # speed, over the first angular frequency
 
 
 def first_frequency(length: float) -> float:
-    """First angular frequency at rest of the beam [rad/s], by 3.516 sqrt(E I/(m L^4))."""
+    """Compute the first angular frequency at rest of the beam [rad/s], by 3.516 sqrt(E I/(m L^4))."""
     return 3.516 * float(np.sqrt(_MODULUS / _DENSITY / 12)) * (length / 250) / length**2
 
 
 def similar_beam(length: float, planes: Literal[1, 2] = 1) -> bd.Scene:
-    """A beam of the width L/5 and the thickness L/250 on a hub of L, with 1 % of damping."""
+    """Make a beam of width L/5 and thickness L/250 on a hub of L, with 1 % of damping."""
     beam = bd.Beam.rectangular(length, length / 5, length / 250, _MODULUS, _DENSITY)
     mount = bd.Mount(length, np.pi, 0.4 * (planes - 1))
     return bd.Scene(beam, mount, damping_ratio=0.01, physics=bd.Physics(planes=planes))
 
 
 def linear_answers(length: float, planes: Literal[1, 2] = 1) -> np.ndarray:
-    """Frequency response, its peaks, mean squares, and poles by all functions and by modes, without units."""
+    """Compute frequency response, peaks, mean squares and poles without units, by functions and by modes."""
     scene, omega = similar_beam(length, planes), first_frequency(length)
     low, high = (each * omega / (2 * np.pi) for each in _BAND)
     found = bd.frequency_response(scene, _SPEED * omega, np.geomspace(low, high, 20))
@@ -47,6 +47,6 @@ def linear_answers(length: float, planes: Literal[1, 2] = 1) -> np.ndarray:
 
 
 def deviation(length: float, planes: Literal[1, 2] = 1) -> float:
-    """Largest relative deviation of the linear models of a beam from those of one of a metre."""
+    """Compute the largest relative deviation of a beam's linear models from those of a beam of 1 m."""
     own, of_a_metre = (linear_answers(each, planes) for each in (length, 1.0))
     return float((np.abs(own - of_a_metre) / np.abs(of_a_metre)).max())

@@ -1,4 +1,4 @@
-"""Published answers that are no row of a table, beside ours: slopes, limits, a spin-up, growth, branches."""
+"""Published answers apart from tables, beside ours: slopes, limits, a spin-up, growth, branches."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from beamdyn.transient.system import ModalSystem
 from benchmarks.cases.elastica import harvester_at, published
 from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, time_unit
 
-FAR = 1e7  # hub radius over the length at which a limit is taken
+FAR = 1e7  # hub radius, over the length, at which a limit is taken
 _STEPS = 1.6 * 0.5 ** np.arange(5)  # squared speeds of the differences
 _UNIFORM = bd.Beam.from_stiffness(1.0, 1.0, 1.0)
 _FULL_TURN = 2 * pi
-_ROUNDING = 1e-13  # of some thousand steps, relative
+_ROUNDING = 1e-13  # relative rounding error of some thousand steps
 
 
 def _row(what: str, printed: float, ours: float, error: float, decimals: int) -> Comparison:
@@ -32,7 +32,7 @@ def _row(what: str, printed: float, ours: float, error: float, decimals: int) ->
 
 
 def slopes() -> Iterator[Comparison]:
-    """Southwell's: how the squared frequency grows with the squared speed, at rest."""
+    """Compare Southwell's slopes: growth of the squared frequency with the squared speed, at rest."""
     known = load("rotating_beams")["southwell"]
     for delta in (0.0, 1.0):
         ours, error = _slopes_at_rest(delta)
@@ -43,7 +43,7 @@ def slopes() -> Iterator[Comparison]:
 
 
 def _slopes_at_rest(delta: float) -> tuple[np.ndarray, np.ndarray]:
-    """By differences over falling squares of the speed, extrapolated to none; error: the last change."""
+    """Extrapolate differences over falling squared speeds to rest; the error is the last change."""
     scene = bd.Scene(_UNIFORM, bd.Mount(delta, pi, pi / 2))
     rest, *turning = (_squares(scene, speed) for speed in (0.0, *np.sqrt(_STEPS)))
     rounding = 2e-13 * rest / _STEPS[-1]
@@ -59,7 +59,7 @@ def _squares(scene: bd.Scene, speed: float) -> np.ndarray:
 
 
 def limit_of_the_critical_speed() -> Comparison:
-    """Squared critical speed times radius of an inward uniform beam, far from the axis."""
+    """Compare the squared critical speed times radius of an inward uniform beam, far from the axis."""
     printed = load("rotating_beams")["critical_limit"]["gamma_squared_times_radius"]
     point = bd.critical_point(bd.Scene(_UNIFORM, bd.Mount(FAR, 0.0)))
     ours = point.speed**2 * FAR
@@ -68,7 +68,7 @@ def limit_of_the_critical_speed() -> Comparison:
 
 
 def spin_up() -> Comparison:
-    """Largest deflection [m] of the blade of Kane, Ryan and Banerjee and of Simo and Vu-Quoc."""
+    """Compare the largest deflection [m] of the blade of Kane, Ryan and Banerjee and of Simo and Vu-Quoc."""
     run = bd.simulate(BLADE_SPIN_UP, 20.0, modes=8)
     printed = load("rotating_beams")["spin_up"]["largest_deflection"]["value"]
     error = run.time_error + run.mode_error * run.largest
@@ -76,7 +76,7 @@ def spin_up() -> Comparison:
 
 
 def growth_factors() -> Iterator[Comparison]:
-    """Largest Floquet multipliers where the speed varies with about twice the first frequency."""
+    """Compare the largest Floquet multipliers at a speed that varies with about twice the first frequency."""
     for case in load("rotating_beams")["parametric"]:
         for modes, printed in zip(case["modes"], case["spectral_radius"], strict=True):
             what = f"growth over a period of a varying speed, {case['name']}, {modes} mode{'s'[: modes > 1]}"
@@ -85,7 +85,7 @@ def growth_factors() -> Iterator[Comparison]:
 
 
 def growth_factor(case: dict[str, Any], modes: int, functions: int = 20, tolerance: float = 1e-12) -> float:
-    """Spectral radius of the monodromy matrix of the modes at rest, by so many functions."""
+    """Compute the spectral radius of the monodromy matrix of modes at rest."""
     from scipy.integrate import solve_ivp
 
     nu, delta = case["nu"], case["delta"]
@@ -104,7 +104,7 @@ def growth_factor(case: dict[str, Any], modes: int, functions: int = 20, toleran
 
 
 def _varying_speed(gamma: float, depth: float, nu: float) -> bd.RotationFunction:
-    """Speed gamma (1 + depth cos(nu t))."""
+    """Make a rotation with the speed gamma (1 + depth cos(nu t))."""
     return bd.RotationFunction(
         angle=lambda t: gamma * (t + depth / nu * np.sin(nu * t)),
         speed=lambda t: gamma * (1 + depth * np.cos(nu * t)),
@@ -117,7 +117,7 @@ def _varying_speed(gamma: float, depth: float, nu: float) -> bd.RotationFunction
 
 
 def branches() -> Iterator[Comparison]:
-    """The harvester's bent equilibria: frequencies [Hz], where they begin, and one beside that from rest."""
+    """Compare the harvester's bent equilibria: frequencies [Hz], where they begin, and one beside rest."""
     known, unit = published(), time_unit(HARVESTER.beam)
     for row in known["harvester"]:
         where = f"harvester at {row['setting_angle_deg']:g} deg, {row['speed']:g} rad/s, first frequency [Hz]"

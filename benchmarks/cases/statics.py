@@ -1,4 +1,4 @@
-"""Problems of statics in textbooks as mechanisms, solved by the package: answers in the books' units.
+"""Textbook problems of statics as mechanisms, solved by the package in the books' units.
 
 `brakes/published/statics.toml` has what the books print.
 """
@@ -36,19 +36,19 @@ def at_angle(degrees: float, length: float = 1.0) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Problem:
-    """A mechanism, and what of its equilibrium the book prints."""
+    """A mechanism, and the results of its equilibrium that the book prints."""
 
     mechanism: Callable[[], Mechanism]
     read: Callable[[Equilibrium], dict[str, np.ndarray]]
 
     def answers(self) -> Answers:
-        """A value, or the components of a force, by name."""
+        """Solve the problem; return each answer, a value or the components of a force, by name."""
         read = self.read(solve(self.mechanism()))
         return {name: tuple(map(float, np.atleast_1d(found))) for name, found in read.items()}
 
 
 def _compound_bolt_cutter() -> Mechanism:
-    """Nothing holds it in space; the bolt is a bar."""
+    """Build a compound bolt cutter, which nothing holds in space; the bolt is a bar."""
     return Mechanism(
         ("upper handle", "lower handle", "upper jaw", "lower jaw"),
         (
@@ -66,7 +66,7 @@ def _compound_bolt_cutter() -> Mechanism:
 
 
 def _toggle_clamp() -> Mechanism:
-    """a = F = 1: link CD at 30 degrees from the vertical, arm ABE."""
+    """Build a toggle clamp with a = F = 1: link CD at 30 degrees from the vertical, arm ABE."""
     link = at_angle(60)
     return Mechanism(
         ("handle", "arm"),
@@ -81,7 +81,7 @@ def _toggle_clamp() -> Mechanism:
 
 
 def _vise_grip() -> Mechanism:
-    """Jaw force along a normal 20 degrees off."""
+    """Build vise grips with the jaw force along a normal 20 degrees off."""
     normal = (-math.sin(math.radians(20)), -math.cos(math.radians(20)))
     return Mechanism(
         ("grip", "jaw"),
@@ -96,7 +96,7 @@ def _vise_grip() -> Mechanism:
 
 
 def _slotted_lever() -> Mechanism:
-    """A lever with a slot over the pin of a crank of 0.1 m."""
+    """Build a lever with a slot over the pin of a crank of 0.1 m."""
     return Mechanism(
         ("lever", "crank"),
         (
@@ -109,7 +109,7 @@ def _slotted_lever() -> Mechanism:
 
 
 def _frame_with_link() -> Mechanism:
-    """ACE and BCD with the link DE, in mm."""
+    """Build a frame of ACE and BCD with the link DE, in mm."""
     a, b, c, d, e = (0, 0), (0, -160), (0, -220), (250, -220), (100, -300)
     return Mechanism(
         ("ACE", "BCD"),
@@ -124,7 +124,7 @@ def _frame_with_link() -> Mechanism:
 
 
 def _frame_of_three() -> Mechanism:
-    """ABE, ACF and BCD with 2400 N at D."""
+    """Build a frame of ABE, ACF and BCD with 2400 N at D."""
     return Mechanism(
         ("ABE", "ACF", "BCD"),
         (
@@ -139,7 +139,7 @@ def _frame_of_three() -> Mechanism:
 
 
 def _frame_with_pulley() -> Mechanism:
-    """400 kg on a cable over a pulley of 0.5 m, in kN."""
+    """Build a frame with 400 kg on a cable over a pulley of 0.5 m, in kN."""
     return Mechanism(
         ("AD", "BF", "CE", "pulley"),
         (
@@ -158,7 +158,7 @@ def _frame_with_pulley() -> Mechanism:
 
 
 def _compound_beam() -> Mechanism:
-    """Fixed at A, hinged at B, a roller at C: 10 kN on a slope of 3-4-5, and 4 kN/m over 2 m."""
+    """Build a beam fixed at A, hinged at B, on a roller at C, with 10 kN on a 3-4-5 slope and 4 kN/m."""
     return Mechanism(
         ("AB", "BC"),
         (
@@ -172,7 +172,7 @@ def _compound_beam() -> Mechanism:
 
 
 def _frame_of_two() -> Mechanism:
-    """Beam BC with 2000 N at its middle, strut AB at 60 degrees."""
+    """Build beam BC with 2000 N at its middle, and strut AB at 60 degrees."""
     return Mechanism(
         ("BC", "AB"),
         (
@@ -252,12 +252,12 @@ PROBLEMS = {
 
 
 def answers() -> dict[str, Answers]:
-    """Of each problem, what the book prints."""
+    """Solve all problems; return their answers by name."""
     return {name: problem.answers() for name, problem in PROBLEMS.items()}
 
 
 def cantilever_brake(angle: float) -> tuple[Mechanism, float]:
-    """A cantilever brake with yoke legs at an angle [deg] from the horizontal, and N/T of it by hand.
+    """Build a cantilever brake with yoke legs at an angle [deg], and compute its N/T by hand.
 
     N/T = PC / (2 PS sin(angle)): the arm PC normal to the leg, the arm PS of the pad.
     """

@@ -1,4 +1,4 @@
-"""Equations of Table 3's transient in Lee and Yoo (2019): beamdyn's, and the same written by hand."""
+"""Equations of the transient of Table 3 in Lee and Yoo (2019): beamdyn's, and the same by hand."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from benchmarks.cases.scenes import ROLLING
 
 
 def modal_system(modes: int) -> ModalSystem:
-    """The equations of Table 3 in its lowest modes at rest."""
+    """Return the equations of Table 3 in its lowest modes at rest."""
     assert ROLLING.motion is not None
     return ModalSystem(Model(ROLLING, bd.Ritz(20)).modal_equations(modes), ROLLING.motion)
 
 
 def handwritten(system: ModalSystem) -> tuple[Callable, Callable]:
-    """The published scene's right-hand side and Jacobian, written by hand with scalars."""
+    """Return the published scene's right-hand side and Jacobian, written by hand with scalars."""
     stiffness, loads = system.equations.matrices[0], system.equations.vectors
     base, spin, axial = (stiffness[name] for name in ("unity", "speed_squared", "root_axial"))
     P, Q, n = loads["root_transverse"], loads["acceleration"], system.size

@@ -1,4 +1,4 @@
-"""Beams with two planes of bending, twist, shear, rotary inertia: the files of cases, and their scenes."""
+"""Files of cases with two planes of bending, twist, shear and rotary inertia, and their scenes."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ _PROPERTIES = ("mass_per_length", "bending_stiffness", *OPTIONAL_PROPERTIES)
 
 
 def models() -> dict[str, Any]:
-    """The rows of the models: tables `case`, `carnegie` and `blade`."""
+    """Load the rows of the models: tables `case`, `carnegie` and `blade`."""
     return load("twisted_beams") | load("blades")
 
 
 def second_method_cases() -> list[dict[str, Any]]:
-    """Twenty cases of the second method, `benchmarks.cases.reference.twisted_beam`, to 12 digits."""
+    """Load twenty cases of the second method (`benchmarks.cases.reference.twisted_beam`), to 12 digits."""
     return tomllib.loads((_DATA / "second_method.toml").read_text(encoding="utf-8"))["case"]
 
 
 def scene_of(case: dict[str, Any]) -> bd.Scene:
-    """The scene of a case; its nondimensional speed is in rad/s."""
+    """Make the scene of a case; its nondimensional speed is in rad/s."""
     stops = case.get("breakpoints", ())
     tip = bd.TipMass(**case["tip"]) if "tip" in case else None
     properties = {name: piecewise(case[name], stops) for name in _PROPERTIES if name in case}
@@ -41,7 +41,7 @@ def scene_of(case: dict[str, Any]) -> bd.Scene:
 
 
 def carnegie_scene() -> bd.Scene:
-    """Carnegie's twisted blade at rest, without shear and rotary inertia."""
+    """Make Carnegie's twisted blade at rest, without shear and rotary inertia."""
     keys = ("length", "width", "thickness", "youngs_modulus", "density")
     given = models()["carnegie"]
     twist = np.polynomial.Polynomial([0.0, math.radians(given["twist_deg"])])

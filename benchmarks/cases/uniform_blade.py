@@ -1,4 +1,4 @@
-"""A uniform blade without hub, bending out of the plane of rotation: its eigenvalues, exact and computed."""
+"""A uniform blade without hub, bending out of the plane of rotation: exact and computed eigenvalues."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ UNIFORM_BLADE = of_case(
 
 
 def exact_eigenvalues(gamma: float) -> np.ndarray:
-    """The five lowest |lambda| at a nondimensional speed, from the power series."""
+    """Compute the five lowest |lambda| at a nondimensional speed from the power series."""
     return np.sqrt([float(v) for v in bending_eigenvalues(gamma, 0, np.pi / 2, count=5)])
 
 
 def computed_eigenvalues(gamma: float, discretization: bd.Ritz, modes: int = 5) -> np.ndarray:
-    """The lowest |lambda| by beamdyn."""
+    """Compute the lowest |lambda| by beamdyn."""
     return np.abs(bd.natural_modes(UNIFORM_BLADE, gamma, modes, discretization).eigenvalue)

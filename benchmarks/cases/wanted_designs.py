@@ -25,7 +25,7 @@ WIDE = {"beam.thickness": (1e-4, 4e-4), "beam.length": (0.03, 0.08)}
 
 @dataclass(frozen=True)
 class Wanted:
-    """A question, and its answer.
+    """A question backwards, and its answer.
 
     Parameters
     ----------
@@ -47,11 +47,14 @@ class Wanted:
     best: float | None = None
 
     def found(self) -> tuple[float, int]:
-        """Relative error of the answer, inf where a design is missed or claimed to be there, and solves."""
+        """Relative error of the answer, and solves.
+
+        The error is inf where a design is missed, and 0 where it is proven that there is none.
+        """
         with unannounced():
             found = bd.design(self.scene, self.free, self.targets)
         if self.values is None and self.best is None:
-            return (math.inf if found.found else 0.0), found.solves
+            return (0.0 if found.why_none and not found.found else math.inf), found.solves
         if not found.found:
             return math.inf, found.solves
         if self.best is not None:
@@ -60,7 +63,7 @@ class Wanted:
 
 
 def frequency(mode: int = 1, body: float = 0.0, **numbers: float) -> float:
-    """Frequency [Hz] of a cantilever at rest with a point mass at its tip [over its own], in closed form."""
+    """Compute the frequency [Hz] of a cantilever at rest with a point mass at its tip, in closed form."""
 
     def determinant(b: float) -> float:
         bending = b * (math.cos(b) * math.sinh(b) - math.sin(b) * math.cosh(b))
@@ -73,13 +76,13 @@ def frequency(mode: int = 1, body: float = 0.0, **numbers: float) -> float:
 
 
 def questions() -> Iterator[Wanted]:
-    """All questions."""
+    """Yield all questions."""
     for some in (_by_powers, _by_a_body, _out_of_reach, _as_before, _of_two_numbers, _the_best):
         yield from some()
 
 
 def _by_powers() -> Iterator[Wanted]:
-    """One number, of which a frequency at rest is a power."""
+    """Yield questions on one number, of which a frequency at rest is a power."""
     ranges = {"thickness": (1e-4, 4e-4), "length": (0.03, 0.08), "density": (2e3, 12e3)}
     ranges |= {"youngs_modulus": (50e9, 400e9)}
     for name, (low, high) in ranges.items():
@@ -108,7 +111,7 @@ def _by_a_body() -> Iterator[Wanted]:
 
 
 def _out_of_reach() -> Iterator[Wanted]:
-    """Frequencies and speeds beyond those at the bounds, and targets that contradict each other."""
+    """Yield questions on answers beyond those at the bounds, and on targets that contradict each other."""
     thickness = {"beam.thickness": (1e-4, 2e-4)}
     for factor in (1.001, 3.0):
         target = bd.Target("frequencies", equals=factor * frequency())
@@ -129,7 +132,7 @@ def _out_of_reach() -> Iterator[Wanted]:
 
 
 def _as_before() -> Iterator[Wanted]:
-    """One number, whose design is chosen and asked for by its answer from a single call."""
+    """Yield questions on one number, each asked for by the answer of a single call for a known design."""
     cases = {
         "beam.thickness": ((1e-4, 4e-4), (1.6e-4, 3.3e-4)),
         "mount.radius": ((0.05, 0.5), (0.11, 0.42)),
@@ -149,10 +152,10 @@ def _as_before() -> Iterator[Wanted]:
 
 
 def _of_two_numbers() -> Iterator[Wanted]:
-    """Two numbers: the nearest of a line of designs, or the one that meets two targets."""
+    """Yield questions on two numbers: the nearest on a line of designs, or the one that meets two targets."""
     spans = np.array([math.log(high / low) for low, high in WIDE.values()])
     for factor in (0.7, 1.2, 1.8):
-        # The nearest of a + A d = 0 in shares of the ranges, with f ~ h / L^2.
+        # The point of a + A d = 0 that is nearest, in shares of the ranges, with f ~ h / L^2.
         normal = np.array([1.0, -2.0]) * spans
         step = normal * math.log(factor) / (normal @ normal)
         values = np.array([THICKNESS, LENGTH]) * np.exp(step * spans)
@@ -170,7 +173,7 @@ def _of_two_numbers() -> Iterator[Wanted]:
 
 
 def _limited(critical: float) -> tuple[float, float]:
-    """Thickness and length of the own frequency that buckle at a speed: on a line, as h ~ L^2."""
+    """Find thickness and length of the same frequency that buckle at a speed: on a line, as h ~ L^2."""
 
     def beyond(length: float) -> float:
         thickness = THICKNESS * (length / LENGTH) ** 2
@@ -182,7 +185,7 @@ def _limited(critical: float) -> tuple[float, float]:
 
 
 def _the_best() -> Iterator[Wanted]:
-    """The largest or smallest answer, at a corner, at a limit or between."""
+    """Yield questions on the largest or smallest answer, at a corner, at a limit or between."""
     fastest = frequency(thickness=4e-4, length=0.03)
     slowest = frequency(thickness=1e-4, length=0.08)
     yield Wanted("fastest", INWARD, WIDE, [bd.Target("frequencies", best="largest")], best=fastest)
@@ -201,7 +204,7 @@ def _the_best() -> Iterator[Wanted]:
 
 
 def _amplitude(word: Literal["largest", "smallest"], bounds: tuple[float, float]) -> Wanted:
-    """The best steady amplitude over the thickness, by exhaustive search refined about its best."""
+    """Find the best steady amplitude over the thickness by exhaustive search, refined about its best."""
 
     def amplitudes(values: np.ndarray) -> np.ndarray:
         return bd.study(ROLLING, {"beam.thickness": values}, "amplitude", speed=55.0).value

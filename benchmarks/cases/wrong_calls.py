@@ -1,4 +1,4 @@
-"""Public functions with arguments that are right, and values that are wrong in their place."""
+"""Public functions with right arguments, and wrong values to put in their place."""
 
 from __future__ import annotations
 
@@ -42,10 +42,10 @@ class Call:
 
 
 def _short(value: Any) -> str:
-    """A value in a message."""
+    """Shorten a value for a message."""
     try:
         text = repr(value)
-    except Exception as error:  # of objects whose repr fails; the call is still to be named
+    except Exception as error:  # raised by objects whose repr fails; the call must still be named
         text = f"<{type(value).__name__}: {error}>"
     return text if len(text) < 60 else f"{text[:40]}...{text[-12:]}"
 
@@ -87,7 +87,7 @@ TYPES = (
 
 
 def wrong_values() -> list[Any]:
-    """Wrong values: magnitudes, numbers that are not finite, other types, and objects of our own."""
+    """List wrong values: magnitudes, numbers that are not finite, other types, and the package's objects."""
     beam, mount, scene = _beam(), bd.Mount(0.2), _scene()
     own = (
         beam,
@@ -115,7 +115,7 @@ def _scene(motion: Any = None) -> bd.Scene:
 
 
 def _twisted() -> bd.Scene:
-    """The strip with twist, in both directions of bending, on a spring."""
+    """Make the strip with twist, in both directions of bending, on a spring."""
     beam = bd.Beam.rectangular(**STRIP, twist=0.5, poissons_ratio=0.3)
     physics = bd.Physics(planes=2, shear=True, rotary_inertia=True)
     return bd.Scene(beam, bd.Mount(0.2, root_stiffness=10.0), physics=physics)
@@ -130,7 +130,7 @@ def make_shoe() -> drum.Shoe:
 
 
 def make_clamp() -> planar.Mechanism:
-    """A lever on a pin, pressed on a spring."""
+    """Make a lever on a pin, pressed on a spring."""
     lever = planar.Pin("pin", "lever", "ground", (0.0, 0.0))
     hand = planar.Force("hand", "lever", (0.2, 0.0), (0.0, -1.0))
     spring = planar.Spring("spring", "lever", "ground", (0.1, 0.0), (0.1, -0.1), 1000.0, 0.12)
@@ -157,7 +157,7 @@ ROAD = {"slope": 0.3019, "speed": 5.5, "friction": 0.7, "reaction_time": 0.5, "r
 
 
 def right_calls() -> list[Call]:
-    """Every public function that computes or describes, with arguments that are right."""
+    """List every public function that computes or describes, with right arguments."""
     scene, rolling, clamp, caliper = _scene(), _rolling(), make_clamp(), calipers.SinglePivot().build()
     truck, road = forklift.Truck(**TRUCK), forklift.StopConditions(**ROAD)
     slow = {"modes": 2, "tolerance": 1e-3}
@@ -349,7 +349,7 @@ def right_calls() -> list[Call]:
 
 
 def draw_wrong_call(calls: list[Call], values: list[Any], random: Random) -> Call:
-    """One of the calls with one or two wrong arguments."""
+    """Draw one of the calls with one or two wrong arguments."""
     call = random.choice(calls)
     names = random.sample([*call.arguments], k=min(len(call.arguments), random.choice((1, 1, 1, 2))))
     return Call(

@@ -15,7 +15,7 @@ PEERS: tuple[tables.Peer, ...] = (calculix, pybmodes, exudyn, stock)
 
 
 def measured() -> list[Point]:
-    """Ours, then every program that is installed."""
+    """Measure beamdyn, then every program that is installed."""
     points = list(ours.points())
     for peer in PEERS:
         if peer.version() is not None:

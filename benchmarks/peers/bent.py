@@ -24,10 +24,10 @@ from benchmarks.peers import hexahedra
 from benchmarks.peers.measure import given, shortest
 from benchmarks.peers.tapered import rows
 
-ELEMENTS = (20, 40, 80)  # along the beam
-ACROSS = (1, 2)  # elements over the thickness and the width
+ELEMENTS = (20, 40, 80)  # numbers of elements along the beam
+ACROSS = (1, 2)  # numbers of elements over the thickness and the width
 MODES = 10  # among them at least five in the plane; of more, the complex frequency step loses digits
-COMPARED = 3  # frequencies in the plane of rotation
+COMPARED = 3  # number of frequencies compared, in the plane of rotation
 DECK = """*NODE
 {nodes}
 *ELEMENT, TYPE=C3D20R, ELSET=BEAM
@@ -107,7 +107,7 @@ class Solution:
 
 
 def solid(case: Case, elements: int) -> Solution:
-    """Solution by solid elements; its time is that of one run with the start of the process."""
+    """Solve a case by solid elements; the time is that of one run with the start of the process."""
     with TemporaryDirectory() as folder:
         Path(folder, "beam.inp").write_text(deck(case, elements))
         command = ["ccx", "-i", "beam"]
@@ -116,7 +116,7 @@ def solid(case: Case, elements: int) -> Solution:
 
 
 def deck(case: Case, elements: int) -> str:
-    """Input file.
+    """Write the input file of a case.
 
     One element over the width would do in a linear step; in a nonlinear one the reduced integration of a
     single row leaves motions without stiffness, and Newton's iterations diverge.  They cross large residual
@@ -139,7 +139,7 @@ def deck(case: Case, elements: int) -> str:
 
 
 def node_lines(counts: tuple[int, int, int], number: dict[hexahedra.Place, int]) -> Iterator[str]:
-    """Number and coordinates [m] of each node; the axis of the beam is y = z = 0."""
+    """Yield number and coordinates [m] of each node; the axis of the beam is y = z = 0."""
     data = given()
     for place, n in number.items():
         xi, eta, zeta = (step / (2 * count) for step, count in zip(place, counts, strict=True))
@@ -147,13 +147,13 @@ def node_lines(counts: tuple[int, int, int], number: dict[hexahedra.Place, int])
         yield f"{n}, {xi * data['length']:.12g}, {y:.12g}, {z:.12g}"
 
 
-_DISPLACEMENTS = re.compile(r"^ displacements .*?\n\n((?: +\d+(?: +\S+){3}\n)+)", re.M)
+DISPLACEMENTS = re.compile(r"^ displacements .*?\n\n((?: +\d+(?: +\S+){3}\n)+)", re.M)
 _FREQUENCIES = "E I G E N V A L U E   O U T P U T"
 
 
 def read(text: str, time: float) -> Solution:
     """Read a .dat file: the face of the tip, its mean displacement, and the frequencies."""
-    face = _DISPLACEMENTS.search(text)
+    face = DISPLACEMENTS.search(text)
     if face is None:
         raise ValueError("the .dat file has no displacements: the static step did not converge")
     moved = np.array([line.split() for line in face[1].splitlines()], dtype=float)[:, 1:3]
@@ -165,13 +165,13 @@ def read(text: str, time: float) -> Solution:
 
 
 def _lies_in_plane(text: str) -> np.ndarray:
-    """Whether a mode takes part along x or y; by symmetry the others do so along z only."""
+    """Whether each mode takes part along x or y; by symmetry the others do so along z only."""
     x, y, z = np.abs(rows(text, "P A R T I C I P A T I O N   F A C T O R S")[:, 1:4]).T
     return np.maximum(x, y) > z
 
 
 def _frequencies(text: str) -> np.ndarray:
-    """Frequencies below the title of either step [Hz]; its columns end in cycles/time, imaginary part."""
+    """Read the frequencies [Hz] below the title of either step."""
     return rows(text, "(RAD/TIME)")[:, -2]
 
 
@@ -179,7 +179,7 @@ def _frequencies(text: str) -> np.ndarray:
 
 
 def beam(case: Case) -> Solution:
-    """Our solution; its time is that of the equilibrium and the modes."""
+    """Solve a case by beamdyn; the time is that of the equilibrium and the modes."""
     mount = bd.Mount(given()["radius"], math.radians(case.setting_angle))
     scene = replace(HARVESTER, mount=mount, physics=bd.Physics(large_deflection=True))
     time, (tip, modes) = shortest(
@@ -189,7 +189,7 @@ def beam(case: Case) -> Solution:
 
 
 def without_coriolis(modes: bd.Modes) -> np.ndarray:
-    """Frequencies about the same equilibrium without the Coriolis force [Hz], shape (m,)."""
+    """Compute frequencies about the same equilibrium without the Coriolis force [Hz], shape (m,)."""
     pencil = modes.model.equations_at(modes.speed).steady()
     stiffness = pencil.K0 + modes.speed**2 * pencil.K2
     inverse_squares = eigh(pencil.M, stiffness, eigvals_only=True)[::-1]

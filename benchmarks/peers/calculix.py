@@ -19,7 +19,8 @@ from benchmarks.peers.measure import Point, given, shortest
 NAME = "CalculiX"
 BETTER = "solid elements: bodies of any shape, shear, torsion, all directions at once, plasticity, contact"
 TARGET = ("40 elements, nonlinear static step", 3000.0)
-SETTINGS = ((40, True), (20, False), (10, False), (5, False), (3, False))  # elements, nonlinear static step
+# Number of elements, and whether the static step is nonlinear.
+SETTINGS = ((40, True), (20, False), (10, False), (5, False), (3, False))
 DECK = """*NODE
 {nodes}
 *ELEMENT, TYPE=C3D20R, ELSET=BEAM
@@ -55,7 +56,7 @@ def version() -> str | None:
 
 
 def points() -> Iterator[Point]:
-    """Time of a run, start of the process included, writing of the input not."""
+    """Yield times of a run, with the start of the process, without writing of the input."""
     exact = measure.harvester_frequencies()
     for elements, nonlinear in SETTINGS:
         results = {speed: solve(deck(elements, speed, nonlinear)) for speed in exact}
@@ -69,7 +70,7 @@ def setting(elements: int, nonlinear: bool) -> str:
 
 
 def solve(text: str) -> tuple[float, float]:
-    """Shortest of several runs [s], and the first frequency [Hz]."""
+    """Measure the shortest of several runs [s], and return the first frequency [Hz], too."""
     with TemporaryDirectory() as folder:
         Path(folder, "beam.inp").write_text(text)
         command = ["ccx", "-i", "beam"]
@@ -78,7 +79,7 @@ def solve(text: str) -> tuple[float, float]:
 
 
 def first_frequency(text: str) -> float:
-    """First frequency of a .dat file [Hz]: mode, eigenvalue, rad/time, cycles/time, imaginary part."""
+    """Read the first frequency of a .dat file [Hz]."""
     match = re.search(r"E I G E N V A L U E   O U T P U T.*?^\s+1\s+\S+\s+\S+\s+(\S+)", text, re.S | re.M)
     if match is None:
         raise ValueError("the .dat file has no frequency: the static step did not converge")
@@ -86,7 +87,7 @@ def first_frequency(text: str) -> float:
 
 
 def deck(count: int, speed: float, nonlinear: bool) -> str:
-    """Input file: x along the beam from the root to the axis, y across the thickness, turning about z."""
+    """Write the input file: x along the beam to the axis, y across the thickness, rotation about z."""
     data, counts = given(), (count, 1, 1)
     number = hexahedra.numbers(counts)
     return DECK.format(
@@ -100,7 +101,7 @@ def deck(count: int, speed: float, nonlinear: bool) -> str:
 
 
 def nodes(count: int) -> dict[int, tuple[float, float, float]]:
-    """Coordinates [m] by number: x from the root, y and z from the axis of the beam."""
+    """Return coordinates [m] by number: x from the root, y and z from the axis of the beam."""
     data = given()
     step = data["length"] / (2 * count), data["thickness"] / 2, data["width"] / 2
     return {

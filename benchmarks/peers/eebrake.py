@@ -7,34 +7,31 @@ the tension: with a free motion Exudyn's static solver moves to another equilibr
 from __future__ import annotations
 
 import sys
-from importlib import metadata
 from typing import Any
 
 import numpy as np
 
+from benchmarks.peers.measure import installed
 from brakes.calipers import EeBrake
 from brakes.planar import Equilibrium, Force, Pin
 
 NAME = "Exudyn"
-TRAVELS = (0.0, 3.5e-3)  # m of cable: open, closed
+TRAVELS = (0.0, 3.5e-3)  # travel of the cable [m]: open and closed
 
 
 def version() -> str | None:
-    try:
-        return metadata.version("exudyn")
-    except metadata.PackageNotFoundError:
-        return None
+    return installed("exudyn")
 
 
 def ours(travel: float) -> Equilibrium:
-    """Equilibrium with the finger's force that gives each pad 1 N."""
+    """Solve the equilibrium with the finger's force that gives each pad 1 N."""
     caliper = EeBrake().build()
     per_newton = caliper.stroke([travel]).advantage[0, 0]
     return caliper.equilibrium(travel, 1.0 / per_newton)
 
 
 def theirs(answer: Equilibrium) -> tuple[dict[str, np.ndarray], float]:
-    """Forces of the pins on their first bodies [N], and the tension [N], at the position of `answer`."""
+    """Compute forces of the pins on their first bodies [N], and the tension [N], by Exudyn."""
     import exudyn
 
     exudyn.config.printToConsole = False
@@ -53,7 +50,7 @@ def theirs(answer: Equilibrium) -> tuple[dict[str, np.ndarray], float]:
 
 
 def model(system: Any, answer: Equilibrium) -> tuple[dict[str, int], int]:
-    """Bodies at their points of reference, pins, cable and pads; numbers of the pins and of the cable."""
+    """Build bodies at their points of reference, pins, cable and pads; return numbers of pins and cable."""
     from exudyn.itemInterface import (
         DistanceConstraint,
         LoadForceVector,
@@ -91,10 +88,10 @@ def model(system: Any, answer: Equilibrium) -> tuple[dict[str, int], int]:
 
 
 def worst(travel: float) -> tuple[float, float]:
-    """Largest difference of a pin's force, and that of the tension, per newton on a pad."""
+    """Compute the largest difference of a pin's force, and that of the tension, per newton on a pad."""
     answer = ours(travel)
     forces, tension = theirs(answer)
-    pins = min(  # their sign is that of the other body or ours, the same for all pins
+    pins = min(  # the sign is that of either body, the same for all pins
         max(np.abs(force - sign * answer.reactions[name]).max() for name, force in forces.items())
         for sign in (1, -1)
     )

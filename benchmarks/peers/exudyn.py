@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from importlib import metadata
 from time import perf_counter
 from typing import Any
 
@@ -22,13 +21,13 @@ from benchmarks.peers.ours import largest_deflection
 
 NAME = "Exudyn"
 BETTER = "large deflections, motion past buckling, many bodies with joints and contact, any control"
-SPEED, DURATION = 55.0, 10.0  # rad/s, s: the spin-up
+SPEED, DURATION = 55.0, 10.0  # speed [rad/s] and duration [s] of the spin-up
 RUNS = 2
 
 
 @dataclass(frozen=True)
 class Setting:
-    """Number of cables, step [s], axial stiffness over that of the beam.
+    """Number of cables, step [s], and axial stiffness over that of the beam.
 
     A soft axis lets Newton's iterations converge at once, at strains of about 1e-3.
     """
@@ -54,14 +53,11 @@ TARGET = (str(SETTINGS[0]), 150.0)
 
 
 def version() -> str | None:
-    try:
-        return metadata.version("exudyn")
-    except metadata.PackageNotFoundError:
-        return None
+    return measure.installed("exudyn")
 
 
 def points() -> Iterator[Point]:
-    """Time of the solver alone: the model is made before, the deflection taken from the positions after."""
+    """Yield times of the solver alone: without making of the model and reading of the deflection."""
     for setting in SETTINGS:
         runs = [run(setting) for _ in range(RUNS)]
         error = abs(peak(*runs[-1][1:]) / largest_deflection() - 1)
@@ -69,7 +65,7 @@ def points() -> Iterator[Point]:
 
 
 def run(setting: Setting) -> tuple[float, np.ndarray, np.ndarray]:
-    """Time [s], and the tip deflection over time [s], [m]."""
+    """Return the time [s], and the tip deflection over time [s], [m]."""
     import exudyn
 
     exudyn.config.printToConsole = False
@@ -84,7 +80,7 @@ def run(setting: Setting) -> tuple[float, np.ndarray, np.ndarray]:
 
 
 def solver(exudyn: Any, setting: Setting) -> Any:
-    """Generalised alpha with the default damping: without damping it is unstable here."""
+    """Return settings of generalised alpha with default damping, without which it is unstable here."""
     settings = exudyn.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = setting.step
@@ -92,9 +88,10 @@ def solver(exudyn: Any, setting: Setting) -> Any:
     integration = settings.timeIntegration
     integration.endTime = measure.T_END
     integration.numberOfSteps = round(measure.T_END / setting.step)
-    integration.newton.absoluteTolerance = 1e-7  # N: below 1e-4 of the loads; rounding ends at 5e-9
+    integration.newton.absoluteTolerance = 1e-7  # force [N] below 1e-4 of the loads; rounding ends at 5e-9
     integration.newton.relativeTolerance = 1e-6
-    integration.newton.useModifiedNewton = setting.softening < 1  # fails at the full axial stiffness
+    # The modified method fails at the full axial stiffness.
+    integration.newton.useModifiedNewton = setting.softening < 1
     return settings
 
 
@@ -106,7 +103,7 @@ def angle(m: Any, t: Any) -> Any:
 
 
 def spin_up_angle(m: Any, t: Any, speed: float, duration: float) -> Any:
-    """Angle after a smooth spin-up of a duration [s] to a speed [rad/s]."""
+    """Compute the angle after a smooth spin-up of a duration [s] to a speed [rad/s]."""
     x = t / duration
     spin_up = speed * duration * (x * x / 2 + (m.cos(2 * math.pi * x) - 1) / (4 * math.pi**2))
     return m.IfThenElse(t < duration, spin_up, speed * duration / 2 + speed * (t - duration))
@@ -124,13 +121,13 @@ def acceleration(m: Any, t: Any) -> Any:
 
 
 def root(m: Any, t: Any) -> list[Any]:
-    """Displacements x, y [m] of the root and changes of its slope; the carrier turns about -z."""
+    """Compute displacements x, y [m] of the root and changes of its slope, for rotation about -z."""
     r, c, s = given()["radius"], m.cos(angle(m, t)), m.sin(angle(m, t))
     return [r * (1 - c), r * s, c - 1, -1 * s]
 
 
 def load(m: Any, t: Any) -> list[Any]:
-    """Minus the acceleration of the centre [m/s2]: it rolls along x and follows the road along y."""
+    """Compute minus the acceleration of the centre [m/s2]: it rolls along x, follows the road along y."""
     data = given()
     k = 2 * math.pi * data["rolling_radius"] / data["road_wavelength"]
     road = data["road_velocity_amplitude"] * k * speed(m, t) * m.cos(k * angle(m, t))
@@ -138,7 +135,7 @@ def load(m: Any, t: Any) -> list[Any]:
 
 
 def deflection(t: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Tip deflection across the beam's axis [m] by the position of the tip."""
+    """Compute the tip deflection across the beam's axis [m] from the position of the tip."""
     turned = angle(Numpy, t)
     return x * np.sin(turned) + y * np.cos(turned)
 
@@ -153,7 +150,7 @@ class Numpy:
 
 
 def model(setting: Setting) -> tuple[Any, int, list[Any]]:
-    """The system, the sensor of the tip's position, and what must stay alive while the system is used."""
+    """Build the system; return it, the sensor of the tip, and what must stay alive while it is used."""
     import exudyn
     from exudyn.beams import GenerateBeamElementsAlongLine
 
@@ -169,7 +166,7 @@ def model(setting: Setting) -> tuple[Any, int, list[Any]]:
 
 
 def sense_position(system: Any, node: int) -> int:
-    """Number of a sensor of the position of a node."""
+    """Add a sensor of the position of a node, and return its number."""
     import exudyn
     from exudyn.itemInterface import SensorNode
 
@@ -207,7 +204,7 @@ def clamp(system: Any, node: int, root: Callable[..., list[Any]]) -> Iterator[An
 
 
 def offset(k: int, root: Callable[..., list[Any]]) -> Callable[..., Any]:
-    """Exudyn's form of the motion of a coordinate of the root."""
+    """Return the motion of a coordinate of the root as a function that Exudyn takes."""
     import exudyn
 
     def function(mbs, t, itemNumber, lOffset):
@@ -234,7 +231,7 @@ def loads(system: Any, elements: list[int]) -> Iterator[Any]:
 
 
 def name_user_function(quantity: str) -> str:
-    """Exudyn's name of the parameter that takes a quantity as a function of time."""
+    """Return Exudyn's name of the parameter that takes a quantity as a function of time."""
     return f"{quantity}UserFunction"
 
 

@@ -11,15 +11,12 @@ from datetime import date
 from itertools import pairwise
 
 import numpy as np
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
 from benchmarks.peers import bent, calculix, exudyn, ours, page, spin_up, tables
 from benchmarks.peers.bent import Case, Solution
 from benchmarks.peers.measure import OURS
 from benchmarks.peers.spin_up import Run
-from benchmarks.rows import markdown_table, time_text
+from benchmarks.rows import markdown_table, show_table, time_text
 
 Row = tuple[str, ...]
 INTRODUCTION = """
@@ -70,7 +67,7 @@ NOTES = """
 
 
 def bent_rows() -> Iterator[Row]:
-    """Equilibrium and frequencies of each case by both programs."""
+    """Yield equilibrium and frequencies of each case by both programs."""
     for case in bent.CASES:
         own = bent.beam(case)
         yield str(case), OURS, *solution_cells(own)
@@ -93,7 +90,7 @@ def solution_cells(solution: Solution) -> Row:
 
 
 def bent_differences(solid: Solution, own: Solution) -> np.ndarray:
-    """Of the tip along and across [lengths], of frequencies without and with the Coriolis force."""
+    """Compute differences of the tip along and across [lengths], and of frequencies in both steps."""
     frequencies = (solid.static / own.static, solid.full / own.full)
     return np.array([*np.abs(solid.tip - own.tip), *(np.abs(ratio - 1).max() for ratio in frequencies)])
 
@@ -106,7 +103,7 @@ def scientific(value: float) -> str:
 
 
 def spin_up_rows() -> Iterator[Row]:
-    """Deflections of each spin-up by both programs, and by our linear theory."""
+    """Yield deflections of each spin-up by both programs, and by beamdyn's linear theory."""
     for duration in spin_up.DURATIONS:
         own, linear = spin_up.elastica(duration), spin_up.linear(duration)
         yield f"{duration:g} s", OURS, f"tolerance {spin_up.TOLERANCE:g}", *run_cells(own), "", ""
@@ -132,7 +129,7 @@ def run_cells(run: Run) -> Row:
 
 
 def section(bent_body: Sequence[Row], spin_up_body: Sequence[Row]) -> str:
-    """The section of the page."""
+    """Write the section of the page."""
     versions = f"{OURS} {ours.version()}, {tables.versions((calculix, exudyn))}"
     parts = (
         page.LARGE_DEFLECTION,
@@ -144,16 +141,6 @@ def section(bent_body: Sequence[Row], spin_up_body: Sequence[Row]) -> str:
     return "".join(parts)
 
 
-def main() -> None:
-    console, bodies = Console(width=160), []
-    for head, rows in ((BENT_HEAD, bent_rows()), (SPIN_UP_HEAD, spin_up_rows())):
-        table, body = Table(*head), list(rows)
-        for row in body:
-            table.add_row(*map(escape, row))
-        console.print(table)
-        bodies.append(body)
-    page.write_section(section(*bodies))
-
-
 if __name__ == "__main__":
-    main()
+    tables_of_section = ((BENT_HEAD, bent_rows()), (SPIN_UP_HEAD, spin_up_rows()))
+    page.write_section(section(*(show_table(*each) for each in tables_of_section)))

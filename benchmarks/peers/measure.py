@@ -1,10 +1,11 @@
-"""What a measurement is, and how it is taken."""
+"""Measurements of programs: what they consist of, and how they are taken."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib import metadata
 from time import perf_counter
 from typing import Any, TypeVar
 
@@ -18,10 +19,10 @@ BLADE = "first flap frequency of an outward blade at nondimensional speeds 0 to 
 ROLLING = "largest deflection of the rolling harvester in 20...30 s"
 CASES = (HARVESTER, BLADE, ROLLING)
 OURS = "beamdyn"
-DEFAULT, ALONE = "default", "one speed by itself"  # in the names of our settings
+DEFAULT, ALONE = "default", "one speed by itself"  # words in the names of beamdyn's settings
 
 T_END, WINDOW = 30.0, (20.0, 30.0)
-ENOUGH = 0.5  # s
+ENOUGH = 0.5  # time [s] for which short runs are repeated
 
 Result = TypeVar("Result")
 
@@ -37,8 +38,16 @@ class Point:
     error: float
 
 
+def installed(package: str) -> str | None:
+    """Return the version of a package; None if it is not installed."""
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return None
+
+
 def shortest(action: Callable[[], Result], runs: int = 3) -> tuple[float, Result]:
-    """Shortest of several runs [s], and the last result: noise only adds.  Short runs are repeated more."""
+    """Measure the shortest of several runs [s], and return the last result, too; noise only adds."""
     times: list[float] = []
     while len(times) < runs or sum(times) < ENOUGH:
         start = perf_counter()
@@ -48,7 +57,7 @@ def shortest(action: Callable[[], Result], runs: int = 3) -> tuple[float, Result
 
 
 def best_threads(action: Callable[[], Result]) -> tuple[float, Result]:
-    """Shortest of several runs with the default number of BLAS threads and with one [s]."""
+    """Measure the shortest run [s] with the default number of BLAS threads and with one."""
     default, _ = shortest(action)
     with threadpool_limits(1):
         single, result = shortest(action)
@@ -56,7 +65,7 @@ def best_threads(action: Callable[[], Result]) -> tuple[float, Result]:
 
 
 def peak(t: np.ndarray, u: np.ndarray) -> float:
-    """Largest |u| in the window, by a parabola through the largest sample and its neighbours."""
+    """Compute the largest |u| in the window, by a parabola through the largest sample and its neighbours."""
     a = np.abs(u[(t >= WINDOW[0]) & (t <= WINDOW[1])])
     k = int(a[1:-1].argmax()) + 1
     slope, curvature = (a[k + 1] - a[k - 1]) / 2, a[k + 1] - 2 * a[k] + a[k - 1]
@@ -68,18 +77,18 @@ def peak(t: np.ndarray, u: np.ndarray) -> float:
 
 @lru_cache
 def given() -> dict[str, float]:
-    """Table 1 of the paper, in SI units."""
+    """Load Table 1 of the paper, in SI units."""
     return {name: entry["value"] for name, entry in load("lee_yoo_2019")["input"].items()}
 
 
 def harvester_frequencies() -> dict[float, float]:
-    """Frequency [Hz] of beam theory by speed [rad/s], to ten digits."""
+    """Load the frequency [Hz] of beam theory by speed [rad/s], to ten digits."""
     rows = load("lee_yoo_2019")["reference"]["first_frequency"]
     return {row["speed"]["value"]: row["bending"]["value"] for row in rows}
 
 
 def blade_frequencies() -> dict[float, float]:
-    """First flap frequency of a uniform blade without hub by speed, nondimensional, to twelve digits."""
+    """Load the first flap frequency of a uniform blade without hub by speed, to twelve digits."""
     return {case["gamma"]: case["frequency"][0] for case in load("rotating_beams")["case"] if _uniform(case)}
 
 
@@ -89,5 +98,5 @@ def _uniform(case: dict[str, Any]) -> bool:
 
 
 def largest_error(computed: dict[float, float], exact: dict[float, float]) -> float:
-    """Largest relative deviation."""
+    """Compute the largest relative deviation."""
     return max(abs(computed[speed] / exact[speed] - 1) for speed in exact)

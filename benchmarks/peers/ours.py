@@ -1,4 +1,4 @@
-"""beamdyn on the same cases."""
+"""Measurements of beamdyn on the cases of other programs."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ from benchmarks.cases.scenes import HARVESTER, ROLLING
 from benchmarks.peers import measure
 from benchmarks.peers.measure import ALONE, DEFAULT, OURS, Point, best_threads
 
-TOLERANCES = (None, 1e-7, 1e-4)  # of frequencies
+TOLERANCES = (None, 1e-7, 1e-4)  # tolerances of frequencies
 BLADE_SCENE = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0, math.pi, math.pi / 2))
-TRANSIENTS = ((3, 1e-1), (5, 1e-2), (5, 1e-5), ("auto", 1e-2), ("auto", 1e-5))  # modes, tolerance
+# Number of modes and tolerance.
+TRANSIENTS = ((3, 1e-1), (5, 1e-2), (5, 1e-5), ("auto", 1e-2), ("auto", 1e-5))
 
 
 def version() -> str:
@@ -31,7 +32,7 @@ def points() -> Iterator[Point]:
 
 
 def measure_frequencies(case: str, scene: bd.Scene, exact: dict[float, float], count: int) -> Iterator[Point]:
-    """A locus up to the largest speed of those whose frequency is known, and these by themselves."""
+    """Measure a locus up to the largest speed with a known frequency, and those speeds one by one."""
     speeds = np.linspace(0, max(exact), count)
     for tolerance in TOLERANCES:
         yield measure_locus(case, scene, speeds, exact, tolerance)
@@ -42,7 +43,7 @@ def measure_frequencies(case: str, scene: bd.Scene, exact: dict[float, float], c
 def measure_locus(
     case: str, scene: bd.Scene, speeds: np.ndarray, exact: dict[float, float], tolerance: float | None
 ) -> Point:
-    """Time per speed of a locus."""
+    """Measure the time per speed of a locus."""
     time, locus = best_threads(lambda: bd.frequency_locus(scene, speeds, 1, tolerance=tolerance))
     rows = [int(np.abs(speeds - speed).argmin()) for speed in exact]
     error = measure.largest_error(dict(zip(exact, locus.frequency[rows, 0], strict=True)), exact)
@@ -50,7 +51,7 @@ def measure_locus(
 
 
 def measure_alone(case: str, scene: bd.Scene, exact: dict[float, float], tolerance: float | None) -> Point:
-    """Time of one speed by itself."""
+    """Measure the time of one speed by itself."""
     time, results = best_threads(
         lambda: [bd.natural_modes(scene, speed, 1, tolerance=tolerance) for speed in exact]
     )
@@ -63,7 +64,7 @@ def name(tolerance: float | None) -> str:
 
 
 def measure_transient(modes: int | str, tolerance: float) -> Point:
-    """Time of a run with its largest deflection, and the error of that."""
+    """Measure the time of a run with its largest deflection, and the error of that."""
     time, largest = best_threads(
         lambda: bd.simulate(ROLLING, measure.T_END, modes, tolerance).peak(*measure.WINDOW)
     )
@@ -74,5 +75,5 @@ def measure_transient(modes: int | str, tolerance: float) -> Point:
 
 @lru_cache
 def largest_deflection() -> float:
-    """Largest deflection of the linear model [m], right to 1e-8; 16 modes at rest agree to 3e-7."""
+    """Compute the largest deflection of the linear model [m], right to 1e-8."""
     return bd.simulate(ROLLING, measure.T_END, tolerance=1e-8).peak(*measure.WINDOW)

@@ -1,4 +1,4 @@
-"""docs/peers.md has parts, each written by a command that leaves the others as they are."""
+"""The parts of docs/peers.md, each written by a command that leaves the others unchanged."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ DOCS = Path(__file__).parents[2] / "docs"
 PAGE = DOCS / "peers.md"
 HEADING = "## Two directions of bending, twist, shear and rotary inertia\n"
 LARGE_DEFLECTION = "## Large deflection\n"
-HEADINGS = (HEADING, LARGE_DEFLECTION)  # of sections, in their order on the page
+IN_SPACE = "## Beams in space\n"
+PIEZO = "## Piezoelectric layers\n"
+HEADINGS = (HEADING, LARGE_DEFLECTION, IN_SPACE, PIEZO)  # headings of sections, in their order on the page
 
 
 def write_measurements(text: str, path: Path = PAGE) -> None:
-    """Replace all that stands before the first section."""
+    """Replace all text before the first section."""
     _, sections = _split(path.read_text(encoding="utf-8"))
     _write(path, text, sections)
 
@@ -25,7 +27,7 @@ def write_section(section: str, path: Path = PAGE) -> None:
 
 
 def _split(text: str) -> tuple[str, dict[str, str]]:
-    """What stands before the sections, and the sections by their heading."""
+    """Split a page into the text before the sections, and the sections by their heading."""
     sections: dict[str, str] = {}
     for heading in reversed(HEADINGS):
         text, found, body = text.partition(heading)

@@ -12,15 +12,12 @@ from datetime import date
 from itertools import pairwise
 
 import numpy as np
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
 from benchmarks.cases.two_planes import models
 from benchmarks.peers import calculix, ours, page, pybmodes, tables, tapered, twisted
 from benchmarks.peers.measure import OURS
 from benchmarks.peers.tapered import CLAMPED, HELD_AXIALLY, Blade
-from benchmarks.rows import markdown_table
+from benchmarks.rows import markdown_table, show_table
 
 INTRODUCTION = """
 Written by `python -m benchmarks.peers.physics` on {day}.  Versions: {versions}.
@@ -74,7 +71,7 @@ NOTES = """
 
 
 def twisted_rows() -> Iterator[tuple[str, ...]]:
-    """Frequencies of each blade and speed by both programs."""
+    """Yield frequencies of each blade and speed by both programs."""
     for blade in models()["blade"]:
         name, rpm = blade["name"], blade["speed_rpm"]
         own = twisted.our_frequencies(name, rpm)
@@ -114,7 +111,7 @@ BLADES = {
 
 
 def tapered_rows() -> Iterator[tuple[str, ...]]:
-    """Differences of the solid from the beam for each blade and speed."""
+    """Yield differences of the solid from the beam for each blade and speed."""
     if calculix.version() is None:
         yield "", "", f"{calculix.NAME} {tables.MISSING}", *[""] * 6
         return
@@ -138,7 +135,7 @@ def calculix_rows(blade: Blade, speed: float) -> Iterator[tuple[str, ...]]:
 
 
 def other_beams(blade: Blade, speed: float) -> Iterator[tuple[str, np.ndarray]]:
-    """Beams that show what an effect is worth."""
+    """Yield beams that show the size of an effect."""
     own = tapered.beam(blade)
     if blade.root == CLAMPED:
         yield "slender beam", tapered.beam_frequencies(own, speed, tapered.SLENDER)
@@ -154,7 +151,10 @@ def thousandths(solid: np.ndarray, own: np.ndarray) -> Iterator[str]:
 
 
 def orders(solids: Sequence[np.ndarray]) -> Iterator[str]:
-    """Order of convergence from three meshes; none where the last change is a digit of CalculiX's seven."""
+    """Yield the order of convergence from three meshes.
+
+    None where the last change is CalculiX's last digit.
+    """
     first, last = (np.abs(fine / coarse - 1) for coarse, fine in pairwise(solids))
     for before, after in zip(first, last, strict=True):
         yield f"{np.log2(before / after):.1f}" if after > 2e-6 else "converged"
@@ -164,7 +164,7 @@ def orders(solids: Sequence[np.ndarray]) -> Iterator[str]:
 
 
 def section(twisted_body: Sequence[tuple[str, ...]], tapered_body: Sequence[tuple[str, ...]]) -> str:
-    """The section of the page."""
+    """Write the section of the page."""
     versions = f"{OURS} {ours.version()}, {tables.versions((pybmodes, calculix))}"
     width, thickness = (f"{root:g} to {tip:g} m" for root, tip in (tapered.WIDTH, tapered.THICKNESS))
     ratio = tapered.WIDTH[0] / tapered.THICKNESS[0]
@@ -179,16 +179,6 @@ def section(twisted_body: Sequence[tuple[str, ...]], tapered_body: Sequence[tupl
     return "".join(parts)
 
 
-def main() -> None:
-    console, bodies = Console(width=160), []
-    for head, rows in ((TWISTED_HEAD, twisted_rows()), (TAPERED_HEAD, tapered_rows())):
-        table, body = Table(*head), list(rows)
-        for row in body:
-            table.add_row(*map(escape, row))
-        console.print(table)
-        bodies.append(body)
-    page.write_section(section(*bodies))
-
-
 if __name__ == "__main__":
-    main()
+    tables_of_section = ((TWISTED_HEAD, twisted_rows()), (TAPERED_HEAD, tapered_rows()))
+    page.write_section(section(*(show_table(*each) for each in tables_of_section)))

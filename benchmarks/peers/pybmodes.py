@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib import metadata
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -84,14 +83,11 @@ sec_loc str_tw tw_iner mass_den flp_iner edge_iner flp_stff edge_stff tor_stff a
 
 
 def version() -> str | None:
-    try:
-        return metadata.version("pyBModes")
-    except metadata.PackageNotFoundError:
-        return None
+    return measure.installed("pyBModes")
 
 
 def points() -> Iterator[Point]:
-    """Time of a solution for one mode, without reading of the main file and checks of the model."""
+    """Yield times of a solution for one mode, without reading of the main file and checks of the model."""
     exact = measure.blade_frequencies()
     for elements in ELEMENTS:
         results = {speed: solve(elements, speed) for speed in exact}
@@ -101,7 +97,7 @@ def points() -> Iterator[Point]:
 
 
 def solve(elements: int, speed: float) -> tuple[float, float]:
-    """Shortest time [s], and the first frequency: mass, stiffness and length are 1, so it has no unit."""
+    """Measure the shortest time [s], and return the first frequency, which has no unit here."""
     with model(deck(elements, speed), SECTIONS) as blade:
         time, result = best_threads(lambda: blade.run(n_modes=1, check_model=False))
     return time, 2 * math.pi * result.frequencies[0]
@@ -109,7 +105,7 @@ def solve(elements: int, speed: float) -> tuple[float, float]:
 
 @contextmanager
 def model(main_file: str, sections: str) -> Iterator[Any]:
-    """A blade of pyBModes, read from the text of its files; it runs while the context lasts."""
+    """Yield a blade of pyBModes, read from the text of its files, which exist inside the context."""
     from pybmodes.models import RotatingBlade
 
     with TemporaryDirectory() as folder:
@@ -120,7 +116,7 @@ def model(main_file: str, sections: str) -> Iterator[Any]:
 
 
 def deck(elements: int, speed: float) -> str:
-    """Main input file."""
+    """Write the main input file."""
     return MAIN.format(
         rpm=speed * 30 / math.pi,
         radius=1.0,

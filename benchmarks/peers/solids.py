@@ -24,20 +24,21 @@ import beamdyn as bd
 from benchmarks.peers import hexahedra
 from benchmarks.peers.tapered import rows
 
-Counts = tuple[int, int, int]  # of elements along x, y, z
+Counts = tuple[int, int, int]  # numbers of elements along x, y, z
 
 BENDING, TORSION, CAMBER, OTHER, STRETCH = "bending", "torsion", "camber", "other direction", "stretch"
 KINDS = (BENDING, TORSION, CAMBER, OTHER, STRETCH)
-MODES = 12  # asked for
+MODES = 12  # number of modes that are asked for
 _TOWARDS_ROOT, _TOWARDS_EDGES = 2.0, 1.5  # powers by which elements shrink towards the clamp and its corners
 # Width over thickness: above the first one element through the thickness, above the second two on all meshes.
 _THIN, _THICK = 25.0, 6.0
-_SLENDEREST, _THICKENED = 900.0, 600.0  # length over thickness: above the first, the second is computed
-_MOST_STRAIN = 2e-3  # by rotation at the root, which steel bears
-_ORDERS = 0.8, 4.0  # of convergence: least and most that are believed
-_LEAST_ERROR = 2e-5  # relative, of a frequency; smaller estimates have been seen to fail
-_LONGEST = 900.0  # time of one mesh [s]
-_OVERLAP = 0.5  # of two shapes, above which they are one mode on two meshes
+# Length over thickness above which a strip is replaced, and that of its replacement.
+_SLENDEREST, _THICKENED = 900.0, 600.0
+_MOST_STRAIN = 2e-3  # largest strain by rotation at the root, which steel bears
+_ORDERS = 0.8, 4.0  # least and largest order of convergence that is believed
+_LEAST_ERROR = 2e-5  # least relative error of a frequency; smaller estimates have failed
+_LONGEST = 900.0  # time limit of one mesh [s]
+_OVERLAP = 0.5  # overlap of two shapes, above which they are one mode on two meshes
 DECK = """*NODE, NSET=ALL
 {nodes}
 *ELEMENT, TYPE=C3D20R, ELSET=STRIP
@@ -87,17 +88,17 @@ class Strip:
     length: float
     width: float
     thickness: float
-    youngs_modulus: float  # Pa
-    density: float  # kg/m3
+    youngs_modulus: float  # [Pa]
+    density: float  # [kg/m3]
     poissons_ratio: float
-    radius: float = 0.0  # from the axis of rotation to the root
+    radius: float = 0.0  # distance from the axis of rotation to the root [m]
     setting_angle: float = 0.0
     bending_angle: float = 0.0
-    speed: float = 0.0  # rad/s
+    speed: float = 0.0  # [rad/s]
     taper: Callable[[float], tuple[float, float]] | None = None
 
     def scene(self, physics: bd.Physics | None = None) -> bd.Scene:
-        """The strip as a beam; plain, if no physics is given."""
+        """Make the strip as a beam; plain, if no physics is given."""
         beam = bd.Beam.rectangular(
             *(self.length, self.width, self.thickness, self.youngs_modulus, self.density),
             poissons_ratio=self.poissons_ratio,
@@ -106,12 +107,12 @@ class Strip:
         return bd.Scene(beam, mount, physics=physics or bd.Physics())
 
     def time_unit(self) -> float:
-        """Time by which speeds and frequencies have no dimension [s]: the root of rho A L^4 / EI."""
+        """Unit of time [s] in which speeds and frequencies have no dimension: root of rho A L^4 / EI."""
         return self.length**2 / self.thickness * math.sqrt(12 * self.density / self.youngs_modulus)
 
 
 def random_strip(rng: np.random.Generator) -> Strip:
-    """A strip, at rest (a third), turning inward below 0.9 of the critical speed, or outward to gamma 5.
+    """Draw a strip: at rest (a third), inward below 0.9 of the critical speed, or outward to gamma 5.
 
     Rotation strains it by no more than steel bears, so that short and thick ones turn more slowly than that.
     """
@@ -133,7 +134,7 @@ def random_strip(rng: np.random.Generator) -> Strip:
 
 
 def _rounded(value: float) -> float:
-    """To the six digits that a file of references keeps."""
+    """Round to the six digits that a file of references keeps."""
     return float(f"{value:.6g}")
 
 
@@ -151,7 +152,8 @@ class Mode:
     def shares(self) -> np.ndarray:
         """Share of each of `KINDS` in the squared displacements of the mid-surface."""
         u, v, w = np.moveaxis(self.shape, 2, 0)
-        weights = [1 / 6, 2 / 3, 1 / 6], [-0.5, 0, 0.5], [1 / 3, -2 / 3, 1 / 3]  # of Legendre's polynomials
+        # Weights for Legendre polynomials.
+        weights = [1 / 6, 2 / 3, 1 / 6], [-0.5, 0, 0.5], [1 / 3, -2 / 3, 1 / 3]
         mean, odd, even = (v @ each for each in weights)
         parts = mean, odd / math.sqrt(3), even / math.sqrt(5), w.mean(axis=1), u.mean(axis=1)
         squares = np.array([part @ part for part in parts])
@@ -159,12 +161,12 @@ class Mode:
 
     @property
     def kind(self) -> str:
-        """The greatest share."""
+        """Kind with the greatest share."""
         return KINDS[int(self.shares.argmax())]
 
 
 def meshes(strip: Strip) -> tuple[Counts, Counts, Counts]:
-    """Three meshes, each twice as fine as the one before; through a thin strip's thickness they are alike."""
+    """Return three meshes, each twice as fine as the one before, but alike through a thin strip."""
     ratio = strip.width / strip.thickness
     if ratio > _THIN:
         along, through, across = 8, (1, 1, 1), 4
@@ -179,7 +181,7 @@ def meshes(strip: Strip) -> tuple[Counts, Counts, Counts]:
 
 
 def solid_modes(strip: Strip, counts: Counts, modes: int = MODES) -> list[Mode]:
-    """Modes of the solid on one mesh, from the lowest frequency."""
+    """Compute modes of the solid on one mesh, from the lowest frequency."""
     with TemporaryDirectory() as folder:
         Path(folder, "strip.inp").write_text(deck(strip, counts, modes))
         subprocess.run(["ccx", "-i", "strip"], cwd=folder, capture_output=True, timeout=_LONGEST)
@@ -187,7 +189,7 @@ def solid_modes(strip: Strip, counts: Counts, modes: int = MODES) -> list[Mode]:
 
 
 def deck(strip: Strip, counts: Counts, modes: int = MODES) -> str:
-    """Input file of a mesh."""
+    """Write the input file of a mesh."""
     number = hexahedra.numbers(counts)
     sides = coordinates(strip, counts)
     points = (
@@ -216,7 +218,7 @@ def deck(strip: Strip, counts: Counts, modes: int = MODES) -> str:
 
 
 def _tapered(strip: Strip, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """A place in the strip of a place in the one of constant section."""
+    """Map a place in the strip of constant section to the tapered one."""
     if strip.taper is None:
         return x, y, z
     thicker, wider = strip.taper(x / strip.length)
@@ -224,7 +226,7 @@ def _tapered(strip: Strip, x: float, y: float, z: float) -> tuple[float, float, 
 
 
 def coordinates(strip: Strip, counts: Counts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places [m] of nodes along x, y, z, in steps of half an element; middles lie between their corners."""
+    """Return places [m] of nodes along x, y, z, in steps of half an element."""
     along, through, across = (np.linspace(0, 1, count + 1) for count in counts)
     side = 2 * across - 1
     corners = (
@@ -240,7 +242,7 @@ def coordinates(strip: Strip, counts: Counts) -> tuple[np.ndarray, np.ndarray, n
 
 
 def line_nodes(counts: Counts, number: dict[hexahedra.Place, int]) -> list[int]:
-    """Nodes of the mid-surface on both edges and between them, at the corners of elements but the root's."""
+    """Return nodes of the mid-surface on both edges and between them, without those of the root."""
     along, through, across = counts
     if across % 2:
         raise ValueError("an even number of elements across has nodes in the middle")
@@ -248,11 +250,12 @@ def line_nodes(counts: Counts, number: dict[hexahedra.Place, int]) -> list[int]:
 
 
 def read_modes(text: str) -> list[Mode]:
-    """Modes of a .dat file."""
+    """Read the modes of a .dat file."""
     values = rows(text, "E I G E N V A L U E   O U T P U T")
     if not len(values):
         raise ValueError("the .dat file has no frequency: the static step did not converge")
-    text = re.sub(r"(?<=\d)-(?=\d{3}\b)", "E-", text)  # as Fortran writes exponents of three digits
+    # Fortran writes exponents of three digits without a letter.
+    text = re.sub(r"(?<=\d)-(?=\d{3}\b)", "E-", text)
     blocks = re.split(r"displacements \(vx,vy,vz\) for set LINES.*\n", text)[1:]
     lines = [[line.split() for line in block.strip().partition("\n\n")[0].splitlines()] for block in blocks]
     shapes = np.array(lines, dtype=float)[:, :, 1:].reshape(len(blocks), -1, 3, 3)
@@ -291,7 +294,7 @@ class SolidMode:
 
 
 def reference(strip: Strip, counts: Sequence[Counts] = (), modes: int = MODES) -> list[SolidMode]:
-    """Modes of the strip as a solid, from the lowest frequency, extrapolated over three meshes."""
+    """Compute modes of the strip as a solid, extrapolated over three meshes, in ascending order."""
     body = thickened(strip)
     counts = counts or meshes(body)
     *coarser, finest = (solid_modes(body, each, modes) for each in counts)
@@ -315,7 +318,7 @@ def reference(strip: Strip, counts: Sequence[Counts] = (), modes: int = MODES) -
 
 
 def thickened(strip: Strip) -> Strip:
-    """The strip; for a very slender one a thicker one of smaller modulus, which vibrates alike as a plate.
+    """Return the strip, or for a very slender one a thicker one of smaller modulus with like modes.
 
     What the thickness over the length still changes in bending and torsion is less than what rounding does
     in a mesh of the slender one: 3e-4 of the first frequency at length/thickness 1000, 5e-3 at 2500.
@@ -328,7 +331,7 @@ def thickened(strip: Strip) -> Strip:
 
 
 def thinner(strip: Strip, body: Strip, kind: str) -> tuple[float, float]:
-    """Factor from a frequency of the thickened strip to that of the strip, and its relative error."""
+    """Return the factor from a thickened strip's frequency to the strip's, and its relative error."""
     if body == strip:
         return 1.0, 0.0
     by_thickness = 0.05 / _THICKENED
@@ -341,19 +344,19 @@ def thinner(strip: Strip, body: Strip, kind: str) -> tuple[float, float]:
 
 
 def twist_factor(strip: Strip) -> float:
-    """Torsion constant over width thickness^3 / 3: the series of Timoshenko and Goodier."""
+    """Compute the torsion constant over width thickness^3 / 3, by the series of Timoshenko and Goodier."""
     ratio, n = strip.width / strip.thickness, np.arange(1, 100, 2)
     return float(1 - 192 / np.pi**5 / ratio * np.sum(np.tanh(n * np.pi * ratio / 2) / n**5))
 
 
 def error_by_rounding(strip: Strip, frequency: float) -> float:
-    """Relative error of a frequency by rounding in CalculiX, which is one of the eigenvalue: as measured."""
-    first = 3.516 / (2 * math.pi * strip.time_unit())  # of the beam at rest
+    """Estimate the relative error of a frequency by rounding in CalculiX, as measured."""
+    first = 3.516 / (2 * math.pi * strip.time_unit())  # first frequency of the beam at rest
     return 3e-4 * (strip.length / (1000 * strip.thickness)) ** 4 * (first / frequency) ** 2
 
 
 def error_through_thickness(strip: Strip, kind: str, count: int) -> float:
-    """Relative error that one or two elements through the thickness leave on meshes of any fineness.
+    """Estimate the relative error that one or two elements through the thickness leave on any mesh.
 
     Fitted from above to solutions with more of them: width/thickness 4 to 100, length/width 2.5 to 50, nu 0.3
     and 0.45.  The clamp, whose corners the elements do not resolve, counts for bending; the stress near the
@@ -370,7 +373,7 @@ def error_through_thickness(strip: Strip, kind: str, count: int) -> float:
 
 
 def pair(coarse: Sequence[Mode], fine: Sequence[Mode]) -> tuple[np.ndarray, np.ndarray]:
-    """For each mode of a fine mesh that of a coarse one, by kind and shape, and the overlap of the two."""
+    """Find for each mode of a fine mesh that of a coarse one, by kind and shape, and their overlap."""
     step = len(fine[0].shape) // len(coarse[0].shape)
     shapes = (
         np.array([mode.shape[every - 1 :: every].ravel() for mode in each])
@@ -384,7 +387,7 @@ def pair(coarse: Sequence[Mode], fine: Sequence[Mode]) -> tuple[np.ndarray, np.n
 
 
 def extrapolate(by_mesh: Sequence[float]) -> tuple[float, float]:
-    """Limit of three values, each of a mesh twice as fine as the one before, and its relative error.
+    """Extrapolate three values, each of a mesh twice as fine as the last; return the relative error, too.
 
     The order is that observed, within bounds.  The error is half of what is extrapolated, where the order
     lies within them; all of it where convergence is slower, three times that where it is faster than the

@@ -18,14 +18,14 @@ from benchmarks.cases.scenes import BLADE_SPIN_UP
 from benchmarks.peers import exudyn, measure
 from benchmarks.peers.exudyn import Numpy, clamp
 
-DURATIONS = (15.0, 5.0)  # of the spin-up [s]
+DURATIONS = (15.0, 5.0)  # durations of the spin-up [s]
 T_END, SAMPLES = 20.0, 2001
 TOLERANCE = 1e-5
 
 
 @dataclass(frozen=True)
 class Setting:
-    """Number of cables, step [s], axial stiffness over that of the published beam.
+    """Number of cables, step [s], and axial stiffness over that of the published beam.
 
     The published beam stretches, which the elastica leaves out: stretch delays the free vibration after the
     fast spin-up.  A stiffer axis takes more cables, as it locks the bending of a few.
@@ -65,23 +65,23 @@ class Run:
 
 
 def times() -> np.ndarray:
-    """Times of the samples [s]."""
+    """Return the times of the samples [s]."""
     return np.linspace(0.0, T_END, SAMPLES)
 
 
 def given() -> dict[str, float]:
-    """The published beam and its spin-up, in SI units."""
+    """Load the published beam and its spin-up, in SI units."""
     entries = load("rotating_beams")["spin_up"]
     return {name: entry["value"] for name, entry in entries.items() if name != "source"}
 
 
 def elastica(duration: float) -> Run:
-    """Our own run, with a duration of the spin-up [s]."""
+    """Simulate with large deflection by beamdyn, for a duration of the spin-up [s]."""
     return _simulate(duration, bd.Physics(large_deflection=True))
 
 
 def linear(duration: float) -> Run:
-    """The same by linear theory."""
+    """Simulate by linear theory of beamdyn, for a duration of the spin-up [s]."""
     return _simulate(duration, bd.Physics())
 
 
@@ -98,7 +98,7 @@ def _simulate(duration: float, physics: bd.Physics) -> Run:
 
 @lru_cache
 def cables(duration: float, setting: Setting) -> Run:
-    """A run of Exudyn with a duration of the spin-up [s]; its time is that of the solver alone."""
+    """Simulate by Exudyn, for a duration of the spin-up [s]; the time is that of the solver alone."""
     import exudyn as solver
 
     solver.config.printToConsole = False
@@ -111,7 +111,7 @@ def cables(duration: float, setting: Setting) -> Run:
 
 
 def settings_of_solver(solver: Any, setting: Setting) -> Any:
-    """Generalised alpha with the default damping.  Looser iterations delay the motion of a stiff axis."""
+    """Return settings of generalised alpha with default damping."""
     settings = solver.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = T_END / (SAMPLES - 1)
@@ -119,24 +119,25 @@ def settings_of_solver(solver: Any, setting: Setting) -> Any:
     integration = settings.timeIntegration
     integration.endTime = T_END
     integration.numberOfSteps = round(T_END / setting.step)
-    integration.newton.absoluteTolerance = 1e-6  # N; rounding ends near 5e-7, of an axis of 1e8 N
+    # Force [N]; rounding ends near 5e-7 with an axial stiffness of 1e8 N.
+    integration.newton.absoluteTolerance = 1e-6
     integration.newton.relativeTolerance = 1e-8
     return settings
 
 
 def angle(m: Any, t: Any, duration: float) -> Any:
-    """Angle of the carrier, with the functions of numpy or of exudyn.symbolic."""
+    """Compute the angle of the carrier, with the functions of numpy or of exudyn.symbolic."""
     return exudyn.spin_up_angle(m, t, given()["speed"], duration)
 
 
 def deflection(t: np.ndarray, x: np.ndarray, y: np.ndarray, duration: float) -> np.ndarray:
-    """Tip deflection across the turned axis [m] by the position of the tip."""
+    """Compute the tip deflection across the turned axis [m] from the position of the tip."""
     turned = angle(Numpy, t, duration)
     return x * np.sin(turned) + y * np.cos(turned)
 
 
 def model(duration: float, setting: Setting) -> tuple[Any, int, list[Any]]:
-    """The system, the sensor of the tip's position, and what must stay alive while the system is used."""
+    """Build the system; return it, the sensor of the tip, and what must stay alive while it is used."""
     import exudyn as solver
     from exudyn.beams import GenerateBeamElementsAlongLine
     from exudyn.itemInterface import Cable2D

@@ -17,8 +17,8 @@ NAME = "solve_ivp"
 BETTER = "any equations, linear or not, given as a function; stops at events"
 TARGET = None
 MODES = 3
-SETTINGS = (("LSODA", 1e-6), ("Radau", 1e-5), ("DOP853", 1e-4))  # method, rtol
-SAMPLES = 50_000  # in the window
+SETTINGS = (("LSODA", 1e-6), ("Radau", 1e-5), ("DOP853", 1e-4))  # method and relative tolerance
+SAMPLES = 50_000  # number of samples in the window
 
 
 def version() -> str | None:

@@ -32,7 +32,7 @@ ACROSS, COMPARED, BOUND = (1, 4), 6, 0.02
 
 
 def solid_frequencies(sweep: float, speed: float, elements: int) -> np.ndarray:
-    """Lowest frequencies [Hz] of the strip as a solid; the motions across the width are among them."""
+    """Compute the lowest frequencies [Hz] of the strip as a solid, motions across the width included."""
     counts = (elements, *ACROSS)
     number = hexahedra.numbers(counts)
     of_root = [n for place, n in number.items() if place[0] == 0]
@@ -57,7 +57,7 @@ def solid_frequencies(sweep: float, speed: float, elements: int) -> np.ndarray:
 def _node_lines(
     sweep: float, counts: tuple[int, int, int], number: dict[hexahedra.Place, int]
 ) -> Iterator[str]:
-    """Number and coordinates [m] of each node: x along the root, y across the thickness, z the width."""
+    """Yield number and coordinates [m] of each node: x along the root, y thickness, z width."""
     for place, n in number.items():
         xi, eta, zeta = (step / (2 * count) for step, count in zip(place, counts, strict=True))
         s, y, across = xi * (STRAIGHT + SWEPT), (eta - 0.5) * THICKNESS, (zeta - 0.5) * WIDTH
@@ -73,7 +73,7 @@ def _node_lines(
 
 
 def beam_frequencies(sweep: float, speed: float) -> np.ndarray:
-    """Those of the beam in space without the Coriolis force."""
+    """Compute the frequencies of the beam in space without the Coriolis force."""
     kink = STRAIGHT / (STRAIGHT + SWEPT)
     angle = bd.Table([0.0, kink, kink, 1.0], [0.0, 0.0, sweep, sweep])
     beam = bd.Beam.rectangular(
@@ -85,7 +85,7 @@ def beam_frequencies(sweep: float, speed: float) -> np.ndarray:
 
 
 def measure(elements: int) -> Iterator[Row]:
-    """The ratios of the beam and of the solid, and how far they are apart."""
+    """Yield the ratios of the beam and of the solid, and their difference."""
     for speed in SPEEDS:
         ours, theirs = (
             solve(SWEEP) / solve(0.0)

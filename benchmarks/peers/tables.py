@@ -1,4 +1,4 @@
-"""The measurements as tables and as a picture."""
+"""Tables and a picture of the measurements."""
 
 from __future__ import annotations
 
@@ -9,24 +9,21 @@ from collections.abc import Iterator, Sequence
 from datetime import date
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
+from beamdyn.common.results.pictures import Axes, Figure
 from benchmarks.peers.measure import ALONE, CASES, DEFAULT, OURS, Point
 from benchmarks.rows import markdown_table, time_text
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 MISSING = "not installed"
-MARKERS = {  # and colours, the same in all frames
+MARKERS = {  # markers and colours, the same in all frames
     OURS: ("o", "C0"),
     "CalculiX": ("s", "C1"),
     "pyBModes": ("^", "C2"),
     "Exudyn": ("D", "C3"),
     "solve_ivp": ("X", "C4"),
 }
-TITLE_WIDTH = 42  # characters of a line of a frame's title, which fit its frame
+TITLE_WIDTH = 42  # characters of a line of a title that fit its frame
 INTRODUCTION = """# Beside other programs
 
 Written by `python -m benchmarks.peers` on {day} (Python {python}, {machine}), which installs nothing;
@@ -52,7 +49,7 @@ NOTES = """## How it is measured
 
 
 class Peer(Protocol):
-    """A module for a program."""
+    """Interface of the module for a program."""
 
     NAME: str
     BETTER: str
@@ -64,7 +61,7 @@ class Peer(Protocol):
 
 
 def ratio(point: Point, points: Sequence[Point], alone: bool = False, default: bool = False) -> float:
-    """The peer's time over our shortest with an equal or smaller error; nan if there is none."""
+    """Return the program's time over our shortest with an equal or smaller error; nan if there is none."""
     ours = [
         p.time
         for p in points
@@ -81,7 +78,7 @@ def versions(peers: Sequence[Peer]) -> str:
 
 
 def rows(points: Sequence[Point], peers: Sequence[Peer]) -> Iterator[tuple[str, ...]]:
-    """Case, program, setting, time, error, how much faster we are; then the programs that are missing."""
+    """Yield case, program, setting, time, error and ratio; then the programs that are missing."""
     for case in CASES:
         shown = case
         for point in (p for p in points if p.case == case):
@@ -98,7 +95,7 @@ def ratios(point: Point, points: Sequence[Point]) -> tuple[str, str]:
 
 
 def target_rows(points: Sequence[Point], peers: Sequence[Peer]) -> Iterator[tuple[str, ...]]:
-    """How much faster we are at the setting of the target, and over all settings, for each program."""
+    """Yield for each program how much faster we are at the target's setting, and over all settings."""
     for peer in peers:
         by_setting = {p.setting: p for p in points if p.program == peer.NAME}
         if peer.TARGET is not None and by_setting:
@@ -110,7 +107,7 @@ def target_rows(points: Sequence[Point], peers: Sequence[Peer]) -> Iterator[tupl
 
 
 def times(value: float) -> str:
-    """A ratio as text."""
+    """Word a ratio."""
     return "" if math.isnan(value) else f"{value:.0f}" if value >= 10 else f"{value:.1g}"
 
 
@@ -126,7 +123,7 @@ TARGET_HEAD = (
 
 
 def markdown(points: Sequence[Point], ours: Peer, peers: Sequence[Peer]) -> str:
-    """The page of the documentation."""
+    """Write the page of the documentation."""
     first = INTRODUCTION.format(
         day=date.today(),
         python=platform.python_version(),
@@ -145,12 +142,12 @@ def markdown(points: Sequence[Point], ours: Peer, peers: Sequence[Peer]) -> str:
 
 
 def picture(points: Sequence[Point], path: Path) -> None:
-    """Error against time, as a file."""
+    """Draw error against time into a file."""
     drawn(points).savefig(path, dpi=120)
 
 
 def drawn(points: Sequence[Point]) -> Figure:
-    """Error against time, a frame for each case."""
+    """Draw error against time, in a frame for each case."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(13.0, 4.4), layout="constrained")
@@ -160,7 +157,7 @@ def drawn(points: Sequence[Point]) -> Figure:
 
 
 def frame(ax: Axes, case: str, points: Sequence[Point]) -> None:
-    """Error against time; hollow where a locus is not used."""
+    """Draw error against time of a case; hollow markers where no locus is used."""
     for program, alone in dict.fromkeys((p.program, p.setting.startswith(ALONE)) for p in points):
         own = [p for p in points if (p.program, p.setting.startswith(ALONE)) == (program, alone)]
         label, style = (f"{program}, {ALONE}", "none") if alone else (program, None)

@@ -23,10 +23,12 @@ from beamdyn.scene.profile import to_profile
 from benchmarks.peers import hexahedra
 from benchmarks.peers.hexahedra import Place
 
-LENGTH, HUB, YOUNGS_MODULUS, DENSITY = 1.0, 0.1, 210e9, 7850.0  # m, m, Pa, kg/m3
-WIDTH, THICKNESS = (0.1, 0.06), (0.02, 0.01)  # m at the root and at the tip
-SPEEDS = (0.0, 200.0)  # rad/s
-MESHES = ((20, 1, 2), (40, 2, 4), (80, 4, 8))  # elements along the blade, its thickness, its width
+# Length [m], hub radius [m], modulus [Pa], density [kg/m3].
+LENGTH, HUB, YOUNGS_MODULUS, DENSITY = 1.0, 0.1, 210e9, 7850.0
+WIDTH, THICKNESS = (0.1, 0.06), (0.02, 0.01)  # width and thickness [m], each at the root and at the tip
+SPEEDS = (0.0, 200.0)  # speeds [rad/s]
+# Numbers of elements along the blade, its thickness and its width.
+MESHES = ((20, 1, 2), (40, 2, 4), (80, 4, 8))
 MODES = 14  # the first three of either direction lie below the fifteenth, with those of torsion
 CLAMPED, HELD_AXIALLY = "clamped", "held axially"
 DECK = """*NODE
@@ -92,7 +94,7 @@ class Blade:
 
 
 def solid_frequencies(blade: Blade, counts: tuple[int, int, int], speed: float) -> np.ndarray:
-    """First three frequencies of flap, then of edge [Hz], of shape (6,)."""
+    """Compute the first three frequencies of flap, then of edge [Hz], shape (6,)."""
     with TemporaryDirectory() as folder:
         Path(folder, "blade.inp").write_text(deck(blade, counts, speed))
         subprocess.run(["ccx", "-i", "blade"], cwd=folder, capture_output=True)
@@ -100,7 +102,7 @@ def solid_frequencies(blade: Blade, counts: tuple[int, int, int], speed: float) 
 
 
 def deck(blade: Blade, counts: tuple[int, int, int], speed: float) -> str:
-    """Input file.  In a frequency step CalculiX counts the softening by rotation, not the Coriolis force."""
+    """Write the input file; CalculiX counts the softening by rotation, not the Coriolis force."""
     number = hexahedra.numbers(counts)
     root_nodes = "\n".join(f"{n}," for place, n in number.items() if place[0] == 0)
     return DECK.format(
@@ -117,7 +119,7 @@ def deck(blade: Blade, counts: tuple[int, int, int], speed: float) -> str:
 
 
 def node_lines(blade: Blade, counts: tuple[int, int, int], number: dict[Place, int]) -> Iterator[str]:
-    """Number and coordinates [m] of each node."""
+    """Yield number and coordinates [m] of each node."""
     width, thickness = blade.width(), blade.thickness()
     for place, n in number.items():
         xi, eta, zeta = (step / (2 * count) for step, count in zip(place, counts, strict=True))
@@ -126,7 +128,7 @@ def node_lines(blade: Blade, counts: tuple[int, int, int], number: dict[Place, i
 
 
 def root_lines(root: str, counts: tuple[int, int, int], number: dict[Place, int]) -> Iterator[str]:
-    """What holds the root face."""
+    """Yield the lines that hold the root face."""
     yield "*BOUNDARY"
     if root == CLAMPED:
         yield "ROOT, 1, 3"
@@ -134,12 +136,12 @@ def root_lines(root: str, counts: tuple[int, int, int], number: dict[Place, int]
     yield "ROOT, 1, 1"
     along, across = counts[1:]
     yield from mean_is_zero(3, product(range(along), range(across)), number)
-    for half in (range(across // 2), range(across // 2, across)):  # both, so that the face cannot turn
+    for half in (range(across // 2), range(across // 2, across)):  # both halves, so that the face cannot turn
         yield from mean_is_zero(2, product(range(along), half), number)
 
 
 def mean_is_zero(direction: int, faces: Iterator[tuple[int, int]], number: dict[Place, int]) -> Iterator[str]:
-    """A constraint: the mean displacement over faces of elements of the root vanishes.
+    """Yield a constraint: the mean displacement over faces of elements of the root is zero.
 
     The integral of a shape function over a face is -1/12 of its area at a corner and 1/3 at a middle.  The
     first node of a constraint must not be the first of another: a middle inside each half of the face is.
@@ -158,14 +160,14 @@ _OF_A_MODE = re.compile(r"\s+\d+\s+\S+E[+-]\d+\s")
 
 
 def rows(text: str, title: str) -> np.ndarray:
-    """Rows of numbers below a title of a .dat file, one for each mode."""
+    """Read rows of numbers below a title of a .dat file, one for each mode."""
     lines = text.partition(title)[2].splitlines()
     own = takewhile(_OF_A_MODE.match, dropwhile(lambda line: not _OF_A_MODE.match(line), lines))
     return np.array([line.split() for line in own], dtype=float)
 
 
 def sorted_by_direction(text: str) -> np.ndarray:
-    """First three frequencies of flap, then of edge [Hz]; modes of torsion take part in no direction."""
+    """Return the first three frequencies of flap, then of edge [Hz]; torsion has no direction."""
     modes = rows(text, "E I G E N V A L U E   O U T P U T")
     if not len(modes):
         raise ValueError("the .dat file has no frequency: the static step did not converge")
@@ -182,7 +184,7 @@ SLENDER = bd.Physics(planes=2)
 
 
 def beam(blade: Blade) -> bd.Beam:
-    """The blade as a beam, with Cowper's shear coefficient."""
+    """Make the blade as a beam, with Cowper's shear coefficient."""
     return bd.Beam.rectangular(
         length=LENGTH,
         width=blade.width(),
@@ -194,7 +196,7 @@ def beam(blade: Blade) -> bd.Beam:
 
 
 def with_hutchinsons_shear(blade: Blade) -> bd.Beam:
-    """The same with Hutchinson's shear coefficients of the section at the root."""
+    """Make the beam with Hutchinson's shear coefficients of the section at the root."""
     nu, own = blade.poissons_ratio, beam(blade)
     cowper = 10 * (1 + nu) / (12 + 11 * nu)
     ratio = float(blade.width()(0) / blade.thickness()(0))
@@ -208,7 +210,7 @@ def with_hutchinsons_shear(blade: Blade) -> bd.Beam:
 
 
 def with_stress_of_rotation(blade: Blade, speed: float) -> bd.Beam:
-    """The same with the axial stress of rotation added to E in bending, as it is in a solid."""
+    """Make the beam with the axial stress of rotation added to E in bending, as in a solid."""
     own, width, thickness = beam(blade), blade.width(), blade.thickness()
     moment = (width * thickness * Polynomial([HUB, LENGTH])).integ()
     tension = DENSITY * speed**2 * LENGTH * (moment(1.0) - moment)
@@ -222,7 +224,7 @@ def with_stress_of_rotation(blade: Blade, speed: float) -> bd.Beam:
 
 
 def hutchinson(ratio: float, nu: float) -> float:
-    """Shear coefficient of a rectangle by its width over its depth: Hutchinson (2001), doi:10.1115/1.1349417.
+    """Compute the shear coefficient of a rectangle of Hutchinson (2001), doi:10.1115/1.1349417.
 
     The width is across the shear force.  The contraction of wide sections is in it: past a ratio of 5.6 (at
     nu = 0.3) its inverse is negative, as if shear made the beam stiffer.
@@ -234,7 +236,7 @@ def hutchinson(ratio: float, nu: float) -> float:
 
 
 def beam_frequencies(own: bd.Beam, speed: float, physics: bd.Physics = THICK) -> np.ndarray:
-    """First three frequencies of flap, then of edge [Hz], of shape (6,)."""
+    """Compute the first three frequencies of flap, then of edge [Hz], shape (6,)."""
     scene = bd.Scene(own, bd.Mount(HUB, math.pi, math.pi / 2), physics=physics)
     modes = bd.natural_modes(scene, speed, MODES)
     flap = modes.plane_share[:, 0] > 0.5

@@ -16,10 +16,11 @@ from benchmarks.cases.blades import blade_scene, stations
 from benchmarks.peers import pybmodes
 
 NAMES = {"iea_15": "IEA 15 MW", "nrel_5": "NREL 5 MW", "bmodes_test01": "BModes Test01"}
-ELEMENTS = (200, 400, 800, 1600)  # about; whole numbers between neighbouring stations
+# Approximate numbers of elements; equally many between neighbouring stations.
+ELEMENTS = (200, 400, 800, 1600)
 CONVERGED = 2e-5  # relative change of all frequencies at which no finer mesh is solved
 MODES = 5
-TOLERANCE = 1e-7  # of ours: far below what is compared
+TOLERANCE = 1e-7  # tolerance of our frequencies, far below what is compared
 STIFFNESS = 1e3  # G J over E I, and E A L^2 over E I: the frequencies do not change from 0.1 to 1e14
 GYRATION = 1e-6  # square of the radius of gyration of the sections for torsion, over L^2
 HEAD = """Blade
@@ -31,12 +32,12 @@ sec_loc str_tw tw_iner mass_den flp_iner edge_iner flp_stff edge_stff tor_stff a
 
 
 def our_frequencies(name: str, rpm: float) -> np.ndarray:
-    """First five frequencies [Hz]."""
+    """Compute the first five frequencies [Hz] by beamdyn."""
     return bd.natural_modes(blade_scene(name), rpm * math.pi / 30, MODES, tolerance=TOLERANCE).frequency
 
 
 def their_frequencies(name: str, rpm: float, elements: int) -> np.ndarray:
-    """First five frequencies [Hz]."""
+    """Compute the first five frequencies [Hz] by pyBModes."""
     with pybmodes.model(main_file(name, rpm, elements), sections(name)) as blade:
         return np.array(blade.run(n_modes=MODES, check_model=False).frequencies)
 
@@ -54,7 +55,7 @@ def refined(name: str, rpm: float) -> Iterator[tuple[int, np.ndarray, float]]:
 
 
 def boundaries(name: str, elements: int) -> np.ndarray:
-    """Ends of about so many elements, equally many between any two neighbouring stations.
+    """Return ends of about a number of elements, equally many between neighbouring stations.
 
     An element has the mass and stiffness at its middle, so that the error falls with the square of its
     length only if there is a boundary at each station.
@@ -66,7 +67,7 @@ def boundaries(name: str, elements: int) -> np.ndarray:
 
 
 def main_file(name: str, rpm: float, elements: int) -> str:
-    """Main input file; its radius is that of the tip."""
+    """Write the main input file; its radius is that of the tip."""
     data, ends = stations(name), boundaries(name, elements)
     return pybmodes.MAIN.format(
         rpm=rpm,
@@ -78,7 +79,7 @@ def main_file(name: str, rpm: float, elements: int) -> str:
 
 
 def sections(name: str) -> str:
-    """File of the sections."""
+    """Write the file of the sections."""
     data = stations(name)
     x, mass, twist = data["stations"], data["mass_per_length"], data["twist_deg"]
     flap, edge = data["flap_stiffness"], data["edge_stiffness"]
@@ -90,5 +91,5 @@ def sections(name: str) -> str:
 
 
 def extrapolated(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
-    """Limit of frequencies whose error falls to a quarter when the elements are halved."""
+    """Extrapolate frequencies whose error falls to a quarter when the elements are halved."""
     return fine + (fine - coarse) / 3

@@ -1,6 +1,6 @@
-"""Contents of a command, a screen and an HTML report on each type of brake; the pattern is `base.BrakeType`.
+"""Contents of command, screen and HTML report for each type of brake; `base.BrakeType` describes the pattern.
 
-Types of brakes with no options of their own are listed in `STANDARD`: a command and a screen for each.
+`STANDARD` lists the types of brakes that have no options of their own: each gets a command and a screen.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from brakes.answers.base import BrakeType
 
-_SHOWN = {  # by the name of the command and of its module: what it shows
+_SHOWN = {  # names of what a module shows, by the name of the command
     "drum": "Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.",
     "band": "Torque, tensions, pressure and self-locking of a simple or differential band brake.",
     "block": "Torque, forces, pressure and self-locking of a block brake with one or two levers.",
@@ -25,8 +25,10 @@ _SHOWN = {  # by the name of the command and of its module: what it shows
 
 
 def _load(name: str) -> BrakeType[Any]:
-    """A type, imported when it is wanted: a command imports no other brake than its own."""
-    return import_module(f"brakes.answers.{name}").BRAKE
+    """Import a type when it is wanted, so that a command imports no other brake than its own."""
+    alone = name in ("drum", "vehicle")
+    module = import_module(f"brakes.answers.{name if alone else 'machine'}")
+    return module.BRAKE if alone else module.MACHINES[name]
 
 
 STANDARD = {name: (shown, partial(_load, name)) for name, shown in _SHOWN.items()}

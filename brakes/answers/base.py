@@ -8,13 +8,12 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, fields, replace
 from time import perf_counter
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 from pydantic import BaseModel
 from rich.console import RenderableType
 
-from beamdyn._version import __version__
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.config import in_words_of_file, parse, path_of, read, said_of, validated
@@ -36,33 +35,31 @@ from beamdyn.common.inputs.array_checks import solve_possible
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs, with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results.one_line import counted, error_at_most
+from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.screens.screen_parts import Handle, KeyResult, Slider
 from brakes.answers.tables import format_number
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 FileModel = TypeVar("FileModel", bound=BaseModel)
 
 
 @dataclass(frozen=True)
 class Answer(Result, ABC):
-    """The answer to one design of a brake: a frozen dataclass of results; see `BrakeType`.
+    """Base of answers: the results for one design of a brake, as a frozen dataclass; see `BrakeType`.
 
     Attributes
     ----------
     design : BaseModel
-        Design of the file, in SI.
+        The design that the file describes, in SI.
     provenance : Provenance, optional
-        Version, method, how the error was found, and the time taken; `BrakeType.answer` adds it.
+        Version, method, meaning of the error, and computing time; `BrakeType.answer` adds it.
     """
 
     design: BaseModel
     provenance: Provenance | None = field(default=None, kw_only=True)
 
     def headline(self) -> Iterator[str]:
-        """Headlines of its parts, its error, and the number of refusals; see `Result.headline`."""
+        """Yield the headlines of its parts, its error, and the number of refusals; see `Result.headline`."""
         parts = (getattr(self, each.name) for each in fields(self))
         said = (line for part in parts if isinstance(part, Result) for line in part.headline())
         yield from dict.fromkeys((*said, error_at_most(self.error)))
@@ -71,83 +68,84 @@ class Answer(Result, ABC):
     @property
     @abstractmethod
     def error(self) -> Any:
-        """Relative error of the numbers as `BrakeType.error_from` says; nan where there is none to state."""
+        """Relative error of the numbers, as `BrakeType.error_from` defines it; nan if there is none."""
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Doubts although there is an answer: one sentence each."""
+        """Reasons to doubt the answer, one sentence each."""
         return ()
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Why the model has no answer, such as a brake that locks: one sentence each, none if it has."""
+        """Reasons why the model has no answer, such as a brake that locks, one sentence each."""
         return ()
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Why designs have no answer, by row, where `count` designs were solved together."""
+        """Return the reasons why designs have no answer, by index; `count` designs were solved together."""
         return {}
 
     def loadable(self) -> Result | None:
-        """The result of the mechanics if the answer consists of a single one, which is saved; else None."""
+        """Return the mechanics' result, which can be saved, if the answer consists of one only; else None."""
         return None
 
     @abstractmethod
     def tables(self) -> list[RenderableType]:
-        """Tables and sentences, for the console, the screen and the HTML report."""
+        """Make the tables and sentences for console, screen and HTML report."""
 
     @abstractmethod
     def rows(self) -> Iterable[Sequence[object]]:
-        """Rows of the CSV file, headings first."""
+        """Make the rows of the CSV file, the headings first."""
 
     @abstractmethod
     def values(self) -> dict[str, Any]:
-        """The results as plain numbers, lists and strings."""
+        """Convert the results to plain numbers, lists and strings."""
 
     def to_dict(self) -> dict[str, Any]:
-        """Results, refusals, inputs, error and provenance as plain numbers, lists and strings."""
+        """Convert results, refusals, inputs, error and provenance to plain numbers, lists and strings."""
         made = {"refusals": self.refusals, "inputs": self.design.model_dump()}
         made |= {"error": self.error, "provenance": self.provenance}
         return self.values() | {key: plain(value) for key, value in made.items()}
 
     @abstractmethod
     def figure(self, place: float | None = None) -> Figure:
-        """Draw it.
+        """Draw the figure of the answer.
 
         Parameters
         ----------
         place : float, optional
-            Position of the screen's slider; if not given, the picture is that of command and HTML report.
+            Position of the screen's slider; if not given, the figure is that of the command and the HTML
+            report.
         """
 
     def drawings(self, place: float) -> Rows:
-        """Drawings of the machine, row by row, with the slider at a position; none if it is not drawn."""
+        """Make the drawings of the machine, row by row, for a position of the slider; by default none."""
         return ()
 
     def charts(self, place: float) -> Sequence[Chart]:
-        """Charts of the figure, besides its drawings, with the slider at a position."""
+        """Make the charts of the figure, besides drawings, for a position of the slider; by default none."""
         return ()
 
     def branches(self) -> Mapping[str, Answer]:
-        """The answer with each of its solutions drawn, by their names; none if there is only one."""
+        """Return the answer with each of its solutions drawn, by their names; empty if there is only one."""
         return {}
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Points of the first drawing that can be moved, with the slider at a position."""
+        """Make the handles of the first drawing, points that can be moved, for a position of the slider."""
         return ()
 
 
 @dataclass(frozen=True)
 class BrakeSweep(InputSweep):
-    """Results of a brake over its inputs.
+    """Results of a brake over values of its inputs.
 
     Attributes
     ----------
     design : dict
         The design that is varied, as plain numbers, lists and strings in SI.
     error : ndarray, shape (n1, ..., nd)
-        As `Answer.error`, of each design.
+        Relative error of each design, as in `Answer.error`.
     provenance : Provenance, optional
-        As in `Answer`.
+        Version, method, meaning of the error, and computing time, as in `Answer`.
     """
 
     design: dict[str, Any] = field(default_factory=dict)
@@ -157,20 +155,20 @@ class BrakeSweep(InputSweep):
 
 @dataclass(frozen=True)
 class SweepRequest:
-    """Designs that are asked for.
+    """A request for the results of many designs, made by varying inputs of one design.
 
     Parameters
     ----------
     design : BaseModel
-        The design whose inputs are varied.
+        The design whose inputs vary.
     tables : mapping
-        Tables of its file.
+        Tables of the design's file.
     axes : sequence of Axis
-        The inputs.
+        The varied inputs, with their values.
     combine : {"product", "zip"}
-        Whether the inputs are combined each with each, or taken together.
+        Whether each value is combined with each of the other inputs, or values are taken side by side.
     run : TaskRunner, optional
-        Runs the tasks of designs that are solved one by one; by default in this process.
+        Runs the tasks with designs that are solved one by one; by default in this process.
     """
 
     design: Any
@@ -181,60 +179,63 @@ class SweepRequest:
 
 
 class BrakeType(ABC, Generic[FileModel]):
-    """A type of brake: how its TOML file is read and solved, and what is shown.
+    """Base of types of brakes: how a TOML file is read and solved, and what is shown.
 
-    Command, screen and HTML report ask only this class and `Answer`. To add a type of brake ``name``:
+    Command, screen and HTML report use only this class and `Answer`. To add a type of brake ``name``:
 
-    1. Its mechanics is a room of its own, ``brakes/name``, entered among the layers in ``pyproject.toml``:
-       SI floats or arrays in, a frozen `Result` out, no input or output.
-    2. Each input is described once: `Described` in the annotation of a field of a core class, from which
-       `section_of` makes the table of the file, or `Quantity` in a `Section` where there is no such class.
+    1. Put its mechanics into a package of its own, ``brakes/name``, and add that to the layers in
+       ``pyproject.toml``: SI floats or arrays in, a frozen `Result` out, no reading, printing or drawing.
+    2. Describe each input once: with `Described` in the annotation of a field of a core class, from which
+       `section_of` makes the file's table, or with `Quantity` in a `Section` if there is no such class.
        ``brakes/config/name.py`` has the `Section` with a field for each table.  The form, the inputs that
-       can be swept and the messages about mistakes follow from it; `keep_checked` checks the core's fields.
-    3. ``brakes/drawings/name.py`` draws the result: the machine as a `Drawing`, curves as a `Chart`.
-    4. ``brakes/answers/name.py`` derives from `Answer` and from `BrakeType`, sets the attributes below and
-       writes `solve` and `outputs`; the answer's `values` go into JSON, with inputs, `error` and provenance.
-       Where the mechanics takes arrays derive from `ArrayBrakeType`, which sweeps all cases at once, else
-       from `TableBrakeType`, which sweeps them one by one. An instance named ``BRAKE`` stands at the end of
-       the module.
-    5. `solve` raises ValueError for bad input. A design without an answer is no exception: `solve` returns
+       can be swept, and the messages about mistakes are made from it; `keep_checked` checks the core's
+       fields.
+    3. Draw the result in ``brakes/drawings/name.py``: the machine as a `Drawing`, curves as a `Chart`.
+    4. In ``brakes/answers/name.py``, derive from `Answer` and from `BrakeType`, set the attributes below and
+       write `solve` and `outputs`; the answer's `values` go into JSON, with inputs, `error` and provenance.
+       If the mechanics takes arrays, derive from `ArrayBrakeType`, which solves all designs of a sweep at
+       once; else from `TableBrakeType`, which solves them one by one. Make an instance named ``BRAKE`` at the
+       end of the module.
+    5. `solve` raises ValueError for bad input. A design without an answer is not an exception: `solve`
+    returns
        an `Answer` whose `refusals` say why, so that its tables are still shown; a command then ends with
-       exit code 1. Only where nothing can be shown, `NoAnswer` is raised.
-    6. An `Output` takes its number, in SI, from the `Answer`; if the design has arrays, an array.  A field of
-       a result that is annotated by `Meaning` says its words and unit itself: `take_fields`.
-    7. ``examples/name.toml``, or ``brakes/app/bases/name.toml``, is the example with which the screen opens.
-    8. A line in `brakes.answers.STANDARD` adds the command and the screen.
+       exit code 1. `NoAnswer` is raised only if nothing can be shown.
+    6. An `Output` takes its number, in SI, from the `Answer`, as an array if the design has arrays.
+    `take_fields`
+       makes outputs of those fields of a result whose `Meaning` gives words and unit.
+    7. ``examples/name.toml``, or ``brakes/app/bases/name.toml``, is the example that the screen opens with.
+    8. Add a line to `brakes.answers.STANDARD`, which adds the command and the screen.
 
     Attributes
     ----------
     name : str
-        Name of its command, and of its file without the suffix.
+        Name of its command, and of its example file without the suffix.
     title : str
         Title of its screen.
     purpose : str
-        Purpose of its screen, in a sentence.
+        Purpose of its screen, in one sentence.
     method : str
-        Method of solution, in a phrase.
+        Method of solution, as a phrase.
     error_from : str
-        Meaning of the error of an answer, in a phrase.
+        Meaning of an answer's error, as a phrase.
     sections : tuple of str
-        Tables on its form; "" for inputs outside any table.
+        Tables of its form; "" for inputs outside of any table.
     needs : tuple of str
-        Tables, or inputs outside any, that the answer depends on.
+        Tables, or inputs outside of any table, on which the answer depends.
     example_sweep : str
-        Sweep that its screen shows at first, such as "brake.friction=0.1:0.6:26".
+        Sweep that its screen shows first, such as "brake.friction=0.1:0.6:26".
     sweep_results : str
-        Results of a sweep if none are named, separated by commas.
+        Results of a sweep if the user names none, separated by commas.
     slider : Slider, optional
-        Slider on which its drawings depend.
+        Slider on which the drawings depend.
     more : mapping of str to callable
-        Further drawings, which fold out on its screen: ``more[title](answer)`` are rows of them.
+        Further drawings, which fold out on the screen: ``more[title](answer)`` gives rows of them.
     most_cases : int
-        Largest number of designs of a sweep.
+        Largest number of designs in a sweep.
     together : str
-        Which tables or keys of its file go together, in a sentence; "" if that is plain.
+        Which tables or keys of the file go together, in one sentence; "" if that is evident.
     key_results : tuple of (words, name)
-        The outputs that stand first on its screen: how they are called there, and their names.
+        Outputs at the top of the screen: their words there, and their names.
     """
 
     name: ClassVar[str]
@@ -253,7 +254,7 @@ class BrakeType(ABC, Generic[FileModel]):
     key_results: tuple[tuple[str, str], ...] = ()
 
     def headline(self, answer: Answer) -> Iterator[KeyResult]:
-        """The results that stand first on the screen; without key results the first outputs."""
+        """Yield the results at the top of the screen: the key results, or else the first outputs."""
         outputs = {output.name: output for output in self.outputs(answer.design)}  # type: ignore[arg-type]
         for words, name in self.key_results or self._first(answer, outputs):
             value = float(outputs[name].shown(answer))
@@ -262,67 +263,67 @@ class BrakeType(ABC, Generic[FileModel]):
                 yield KeyResult(words, f"{format_number(value)} {unit}".rstrip())
 
     def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
-        """Words and names of the results that stand first where there are no key results."""
+        """Return words and names of the results at the top of the screen if the type has no key results."""
         return [(output.words, name) for name, output in [*outputs.items()][:2]]
 
     @abstractmethod
     def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
-        """Design that tables describe; raises `ConfigError` with all mistakes."""
+        """Read the design that tables describe; raises `ConfigError` with all mistakes."""
 
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Tables of a design that is drawn the same and solved sooner."""
+        """Return the tables of a design that has the same drawing and is solved faster."""
         return tables
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Drawings that show what the symbols of its form mean, for what is chosen there."""
+        """Make drawings that explain the symbols of the form, for the choices made there."""
         return ()
 
     @abstractmethod
     def solve(self, design: FileModel) -> Answer:
-        """Answer to a design; raises ValueError for bad input, `NoAnswer` if nothing can be shown."""
+        """Solve a design; raises ValueError for bad input, `NoAnswer` if nothing can be shown."""
 
     @abstractmethod
     def outputs(self, design: FileModel) -> Sequence[Output]:
-        """Numbers of the answer that can be named."""
+        """Describe the numbers of the answer to a design, which users can name and sweeps can show."""
 
     @abstractmethod
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
-        """Inputs of the form, for tables as far as they are filled in."""
+        """Return the inputs of the form, for tables that may be incomplete."""
 
     @property
     def optional(self) -> Collection[str]:
-        """Tables of the file that may be left out."""
+        """Names of the file's tables that may be left out."""
         return ()
 
     def idle(self, entries: Mapping[str, str]) -> Iterable[str]:
-        """Paths of inputs that have no effect beside these entries; see `Document`."""
+        """Return the paths of inputs that have no effect beside the given entries; see `Document`."""
         return ()
 
     @abstractmethod
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
-        """Numbers of a design that can be swept."""
+        """Describe the inputs of a design that are numbers, which a sweep can vary."""
 
     @abstractmethod
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
-        """Results of the designs that are asked for, and warnings."""
+        """Solve the requested designs; return their results, and warnings."""
 
     def answer(self, tables: Mapping[str, Any], source: str) -> Answer:
-        """Answer to the design of tables, with its provenance; raises what `read` and `solve` raise."""
+        """Solve the design of tables, and add the provenance; raises what `read` and `solve` raise."""
         start, design = perf_counter(), self.read(tables, source)
         with in_words_of_file(type(design), tables, source):
             answer = self.solve(design)
         return replace(answer, provenance=self._provenance(start))
 
     def _provenance(self, start: float) -> Provenance:
-        return Provenance(__version__, self.method, self.error_from, perf_counter() - start)
+        return Provenance.since(start, self.method, self.error_from)
 
     def open(self, name: str) -> tuple[Mapping[str, Any], str]:
-        """Tables and text of a file; raises `ConfigError` if it cannot be read or is not TOML."""
+        """Read tables and text of a file; raises `ConfigError` if it cannot be read or is not TOML."""
         text = read(name)
         return parse(text, name), text
 
     def default_results(self, design: FileModel) -> str:
-        """Results of a sweep of a design if none are named."""
+        """Return the names of the results of a sweep if the user names none, separated by commas."""
         return self.sweep_results
 
     def sweep(
@@ -335,31 +336,31 @@ class BrakeType(ABC, Generic[FileModel]):
         combine: str = "product",
         run: TaskRunner | None = None,
     ) -> tuple[BrakeSweep, Sequence[str]]:
-        """Answer all designs that inputs make.
+        """Solve all designs that result from varying inputs.
 
         Parameters
         ----------
         tables : mapping
             Tables of the design's file.
         source : str
-            Their origin, for messages.
+            Origin of the tables, for messages.
         texts : sequence of str
             Inputs and their values, such as "stop.speed=10:30:9 km/h".
         results : str, optional
             Names of outputs, separated by commas.
         options : pair of str
-            Options that give inputs and results, for messages.
+            Names of the options that give inputs and results, for messages.
         combine : {"product", "zip"}
-            Whether the inputs are combined each with each, or taken together.
+            Whether each value is combined with each of the other inputs, or values are taken side by side.
         run : TaskRunner, optional
-            Runs the tasks of designs that are solved one by one; by default in this process.
+            Runs the tasks with designs that are solved one by one; by default in this process.
 
         Returns
         -------
         sweep : BrakeSweep
-            The results.
+            The results of all designs.
         warnings : sequence of str
-            Where there is no answer and why, and what else to look at.
+            Which designs have no answer and why, and other remarks.
 
         Raises
         ------
@@ -378,7 +379,8 @@ class BrakeType(ABC, Generic[FileModel]):
         asked = SweepRequest(design, tables, axes, combine, run)
         made, warnings = self.sweep_cases(asked, [*wanted, ERROR])
         given = {entry.name: getattr(made, entry.name) for entry in fields(made)}
-        given |= {key: given[key][:-1] for key in ("results", "result_units", "found")}  # without the error
+        # The last entry is that of the error.
+        given |= {key: given[key][:-1] for key in ("results", "result_units", "found")}
         more = {"design": plain(design.model_dump()), "provenance": self._provenance(start)}
         return BrakeSweep(**given, **more, error=made.found[-1]), warnings
 
@@ -387,37 +389,37 @@ ERROR = Output("error", "relative error", lambda answer: answer.error)
 
 
 class ArrayBrakeType(BrakeType[FileModel]):
-    """A type of brake whose mechanics takes arrays: all designs of a sweep are solved at once.
+    """Base of types of brakes whose mechanics takes arrays: all designs of a sweep are solved at once.
 
     Attributes
     ----------
     model : type
-        Description of its file.
+        Description of the file.
     """
 
     model: type[FileModel]
     most_cases = MOST_AT_ONCE
 
     def read(self, tables: Mapping[str, Any], source: str) -> FileModel:
-        """Design that tables describe."""
+        """Read the design that tables describe."""
         return validated(self.model, tables, source)
 
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
-        """Inputs of the form: those of the model."""
+        """Return the inputs of the form, which are those of the file's description."""
         return describe(self.model)
 
     @property
     def optional(self) -> Collection[str]:
-        """Tables of the model that it does not require."""
+        """Names of the file's tables that may be left out."""
         return [name for name, field in self.model.model_fields.items() if not field.is_required()]
 
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
-        """Numbers in those tables that the design has, and choices, which are refused by their names."""
+        """Describe the numbers and choices in the tables of the design; a sweep refuses choices by name."""
         there = [entry for entry in describe(type(design)) if getattr(design, entry.path.partition(".")[0])]
         return [each for each in there if each.quantity.unit or each.quantity.symbol or each.choices]
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
-        """Results from one answer whose numbers are arrays."""
+        """Solve the requested designs as one design whose numbers are arrays."""
         designs = designs_of(asked.axes, asked.combine)
         in_si = Designs([VariedInput(a.input.path, "", a.values) for a in asked.axes], asked.combine)
         columns, paths = in_si.columns(), [entry.path for entry in describe(type(asked.design))]
@@ -434,7 +436,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
             return made, made.warnings
         values[:, rows] = [np.broadcast_to(output.shown(answer), rows.shape) for output in outputs]
         made = swept(designs, outputs, [*values], answer.refusals, refused)
-        # Reasons are given only for designs that lack one of the wanted results.
+        # Only designs that lack one of the wanted results get a reason.
         lacking, why = np.any(np.isnan(values[:-1]), axis=0).tolist(), answer.refusals_of_cases(len(rows))
         unanswered = {int(rows[i]): said for i, said in why.items() if lacking[rows[i]]}
         made = replace(made, unanswered=tuple(sorted(unanswered.items())))
@@ -442,15 +444,15 @@ class ArrayBrakeType(BrakeType[FileModel]):
 
 
 class TableBrakeType(BrakeType[FileModel]):
-    """A type of brake whose mechanics takes one design: those of a sweep are solved one by one."""
+    """Base of types of brakes whose mechanics takes one design: a sweep solves the designs one by one."""
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
-        """Results design by design; nan where there is no answer."""
+        """Solve the requested designs one by one; results are nan where there is no answer."""
         made = one_by_one(asked.tables, asked.axes, outputs, self.solve_task, asked.combine, asked.run)
         return made, made.warnings
 
     def solve_task(self, task: CaseTask) -> SolvedCases:
-        """Solve the designs of a task, here or in a worker."""
+        """Solve the designs of a task, in this process or in a worker."""
 
         def solve_determined(tables: Mapping[str, Any]) -> Answer:
             answer = self.solve(self.read(tables, self.name))

@@ -1,4 +1,4 @@
-"""Answers on bicycle calipers, by name or made of parts, and the types of calipers and mechanisms."""
+"""Answers on bicycle calipers, and the types of brakes for named calipers and for mechanisms."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from rich.console import RenderableType
@@ -25,19 +25,13 @@ from beamdyn.common.edge.varied_inputs import numbers
 from beamdyn.common.edge.wording import in_range
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.columns import Column, Columns
+from beamdyn.common.results.pictures import Figure
 from beamdyn.common.screens.screen_parts import Slider
 from beamdyn.common.words import Words
+from brakes.answers import planar
 from brakes.answers.base import Answer, TableBrakeType
 from brakes.answers.doubts import hangs_on_friction
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
-from brakes.answers.planar import (
-    PlanarAnswer,
-    format_size,
-    joint_outputs,
-    name_output,
-    reactions_table,
-    select_rows,
-)
 from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, Stance, StoppingDistance
 from brakes.common.limits import passes, verdict
 from brakes.config.caliper import CaliperInput
@@ -61,11 +55,8 @@ from brakes.drawings.mechanism import free_body_drawings
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.system import OppositeTravelError, join_names
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
-_AT_STOPS = 11  # positions of a stroke at which the slider stops
+_AT_STOPS = 11  # number of positions in the stroke at which the slider stops
 _STROKE_HEADS = (
     *("cable", "finger", "right pad", "left pad"),
     *("right force", "left force", "both", "left/right"),
@@ -95,7 +86,7 @@ _OUTPUTS = (
 
 
 @dataclass(frozen=True)
-class CaliperAnswer(PlanarAnswer):
+class CaliperAnswer(planar.PlanarAnswer):
     """A caliper over its stroke, where it closes, and with friction, wear and a stop if the file has them.
 
     Attributes
@@ -103,11 +94,11 @@ class CaliperAnswer(PlanarAnswer):
     caliper : Caliper
         The caliper.
     run : CaliperStroke
-        Its stroke.
+        Travels and forces over its stroke.
     friction : PivotFriction, optional
-        What friction in the pivots takes at the end of the stroke.
+        Efficiency with friction in the pivots, at the end of the stroke.
     wear : PadWear, optional
-        Where worn pads touch.
+        Travel to contact with worn pads.
     """
 
     caliper: Caliper
@@ -117,7 +108,7 @@ class CaliperAnswer(PlanarAnswer):
 
     @classmethod
     def of(cls, caliper: Caliper, design: CaliperInput | MechanismInput) -> CaliperAnswer:
-        """Move the caliper over its stroke; friction and wear only where the forces are determined."""
+        """Move a caliper over its stroke; add friction and wear only if statics determines the forces."""
         given = design.run
         run = caliper.stroke(given.travel, given.points, given.finger)
         end = float(run.cable[-1])
@@ -135,12 +126,12 @@ class CaliperAnswer(PlanarAnswer):
 
     @property
     def status(self) -> str:
-        """Whether statics determines the forces, and the pads press."""
+        """Whether statics determines the forces and the pads press; see `planar.Equilibrium`."""
         return self.run.status
 
     @property
     def message(self) -> str:
-        """The status as a sentence."""
+        """The status as a sentence, with the travel from which on a pad would pull."""
         pulls = (self.run.pad_force <= 0).any(axis=1)
         if not pulls.any():
             return self.run.message
@@ -148,19 +139,19 @@ class CaliperAnswer(PlanarAnswer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Sentences on forces that statics does not determine, contacts that open, friction, and grip."""
+        """Sentences on undetermined forces, open contacts, jamming, and a vehicle that does not stop."""
         slips = self.stop and self.stop.status != "stops" and f"the vehicle {self.stop.message}"
         return (*self._unsolved, *([slips] if slips else []))
 
     @property
     def _unsolved(self) -> Sequence[str]:
-        """Why the forces of the pads are not known."""
+        """Reasons why the forces of the pads are unknown, one sentence each."""
         stuck = self.friction and not self.friction.has_answer and in_files(self.friction.message)
         return (*super().refusals, *([stuck] if stuck else []))
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Warnings of the stroke, and a sentence if friction holds the brake."""
+        """Warnings of the stroke, of friction that holds the brake, and of the force of the hand."""
         f = self.friction
         held = [f.message] if f and f.has_answer and f.status != "determined" else []
         hard = [f"hand, {self._verdict}"] if passes("bicycle", self.run.finger_force) else []
@@ -168,24 +159,24 @@ class CaliperAnswer(PlanarAnswer):
 
     @property
     def _verdict(self) -> str:
-        """Whether the hand's force keeps the limit of the standard."""
+        """One sentence that compares the hand's force with the limit of the standard."""
         return verdict("bicycle", self.run.finger_force)
 
     @property
     def error(self) -> float:
-        """Largest error of the forces, over the largest force."""
+        """Largest error of the forces, relative to the largest force."""
         rubbing = np.nan if self.friction is None else self.friction.error
         return float(np.fmax.reduce((*self.run.error, self.equilibrium.largest_error, rubbing)))
 
     @cached_property
     def stop(self) -> StoppingDistance | None:
-        """The stop, if the file has one: with the mean force of the pads at the end of the stroke."""
+        """The stop with the mean pad force at the end of the stroke; None if the file has no stop."""
         if self.design.stop is None or self._unsolved:
             return None
         return self.design.stop.with_force(float(self.run.pad_force[-1].mean()))
 
     def _doubt(self) -> str:
-        """The stopping distance with less and more friction of the pads: the brake may limit."""
+        """State the stopping distance with less and with more friction between pads and rim."""
 
         def distance(design: Any) -> float:
             found = design.stop.with_force(float(self.run.pad_force[-1].mean()))
@@ -195,7 +186,7 @@ class CaliperAnswer(PlanarAnswer):
         return hangs_on_friction(self.design, "stop.friction", of, distance, "m", "does not stop")
 
     def tables(self) -> list[RenderableType]:
-        """The lever, the stroke, the forces at its end, friction, wear and stop, and the diagnosis."""
+        """Make the tables: lever, stroke, forces at its end, friction, wear, stop, and the statics."""
         run, pads = self.run, self.run.pad_travel[-1].sum()
         rows = [
             [
@@ -203,13 +194,13 @@ class CaliperAnswer(PlanarAnswer):
                 for v in (run.cable[k], run.finger[k], *run.pad_travel[k])
             ]
             + [f"{v:.4f}" for v in (*run.advantage[k], run.total_advantage[k], run.travel_symmetry[k])]
-            for k in select_rows(len(run.cable))
+            for k in planar.select_rows(len(run.cable))
         ]
         shown: list[RenderableType] = [
             f"{run.caliper}: {run.finger_force:g} N on the hand lever, lever ratio {run.lever_ratio:g}, "
             f"{run.tension:g} N in the cable",
             table(_STROKE, _STROKE_HEADS, rows),
-            reactions_table(self.equilibrium, f"Forces at {1e3 * run.cable[-1]:.4g} mm of cable"),
+            planar.reactions_table(self.equilibrium, f"Forces at {1e3 * run.cable[-1]:.4g} mm of cable"),
             f"Over the whole stroke the finger travels {run.finger[-1] / pads if pads > 0 else np.nan:.4f} "
             "times as far as both pads together.",
         ]
@@ -237,7 +228,7 @@ class CaliperAnswer(PlanarAnswer):
         return [*shown, f"Hand, {self._verdict}.", self._diagnosis(run.message, run.virtual_work)]
 
     def _assumed(self) -> str:
-        """Which dimensions of the vehicle are those of a usual bicycle."""
+        """State which dimensions of the vehicle are assumed to be those of a usual bicycle."""
         assert self.design.stop is not None
         given = {"braked_wheel", *self.design.stop.model_fields_set}
         units = {"tyre_friction": ""}
@@ -250,15 +241,15 @@ class CaliperAnswer(PlanarAnswer):
 
     @staticmethod
     def _tensions(friction: PivotFriction) -> str:
-        """The tension of the cable in three numbers."""
+        """State the tension of the cable without friction, squeezing and releasing."""
         both = (friction.squeezing_tension, friction.releasing_tension)
-        squeezing, releasing = (format_size(size, "N") for size in both)
+        squeezing, releasing = (planar.format_size(size, "N") for size in both)
         return (
             f"cable {friction.tension:.5g} N without friction, {squeezing} squeezing, {releasing} releasing"
         )
 
     def rows(self) -> Columns:
-        """The stroke: travels, pads, reactions."""
+        """Make the columns of the stroke: travels, forces of the pads, and reactions of the joints."""
         run, sides = self.run, ("right", "left")
         reactions = (
             Column(f"{name} {axis} N", force[:, k])
@@ -275,38 +266,38 @@ class CaliperAnswer(PlanarAnswer):
         )
 
     def values(self) -> dict[str, Any]:
-        """The answer as plain numbers, lists and strings."""
+        """Convert the answer to plain numbers, lists and strings."""
         more = {"friction": self.friction, "wear": self.wear, "stop": self.stop}
         return self.run.to_dict() | {key: value and value.to_dict() for key, value in more.items()}
 
     def figure(self, place: float | None = None) -> Figure:
-        """Open, and at a part of the stroke from 0 to 1 with forces; curves over the stroke."""
+        """Draw the caliper open and, with forces, at a fraction of the stroke (0 to 1), beside its curves."""
         cable, closed = self._closed_at(1.0 if place is None else place)
         return caliper_figure(self.caliper, self.run, closed, cable, self._caption(cable))
 
     def drawings(self, place: float) -> Rows:
-        """Open, and at a part of the stroke from 0 to 1 with forces."""
+        """Make the drawing of the caliper open and, with forces, at a fraction of the stroke from 0 to 1."""
         cable, closed = self._closed_at(place)
         title = "\n".join(filter(None, (title_of(self.caliper, self.run, cable), self._caption(cable))))
         return ((caliper_drawing(self.caliper, closed, title),),)
 
     def charts(self, place: float) -> Sequence[Chart]:
-        """Advantage, velocity of the pads and reactions over the stroke."""
+        """Make the charts of advantage, pad velocities and reactions over the stroke."""
         return stroke_charts(self.caliper, self.run, self._cable_at(place))
 
     def _closed_at(self, place: float) -> tuple[float, Equilibrium]:
-        """Travel of the cable [m] at a part of the stroke from 0 to 1, and the equilibrium there."""
+        """Find the travel of the cable [m], and the equilibrium, at a fraction of the stroke from 0 to 1."""
         cable = self._cable_at(place)
         if place >= 1:
             return cable, self.equilibrium
         return cable, self.caliper.equilibrium(cable, self.run.finger_force)
 
     def _cable_at(self, place: float) -> float:
-        """Travel of the cable [m] at a part of the stroke from 0 to 1."""
+        """Compute the travel of the cable [m] at a fraction of the stroke from 0 to 1."""
         return float(np.interp(place, (0.0, 1.0), self.run.cable[[0, -1]]))
 
     def _caption(self, cable: float) -> str:
-        """Tensions of the cable with friction, at the end of the stroke; "" elsewhere."""
+        """State the cable tensions with friction, for the end of the stroke; empty elsewhere."""
         return self._tensions(self.friction) if self.friction and cable == self.run.cable[-1] else ""
 
 
@@ -314,7 +305,7 @@ class CaliperAnswer(PlanarAnswer):
 
 
 class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
-    """Mechanisms given part by part, and calipers by name."""
+    """Type of brake for mechanisms given part by part, and for named calipers."""
 
     name = "mechanism"
     title = "Mechanism"
@@ -329,7 +320,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     more = MappingProxyType({"Free bodies": lambda answer: free_body_drawings(answer.equilibria)})
 
     def open(self, name: str) -> tuple[Mapping[str, Any], str]:
-        """Tables and text of a file, or of the caliper of a name."""
+        """Read tables and text of a file, or of a named caliper."""
         if name in NAMED:
             return {"caliper": name}, named_text(name)
         known = f"give a TOML file, or the name of a caliper: {', '.join(NAMED)}"
@@ -341,10 +332,10 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         return parse(text, name), text
 
     def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
-        """Caliper or mechanism that tables describe."""
+        """Read the caliper or the mechanism that tables describe."""
         mistakes = {}
         for part in PARTS:
-            if isinstance(text := tables.get(part), str):  # text is no list of tables
+            if isinstance(text := tables.get(part), str):  # a text is not a list of tables
                 form = 'give a list of tables, e.g. [{ name = "A", body = "arm", at = "B" }]'
                 try:
                     tomllib.loads(f"parts = {text}")
@@ -356,15 +347,15 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         return mechanism_from_dict(tables, source)
 
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Fewer positions of the stroke, those at which the slider stops; no worn pads."""
+        """Reduce the stroke to the positions at which the slider stops, and leave out worn pads."""
         run = dict(tables.get("run", {}))
         points = run.get("points", _AT_STOPS)
         run["points"] = min(points, _AT_STOPS) if isinstance(points, int) else points
         run.pop("wear", None)
         return {**tables, "run": run}
 
-    def solve(self, design: CaliperInput | MechanismInput) -> PlanarAnswer:
-        """Forces of a caliper over its stroke, or of a mechanism as drawn and over its stroke.
+    def solve(self, design: CaliperInput | MechanismInput) -> planar.PlanarAnswer:
+        """Compute the forces of a caliper over its stroke, or of a mechanism as drawn and over its stroke.
 
         Raises
         ------
@@ -396,45 +387,45 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
                 raise NoAnswer(say(error)) from None
 
     def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
-        """The loads that equilibrium gives, then the others."""
+        """Return words and names of the results at the top of the screen, loads from equilibrium first."""
         if not isinstance(answer, MechanismAnswer):
             return super()._first(answer, outputs)
         mechanism = answer.equilibrium.position.mechanism
         given = {load.name for load in mechanism.loads} - {load.name for load in mechanism.unknown_loads}
         loads = sorted(mechanism.loads, key=lambda load: load.name in given)
         when = "at the end of the stroke" if answer.motion else "as drawn"
-        return [(f"{load.name} {when}", name_output(load.name)) for load in loads][:3]
+        return [(f"{load.name} {when}", planar.name_output(load.name)) for load in loads][:3]
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """The symbols of joints; with the vehicle of a caliper that has one."""
+        """Make drawings that explain the symbols of joints, and of the vehicle of a caliper that has one."""
         return mechanism_sketch(any(text for path, text in entries.items() if path.startswith("stop.")))
 
     def outputs(self, design: CaliperInput | MechanismInput) -> Sequence[Output]:
-        """Numbers at the end of the stroke, and the largest force of each joint."""
+        """Describe the numbers at the end of the stroke, and the largest force of each joint."""
         core = design.core
         if isinstance(core, Mechanism):
             return mechanism_outputs(core)
-        return (*_OUTPUTS, *joint_outputs(core.mechanism, lambda answer: answer.run.magnitudes))
+        return (*_OUTPUTS, *planar.joint_outputs(core.mechanism, lambda answer: answer.run.magnitudes))
 
     def default_results(self, design: CaliperInput | MechanismInput) -> str:
-        """The first output."""
+        """Name of the first output, which a sweep shows if none is named."""
         return self.outputs(design)[0].name
 
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
-        """Inputs of the named caliper, or of a mechanism with the points that there are."""
+        """Return the inputs of the caliper that a file names, or else of the mechanism that it describes."""
         return inputs_of_tables(tables)
 
     def idle(self, entries: Mapping[str, str]) -> Iterable[str]:
-        """Inputs of hand, pads and vehicle, if the file does not say which loads are cable and pads."""
+        """Return the paths of inputs that have no effect because only calipers use them, if it is none."""
         return idle_inputs(entries)
 
     def sweep_inputs(self, design: CaliperInput | MechanismInput, tables: Mapping[str, Any]) -> list[Input]:
-        """Numbers, and x and y of points."""
+        """Describe the inputs that are numbers, which a sweep can vary; among them x and y of points."""
         return numbers(self.inputs(tables))
 
 
 class CaliperType(MechanismType):
-    """Calipers by name."""
+    """Type of brake for named calipers."""
 
     name = "caliper"
     title = "Caliper"
@@ -452,21 +443,21 @@ class CaliperType(MechanismType):
     slider = Slider("stroke", ("open", "closed"), step=0.1)
 
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Fewer positions of the stroke; neither friction nor worn pads."""
+        """Reduce the stroke to the positions at which the slider stops; leave out friction and worn pads."""
         coarse = super().coarser(tables)
         friction = {"friction": 0.0} if "friction" in coarse["run"] else {}
         return {**coarse, "run": {**coarse["run"], **friction}}
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """The caliper that is chosen, with the names of its dimensions."""
+        """Draw the chosen caliper with the names of its dimensions."""
         return caliper_sketch(entries.get("caliper", "").strip())
 
     def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
-        """Caliper that tables describe; without a name the message says which names there are."""
+        """Read the caliper that tables describe; without a name, the message lists the names."""
         return super().read({"caliper": ""} | dict(tables), source)
 
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
-        """Inputs of the named caliper; those without dimensions where there is no such name."""
+        """Return the inputs of the named caliper; without its dimensions if the name is unknown."""
         return super().inputs({"caliper": ""} | dict(tables))
 
 
@@ -474,7 +465,7 @@ CALIPER, MECHANISM = CaliperType(), MechanismType()
 
 
 def names_tables() -> Iterator[RenderableType]:
-    """Tables of the dimensions of each named caliper with their usual values."""
+    """Make a table of the dimensions of each named caliper, with their usual values."""
     for name, kind in NAMED.items():
         design, rows = kind(), []
         for key, entry in descriptions(kind).items():

@@ -1,4 +1,4 @@
-"""What a result hangs on: the same design with less and more friction."""
+"""Sensitivity of a result to friction: the same design with less and with more friction."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from beamdyn.common.inputs.designs import part_at, with_parts
 from brakes.answers.tables import format_number
 
 Answer = TypeVar("Answer")
-_SAME = 1e-9  # relative difference of two results that is none
-PART = 0.1  # by which friction varies, as makers of linings give it
+_SAME = 1e-9  # relative difference of two results that counts as none
+PART = 0.1  # fraction by which friction varies, as makers of linings state it
 
 
 def change(other: float, value: float, unit: str, none: str) -> str:
-    """A result with its unit, and its change relative to another; a word where there is none."""
+    """State a result with its unit and its change relative to another; `none` if it is not finite."""
     if not np.isfinite(other):
         return none
     relative = f" ({100 * (other / value - 1):+.1f} %)" if value else ""
@@ -27,20 +27,21 @@ def change(other: float, value: float, unit: str, none: str) -> str:
 
 
 def with_less_and_more(design: Any, path: str, solve: Callable[[Any], Answer]) -> list[Answer]:
-    """Answers to a design with less and more friction, as far as there are any.
+    """Solve a design with less and with more friction; leave out cases without an answer.
 
     Parameters
     ----------
     design : BaseModel
         The design.
     path : str
-        Path of the friction in it, which may have none.
+        Path of the friction coefficient in the design; it may be absent.
     solve : callable
-        ``solve(design)``: the answer.
+        ``solve(design)`` returns the answer.
     """
     friction, found = part_at(design, path), list[Answer]()
     for part in (1 - PART, 1 + PART) if friction else ():
-        with suppress(InvalidValue, NoAnswer):  # past the largest friction that a file may have, or locked
+        # The friction may exceed what a file may have, or the brake may lock.
+        with suppress(InvalidValue, NoAnswer):
             found.append(solve(with_parts(design, {path: part * friction})))
     return found
 
@@ -48,22 +49,22 @@ def with_less_and_more(design: Any, path: str, solve: Callable[[Any], Answer]) -
 def hangs_on_friction(
     design: Any, path: str, of: str, result: Callable[[Any], float], unit: str, none: str
 ) -> str:
-    """Say how a result changes with 10 % less and more friction: in the form of the line on other brakes.
+    """State how a result changes with 10 % less and more friction, in the same form as for other brakes.
 
     Parameters
     ----------
     design : BaseModel
         The design.
     path : str
-        Path of the friction in it.
+        Path of the friction coefficient in the design.
     of : str
         What rubs, and the name of the result, such as "tyres on the road: stopping distance".
     result : callable
         ``result(design)``: the result in `unit`; nan or inf if there is none.
     unit : str
-        Its unit.
+        Unit of the result.
     none : str
-        What is said where there is none, such as "does not stop".
+        Words for a result that does not exist, such as "does not stop".
     """
     value = result(design)
     others = with_less_and_more(design, path, result)

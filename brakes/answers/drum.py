@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import RenderableType
@@ -14,17 +13,13 @@ from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.screens.screen_parts import Handle
-from brakes.answers.base import Answer, ArrayBrakeType
-from brakes.answers.rubbing import RubbingAnswer, heat_outputs
+from brakes.answers.base import Answer
+from brakes.answers.rubbing import RubbingAnswer, RubbingType, heat_outputs
 from brakes.answers.tables import list_outputs, outputs_table, resultant, take_fields, take_from
 from brakes.config.drum import DrumInput
-from brakes.config.load import LoadInput
-from brakes.drawings.drum import brake_figure, charts_of, drawing_of
+from brakes.drawings.drum import charts_of, drawing_of
 from brakes.drawings.sketches import drum_sketch
 from brakes.drum import BrakeResult, ShoeResult, brake_torque
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _WHOLE = take_fields(BrakeResult, "torque c_star c_star_slope force peak_pressure locking_friction margin")
 _SHOE = (
@@ -39,7 +34,7 @@ _SHOE = (
 
 
 def _outputs(shoes: int) -> tuple[Output, ...]:
-    """All numbers of a brake; those of a shoe end in its number."""
+    """Describe all numbers of a brake with `shoes` shoes; names of those of a shoe end in its number."""
     return take_from(lambda answer: answer.result, _WHOLE) + tuple(
         Output(f"{o.name}_{i + 1}", f"{o.words}, shoe {i + 1}", o.of, o.unit, o.scale)
         for i in range(shoes)
@@ -49,12 +44,12 @@ def _outputs(shoes: int) -> tuple[Output, ...]:
 
 @dataclass(frozen=True)
 class DrumAnswer(RubbingAnswer):
-    """Forces in a drum brake, and how hot it gets."""
+    """Answer on a drum brake with pivoted shoes: its forces, and its heating in repeated stops."""
 
     solver = staticmethod(brake_torque)
 
     def tables(self) -> list[RenderableType]:
-        """The brake as a whole, and shoe by shoe."""
+        """Make the tables of the brake as a whole and of its shoes."""
         brake, shoes = self.result, self.result.shoes
         direction = "reverse" if brake.reverse else "forward"
         title = "Shoes (components: x to the shoe's side, y upward)"
@@ -68,23 +63,19 @@ class DrumAnswer(RubbingAnswer):
         ]
 
     def outputs(self) -> tuple[Output, ...]:
-        """Numbers of the brake and of its shoes."""
+        """Describe the numbers of the brake and of its shoes."""
         return _outputs(len(self.result.shoes))
 
-    def figure(self, place: float | None = None) -> Figure:
-        """Free bodies, pressures and factors."""
-        return brake_figure(self.result)
-
     def drawings(self, place: float) -> Rows:
-        """The shoes with their forces; of a brake that locks without."""
+        """Make the drawing of the shoes, with their forces unless the brake locks."""
         return ((drawing_of(self.result),),)
 
     def charts(self, place: float) -> Sequence[Chart]:
-        """Pressures and factors."""
+        """Make the charts of pressures and shoe factors."""
         return charts_of(self.result)
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Lining, pin, force and drum of the first shoe."""
+        """Make handles for lining, pin, force and drum of the first shoe."""
         shoe = self.result.shoes[0].shoe
         r, force = float(shoe.drum_radius), float(shoe.force_arm)
         pivot = float(shoe.pivot[0]), float(shoe.pivot[1])
@@ -99,35 +90,31 @@ class DrumAnswer(RubbingAnswer):
 
 
 def _from_bottom(x: float, y: float) -> float:
-    """Angle of a point from straight down [rad]."""
+    """Compute the angle of a point about the drum's centre, from straight down [rad]."""
     return float(np.arctan2(x, -y))
 
 
-class DrumType(ArrayBrakeType[DrumInput]):
+class DrumType(RubbingType[DrumInput]):
     """Drum brakes with pivoted shoes."""
 
     name = "drum"
     title = "Drum brake"
     purpose = "A brake with shoes on fixed pins: torque, pressure, pin reactions, and when it locks itself."
     method = "pressure and friction of each shoe integrated in closed form"
-    error_from = "rounding of inputs and sums, over the margin to self-locking"
     model = DrumInput
     sections = needs = ("brake", "shoe", "second_shoe", "load", "heat")
-    key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))
-    together = f"[load]: {LoadInput.ONE}."
     example_sweep = "brake.friction=0.1:0.6:26"
-    sweep_results = "torque,c_star,peak_pressure"
 
     def solve(self, design: DrumInput) -> Answer:
-        """Forces in the brake, and its heat."""
+        """Compute the forces in the brake, and its heating."""
         return DrumAnswer(design, design.solve()).stop_again()
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Explain the symbols of the form."""
+        """Make drawings that explain the symbols of the form."""
         return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:
-        """Numbers of the brake and of its shoes."""
+        """Describe the numbers of the brake, of its shoes and of repeated stops."""
         return *_outputs(len(design.core.shoes)), *heat_outputs(design)
 
 

@@ -1,4 +1,4 @@
-"""Questions backwards on a file: the values of an input with which a result is what is wanted."""
+"""Questions backwards about a file: the values of an input for which a result has a wanted value."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import MOST_ONE_BY_ONE, Output, chosen
 from beamdyn.common.edge.inputs import Quantity, SlopeQuantity
@@ -27,35 +26,36 @@ from brakes.common.finding import find, find_whole
 from brakes.common.solutions import Solutions
 
 FIND, SO_THAT = "--find", "--so-that"
-_USUAL = {"m": "mm", "rad": "deg"}  # units that people see where the file has none
-_TIMES = 10.0  # from a part of the file's value to this multiple of it, if no bounds are given
-_ROUNDED = 1e-3  # most that a wanted value may be rounded by, over itself
-_TOGETHER, _ONE_BY_ONE = 129, 17  # samples at the start
+_USUAL = {"m": "mm", "rad": "deg"}  # units that people use, where the file has none
+_TIMES = 10.0  # factor around an input's value within which it is sought, if no bounds are given
+_ROUNDED = 1e-3  # largest relative rounding of a wanted value
+# Number of samples at the start of a search, for designs solved together, and for designs solved one by one.
+_TOGETHER, _ONE_BY_ONE = 129, 17
 
 
 def find_in_file(
     brake: BrakeType[Any], tables: Mapping[str, Any], source: str, input: str, so_that: str
 ) -> Solutions:
-    """Find all values of an input with which a result of a brake is what is wanted.
+    """Find all values of an input for which a result of a brake has a wanted value.
 
     Parameters
     ----------
     brake : BrakeType
-        Its type.
+        Type of the brake.
     tables : mapping
         Tables of the design's file.
     source : str
-        Their origin, for messages.
+        Origin of the tables, for messages.
     input : str
         The input, such as "brake.friction", which is sought from a tenth to ten times its value in the file;
-        or with other bounds and the number of samples, as an input is varied: "brake.friction=0.1:0.6:51".
+        or with bounds and number of samples, in the form of a sweep: "brake.friction=0.1:0.6:51".
     so_that : str
-        The result and its value, such as "torque = 300 N m".
+        The result and its wanted value, such as "torque = 300 N m".
 
     Returns
     -------
     Solutions
-        The values, in the unit of the bounds or of the file.
+        The values of the input, in the unit of the bounds or of the file.
 
     Raises
     ------
@@ -79,13 +79,13 @@ def find_in_file(
         output=output.name,
         output_unit=output.unit,
         wanted="" if wanted == f"{found.target:.6g} {output.unit}".rstrip() else wanted,
-        provenance=Provenance(__version__, brake.method, how, perf_counter() - start),
+        provenance=Provenance.since(start, brake.method, how),
     )
 
 
 @dataclass(frozen=True)
 class _Designs:
-    """A result of designs that differ in one input."""
+    """One result of a brake as a function of one input."""
 
     brake: BrakeType[Any]
     asked: SweepRequest
@@ -93,14 +93,14 @@ class _Designs:
     output: Output
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
-        """The result at values of the input [the axis' unit]; nan where there is none."""
+        """Compute the result at values of the input [the axis' unit]; nan where there is none."""
         try:
             return self._sweep(x).found[0]
         except NoAnswer:
             return np.full(len(x), np.nan)
 
     def reason(self, x: float) -> str:
-        """Why there is no result at a value of the input."""
+        """Return the reason why there is no result at a value of the input."""
         try:
             made = self._sweep(np.array([x]))
         except NoAnswer as error:
@@ -121,7 +121,7 @@ def _in_si(quantity: Quantity, value: float, unit: str) -> float:
 
 
 def _wanted(outputs: Sequence[Output], text: str) -> tuple[Output, float, float, str]:
-    """A result, the value that it is to have and half of its last digit [its unit], and the value's text."""
+    """Parse RESULT = VALUE: the output, its wanted value, half of the value's last digit, and its text."""
     name, equals, amount = (part.strip() for part in text.partition("="))
     output, *more = chosen(outputs, name if equals else re.split(r"[^\w.]", name)[0], SO_THAT)
     form = f'give RESULT = VALUE, such as "{output.name} = {f"1 {output.unit}".rstrip()}"'
@@ -139,7 +139,7 @@ def _wanted(outputs: Sequence[Output], text: str) -> tuple[Output, float, float,
 
 
 def _parts(text: str) -> tuple[Decimal, str]:
-    """Number and unit of a text that has been read as a quantity."""
+    """Split the text of a quantity into number and unit."""
     text = in_plain_characters(text)
     number = re.match(r"[-+.\deE]*[.\d]", text)
     digits = "" if number is None else number[0]
@@ -147,7 +147,7 @@ def _parts(text: str) -> tuple[Decimal, str]:
 
 
 def _amount(text: str, unit: str) -> float:
-    """A number with a unit in another unit; an angle may be given by its rise in %."""
+    """Convert the text of a quantity to a number in a unit; an angle may also be given as a slope in %."""
     if unit == "deg":
         return SlopeQuantity("rad").convert(text) / SCALES["deg"]
     if unit == "K" and not text.endswith("K"):
@@ -156,7 +156,7 @@ def _amount(text: str, unit: str) -> float:
 
 
 def _whole_numbers(brake: BrakeType[Any], axis: Axis) -> np.ndarray:
-    """All whole numbers between the bounds of the search."""
+    """Return all whole numbers between the bounds of the search."""
     low, high = np.ceil(min(axis.given)), np.floor(max(axis.given))
     if high - low >= brake.most_cases:
         bound = f"there are more than {brake.most_cases} whole numbers from {low:.6g} to {high:.6g}"
@@ -165,7 +165,7 @@ def _whole_numbers(brake: BrakeType[Any], axis: Axis) -> np.ndarray:
 
 
 def _axis(brake: BrakeType[Any], design: Any, tables: Mapping[str, Any], text: str) -> Axis:
-    """The input that is sought, and where the search begins: as given, or about its value in the file."""
+    """Find the input that is sought, with its first samples: as given, or around its value in the file."""
     inputs = brake.sweep_inputs(design, tables)
     entry = find_input(inputs, text.partition("=")[0].strip(), f'{FIND} = "{text}"')
     value, _ = nominal_of(design, entry, FIND)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from rich.console import RenderableType
@@ -15,6 +15,7 @@ from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range, of_file
+from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import plain
 from beamdyn.common.screens.screen_parts import Handle, Slider
 from brakes.answers.base import Answer, ArrayBrakeType
@@ -36,9 +37,6 @@ from brakes.drawings.duo_servo import duo_servo
 from brakes.drawings.forklift import answer_drawings, outcome
 from brakes.drawings.sketches import duo_servo_sketch, levers_sketch, truck_sketch
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _VEHICLE = (
     *take_fields(Stop, "distance"),
@@ -83,7 +81,7 @@ _OF_LININGS = "forces.lining_friction", "the linings, which limit it,: Stopping 
 
 
 def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> tuple[Output, ...]:
-    """Numbers of the answers to stages, and those of `pedal_outputs` with a stop or forces."""
+    """Describe the numbers of answers to stages; with stop or forces also the given ones of the pedal."""
     groups = {
         "vehicle": take_from(lambda answer: answer.stop, _VEHICLE),
         "kinematics": take_from(lambda answer: answer.motion, _MOTION),
@@ -95,24 +93,24 @@ def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> 
 
 @dataclass(frozen=True)
 class ForkliftAnswer(Answer):
-    """Results of some stages of a forklift's brakes.
+    """Answer on a forklift's brakes: results of some of the stages stop, kinematics and forces.
 
     Attributes
     ----------
     design : ForkliftInput
-        The file.
+        The design that the file describes.
     stages : tuple of str
         The stages that are shown.
     stop : Stop, optional
-        The vehicle; only if it is shown.
+        Stop of the vehicle, if this stage is shown.
     motion : ShoeMotion, optional
-        The kinematics, also if only the forces are shown that follow from it.
+        Motion of the shoes; also there if only the forces that follow from it are shown.
     forces : InternalForces, optional
         The forces in one brake.
     torque_from : str
-        Where the torque comes from: "the file", "the stop" or "the lining's friction".
+        Origin of the torque: "the file", "the stop" or "the lining's friction".
     pedal : FromPedal, optional
-        From the pedal to the stop, if the file has one and vehicle or forces are shown.
+        Results from the pedal to the stop, if the file has a pedal and vehicle or forces are shown.
     """
 
     design: ForkliftInput
@@ -125,21 +123,21 @@ class ForkliftAnswer(Answer):
 
     @cached_property
     def kinematics(self) -> Kinematics | None:
-        """The shoes' motion position by position, if there is any; of one case."""
+        """Motion of the shoes position by position, if this stage is there; for a single case only."""
         return (
             None if self.motion is None else follow_shoes(self.motion.geometry, float(self.motion.clearance))
         )
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Where a lining enters the drum, and the warnings of forces and pedal."""
+        """Sentences on a lining that enters the drum, and the warnings of forces and pedal."""
         interference = () if self.motion is None else self.motion.interference
         parts = (self.forces, self.pedal)
         return (*interference, *(said for part in parts if part is not None for said in part.warnings))
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Sentences if the truck does not stop, or the brake locks or cannot give the torque."""
+        """Sentences on a truck that does not stop, and on a brake that locks or cannot give the torque."""
         found = self.stop if self.pedal is None else self.pedal.braked.stop
         stop = [] if found is None or np.all(found.stops) else [found.message]
         unbalanced = self.forces is not None and np.any(self.forces.status != "equilibrium")
@@ -147,7 +145,7 @@ class ForkliftAnswer(Answer):
         return (*stop, *fade, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """The sentences of each design that has any, by row."""
+        """Return a sentence on each design without an answer, by index; `count` is the number of designs."""
         fade = None if self.pedal is None else self.pedal.fade
         hot = {} if fade is None else fade.messages_of_cases(count)
         stop = {} if self.stop is None else self.stop.messages_of_cases(count)
@@ -155,12 +153,12 @@ class ForkliftAnswer(Answer):
 
     @property
     def error(self) -> Any:
-        """Sum of the stages' errors."""
+        """Sum of the stages' relative errors."""
         stages = (self.stop, self.motion, self.forces, self.pedal)
         return sum(stage.error for stage in stages if stage is not None)
 
     def tables(self) -> list[RenderableType]:
-        """Tables of vehicle, kinematics and forces, as far as these stages are shown."""
+        """Make the tables of vehicle, kinematics and forces, for the stages that are shown."""
         tables, heads, others = [], ("", "value", "unit"), self._doubtful()
         if self.stop is not None:
             rows = [
@@ -210,21 +208,21 @@ class ForkliftAnswer(Answer):
         return tables
 
     def _doubtful(self) -> list[ForkliftAnswer]:
-        """Answers with less and more friction of the tyres, and of the linings."""
+        """Solve the design with less and with more friction of the tyres, and of the linings."""
         paths = ("stop.friction", "forces.lining_friction")
         made = (with_less_and_more(self._one_stop, path, self._again) for path in paths)
         return [each for pair in made for each in pair]
 
     @property
     def _one_stop(self) -> ForkliftInput:
-        """The design without the stops that follow each other, which take long."""
+        """The design without repeated stops, whose computation takes long."""
         return self.design.model_copy(update={"heat": None})
 
     def _again(self, design: ForkliftInput) -> ForkliftAnswer:
         return solve_stages(design, self.stages)
 
     def _doubt(self) -> str:
-        """The stopping distance with less and more friction of what limits it: tyres or linings."""
+        """State the stopping distance with less and more friction of what limits it: tyres or linings."""
 
         def distance(design: ForkliftInput) -> float:
             found = solve_stages(design, ("vehicle",)).stop
@@ -236,22 +234,22 @@ class ForkliftAnswer(Answer):
         return hangs_on_friction(self._one_stop, path, of, distance, "m", "does not stop")
 
     def rows(self) -> Iterable[Sequence[object]]:
-        """Names, values and units of all numbers."""
+        """Make the rows of names, values and units of all numbers."""
         return outputs_csv(stage_outputs(self.stages, pedal_outputs(self.design)), value=self)
 
     def figure(self, place: float | None = None) -> Figure:
-        """The truck, the brake's two stages and the free bodies of its shoes, as far as they are shown."""
+        """Draw truck, both stages of the brake's motion, and free bodies, for the stages that are shown."""
         return figure_of(self._drawn(place))
 
     def drawings(self, place: float) -> Rows:
-        """The drawings of the figure; without slope and speed in the title, which stand in the form."""
+        """Make the drawings of the figure; titles leave out slope and speed, which the form shows."""
         if self.stop is None:
             return self._drawn(place)
         (first, *others), *below = self._drawn(place)
         return ((replace(first, title=outcome(self.stop)), *others), *below)
 
     def _drawn(self, place: float | None) -> Rows:
-        """All drawings; for the kinematics alone, the brake at a point of its two stages, from 0 to 2."""
+        """Make all drawings; for kinematics alone, the brake at a position from 0 to 2 of its two stages."""
         if place is not None and self.stages == ("kinematics",) and (motion := self.motion) is not None:
             turns = (
                 min(place, 1.0) * float(motion.seating_turn),
@@ -264,13 +262,13 @@ class ForkliftAnswer(Answer):
         return answer_drawings(self.stop, shown, self.forces, self.kinematics)
 
     def values(self) -> dict[str, Any]:
-        """The answer as plain numbers, lists and strings."""
+        """Convert the answer to plain numbers, lists and strings."""
         parts = {name: plain(getattr(self, name)) for name in ("stop", "motion", "forces", "torque_from")}
         parts |= {} if self.pedal is None else {"pedal": plain(self.pedal)}
         return parts | {"kinematics": self.kinematics and self.kinematics.to_dict()}
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Points of the truck, or of the brake, if one of them is what the figure shows."""
+        """Make handles of the truck, or of the brake, if only one of them is shown."""
         if self.stages == ("vehicle",) and self.stop is not None:
             return truck_handles(self.stop)
         if self.stages == ("kinematics",) and self.motion is not None:
@@ -289,14 +287,14 @@ _NEEDS = {
 
 
 def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> ForkliftAnswer:
-    """Solve some stages of a forklift's brakes; those before them are computed where they are needed.
+    """Solve stages of a forklift's brakes, and earlier stages if they are needed.
 
     Parameters
     ----------
     design : ForkliftInput
-        The file.
+        The design that the file describes.
     stages : sequence of str
-        Of "vehicle", "kinematics", "forces"; those whose tables are in the file if none are named.
+        Some of "vehicle", "kinematics", "forces"; by default those whose tables are in the file.
 
     Raises
     ------
@@ -322,7 +320,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
         geometry = motion or (design.levers and design.levers.core)
         if "forces" in shown and design.forces and geometry is not None:
             piston_force, friction = design.forces.piston_force, design.forces.lining_friction
-            if chained is not None:  # the wheel may be locked: less friction than the lining's is needed
+            if chained is not None:  # if the wheel locks, the torque needs less friction
                 piston_force, friction = chained.braked.actuation.actuator_force, None
             with of_file({"friction": "lining_friction"}):
                 forces = internal_forces(
@@ -334,12 +332,12 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
 
 
 class ForkliftType(ArrayBrakeType[ForkliftInput]):
-    """A forklift's brakes: all stages whose tables are in the file.
+    """Type of brake for a forklift's brakes, with all stages whose tables are in the file.
 
     Attributes
     ----------
     stages : tuple of str
-        Stages that are shown; those whose tables are in the file if none are named.
+        The stages that are shown; if empty, those whose tables are in the file.
     """
 
     name = "forklift"
@@ -362,24 +360,24 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     sketches: Callable[[], Rows] = staticmethod(tuple)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Explain the symbols of the form."""
+        """Make drawings that explain the symbols of the form."""
         return self.sketches()
 
     def solve(self, design: ForkliftInput) -> ForkliftAnswer:
-        """Results of the stages; see `solve_stages`."""
+        """Solve the stages; see `solve_stages`."""
         return solve_stages(design, self.stages)
 
     def outputs(self, design: ForkliftInput) -> Sequence[Output]:
-        """Numbers of the stages."""
+        """Describe the numbers of the stages that are shown, and of the pedal."""
         return stage_outputs(self.stages or design.stages, pedal_outputs(design))
 
     def default_results(self, design: ForkliftInput) -> str:
-        """The most important results of each stage."""
+        """Return the names of the most important results of each stage, separated by commas."""
         return ",".join(TYPES[name].sweep_results for name in self.stages or design.stages)
 
 
 class VehicleType(ForkliftType):
-    """The truck's stop."""
+    """Type of brake for the stop of a forklift truck."""
 
     title = "Vehicle"
     purpose = "The truck drives down a slope and brakes: stopping distance, and the torque of each brake."
@@ -396,7 +394,7 @@ class VehicleType(ForkliftType):
 
 
 class KinematicsType(ForkliftType):
-    """The motion of the shoes of one brake."""
+    """Type of brake for the motion of a duo-servo brake's shoes."""
 
     title = "Kinematics"
     purpose = (
@@ -416,7 +414,7 @@ class KinematicsType(ForkliftType):
 
 
 class ForcesType(ForkliftType):
-    """The forces in one brake."""
+    """Type of brake for the forces in a duo-servo brake."""
 
     title = "Internal forces"
     purpose = (

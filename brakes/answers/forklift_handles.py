@@ -1,4 +1,4 @@
-"""Handles on a forklift's drawings: points that can be moved, and the inputs for their new places."""
+"""Handles on a forklift's drawings: points that the user can move, and the inputs for their new places."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ from beamdyn.common.screens.screen_parts import Handle
 from brakes.drawings.duo_servo import moved
 from brakes.forklift import DuoServo, ShoeMotion, Stop
 
-_TOLERANCE = 1e-7  # tolerance of the position at rest of a moved point [m], [rad]
-_ITERATIONS = 30  # most iterations
-_GROUND = 1.9  # end of the drawn ground, in wheelbases
-_REAR_AXLE = 0.75  # its drawn height, in radii of the front wheel
+_TOLERANCE = 1e-7  # tolerance for the position at rest of a moved point [m, rad]
+_ITERATIONS = 30  # largest number of iterations for the position at rest of a moved point
+_GROUND = 1.9  # end of the drawn ground, in units of the wheelbase
+_REAR_AXLE = 0.75  # height of the drawn rear axle, in units of the front wheel's radius
 Values = Callable[[float, float], dict[str, float]]
 
 # A truck ------------------------------------------------------------------------------------------------
 
 
 def truck_handles(stop: Stop) -> list[Handle]:
-    """Handles on the centres of gravity, the rear axle, the front wheel and the slope."""
+    """Make handles on the centres of gravity, the rear axle, the front wheel and the slope of a truck."""
     t, sense = stop.truck, stop.conditions.sense
     beta = sense * float(stop.conditions.slope)
     L, r = float(t.wheelbase), float(t.front_wheel_radius)
-    turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # turns row vectors
+    turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # rotates row vectors
 
     def on_slope(label: str, at: Sequence[Any], values: Values) -> Handle:
-        """A handle at coordinates along the slope and normal to it, in which `values` takes them, too."""
+        """Make a handle at coordinates along and normal to the slope, which `values` takes, too."""
         place, back = _pair(np.array(at, dtype=float) @ turn), turn.T
         return Handle(label, place, lambda x, y: values(*_pair((x, y) @ back)), step=0.01, grain=1e-3)
 
     def find_empty_cg(x: float, y: float) -> dict[str, float]:
-        """Centre of gravity of the empty truck that puts the one of truck and load at (x, y)."""
+        """Find the empty truck's centre of gravity for which truck and load have theirs at (x, y)."""
         m, ml = float(t.empty_mass), float(t.load_mass)
         cg = ((m + ml) * np.array([x, y - r]) - ml * np.array(t.load_cg, dtype=float)) / m
         return {"truck.empty_cg_x": float(cg[0]), "truck.empty_cg_y": float(cg[1])}
@@ -65,7 +65,7 @@ def truck_handles(stop: Stop) -> list[Handle]:
 
 
 def duo_servo_handles(motion: ShoeMotion, progress: float) -> list[Handle]:
-    """Handles on the drum, and on pins, contact and piston face of the right shoe during its motion."""
+    """Make handles on the drum, and on pins, contact and piston face of the right shoe during its motion."""
     g = motion.geometry
     tip, adjuster = (_place_drawn(motion, progress, getattr(g, name)) for name in ("tip", "adjuster"))
     contact = _place_drawn(motion, progress, _contact_at_rest(motion))
@@ -85,7 +85,7 @@ def duo_servo_handles(motion: ShoeMotion, progress: float) -> list[Handle]:
 
 
 def _place_drawn(motion: ShoeMotion, progress: float, point: object) -> np.ndarray:
-    """Place at which a point of the right shoe, given at rest, is drawn."""
+    """Compute where a point of the right shoe, given at rest, is drawn."""
     return moved(np.array([point], dtype=float), motion.geometry, motion, progress, "right")[0]
 
 
@@ -96,9 +96,9 @@ def _contact_at_rest(motion: ShoeMotion) -> np.ndarray:
 
 
 def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float) -> dict[str, float]:
-    """Place at rest of a pin that is drawn at (x, y); it changes the motion, and so is found by iteration."""
+    """Find the place at rest of a pin drawn at (x, y), by iteration: the pin itself changes the motion."""
     turn = max(progress - 1, 0) * float(motion.drum_turn) - min(progress, 1) * float(motion.seating_turn)
-    back = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])  # turns row vectors
+    back = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])  # rotates row vectors
 
     def residual(pin: np.ndarray) -> np.ndarray:
         other = _move_changed(motion.geometry, motion, **{name: _pair(pin)})
@@ -109,7 +109,7 @@ def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float
 
 
 def _find_contact(motion: ShoeMotion, progress: float, x: float, y: float) -> dict[str, float]:
-    """Angle of the contact that is drawn in the direction of (x, y); at rest also the clearance."""
+    """Find the contact angle whose point is drawn in the direction of (x, y); at rest also the clearance."""
 
     def residual(angle: np.ndarray) -> np.ndarray:
         other = _move_changed(motion.geometry, motion, contact_angle=float(angle))
@@ -126,7 +126,7 @@ def _move_changed(geometry: DuoServo, motion: ShoeMotion, **changed: object) -> 
 
 
 def _iterate(start: np.ndarray, residual: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Add the residual until it vanishes; stop at an impossible brake, which its fields then refuse."""
+    """Add the residual until it is negligible, or the brake impossible, which its fields then refuse."""
     for _ in range(_ITERATIONS):
         try:
             step = residual(start)

@@ -1,10 +1,9 @@
-"""Answers on brakes whose linings are pressed by one force: each type names its class and its drawings."""
+"""Answers on brakes whose linings are pressed by one force, and their common type of brake."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from rich.console import RenderableType
 
@@ -14,17 +13,25 @@ from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.inputs.checks import InvalidValue
-from brakes.answers.base import Answer, ArrayBrakeType
-from brakes.answers.rubbing import RubbingAnswer, heat_outputs
+from brakes.answers.base import Answer
+from brakes.answers.rubbing import RubbingAnswer, RubbingType, heat_outputs
 from brakes.answers.tables import list_outputs, take_fields, take_from
-from brakes.config.load import LoadInput
 from brakes.config.machine import MachineInput, file_of
-from brakes.drawings.machine import charts_of, machine_figure
+from brakes.drawings import annulus, band, block, sliding
+from brakes.drawings.machine import charts_of
 from brakes.drawings.sketches import cylinder_sketch
-from brakes.machines import LiningResult, Machine, MachineResult, solve_brake
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from brakes.machines import (
+    Band,
+    Block,
+    Cone,
+    Disc,
+    LiningResult,
+    Machine,
+    MachineResult,
+    Plates,
+    Sliding,
+    solve_brake,
+)
 
 _WHOLE = take_fields(
     MachineResult,
@@ -35,7 +42,7 @@ Draw = Callable[[MachineResult], Drawing]
 
 
 def _of_lining(brake: Machine) -> tuple[Output, ...]:
-    """Numbers of a lining of a brake."""
+    """Describe the numbers of one lining of a brake."""
     forces = (
         Output(name, stated.words, lambda lining, name=name: lining.reactions[name], stated.unit)
         for name, stated in brake.reactions.items()
@@ -44,7 +51,7 @@ def _of_lining(brake: Machine) -> tuple[Output, ...]:
 
 
 def _outputs(brake: Machine) -> tuple[Output, ...]:
-    """All numbers of a brake; those of a lining end in its number."""
+    """Describe all numbers of a brake; those of a lining have names that end in its number."""
     count = len(brake.linings(0.0, False))
     return take_from(lambda answer: answer.result, _WHOLE) + tuple(
         Output(f"{o.name}_{i + 1}", f"{o.words}, lining {i + 1}", o.of, o.unit, o.scale)
@@ -55,19 +62,19 @@ def _outputs(brake: Machine) -> tuple[Output, ...]:
 
 @dataclass(frozen=True)
 class MachineAnswer(RubbingAnswer):
-    """Forces in a brake whose linings are pressed by one force, and how hot it gets."""
+    """Answer on a brake whose linings are pressed by one force: its forces, and its heating."""
 
     solver = staticmethod(solve_brake)
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Also remarks of the brake's type, such as a cone that sticks."""
+        """Remarks of the brake's type, such as a cone that sticks, and warnings of repeated stops."""
         return (*self.result.brake.remarks(self.result.friction, self.result.reverse), *super().warnings)
 
     def by_law(self) -> dict[str, MachineResult]:
-        """The result under each law of the pressure, by its words, the chosen law first.
+        """Solve the brake under each pressure law; results by the law's words, the chosen law first.
 
-        A law under which there is no result, such as that of a block that would lift, is left out.
+        Laws without a result, as for a block that would lift, are left out.
         """
         brake, found = self.result.brake, {}
         for law in sorted(brake.laws, key=lambda law: law != brake.law):
@@ -81,7 +88,7 @@ class MachineAnswer(RubbingAnswer):
         return found or {"value": self.result}
 
     def tables(self) -> list[RenderableType]:
-        """The brake under each law, its linings, and what the numbers hang on."""
+        """Make the tables of the brake under each law, of its linings, and of the influence of friction."""
         result, laws = self.result, self.by_law()
         direction = "reverse" if result.reverse else "forward"
         title = f"{self.design.title}, {direction}, friction {result.friction:g}"
@@ -99,26 +106,32 @@ class MachineAnswer(RubbingAnswer):
         ]
 
     def outputs(self) -> tuple[Output, ...]:
-        """Numbers of the brake and of its linings."""
+        """Describe the numbers of the brake and of its linings."""
         return _outputs(self.result.brake)
 
-    def figure(self, place: float | None = None) -> Figure:
-        """The brake with its forces, pressures and factors."""
-        return machine_figure(self.drawings(0.0), self.result)
-
     def drawings(self, place: float) -> Rows:
-        """The brake with its forces; of one that locks without."""
+        """Make the drawing of the brake, with its forces unless it locks."""
         return ((TYPES[type(self.result.brake)].draw(self.result),),)
 
     def charts(self, place: float) -> Sequence[Chart]:
-        """Pressures and factors."""
+        """Make the charts of pressures and brake factors."""
         return charts_of(self.result)
 
 
-TYPES: dict[type[Machine], MachineType] = {}  # by class of the brake
+_BAND = "A band around a drum, simple or differential: torque, tensions, pressure, and when it locks itself."
+_BLOCK = "Blocks on levers outside a drum: torque, pressure, fulcrum forces, and when it locks itself."
+_CONE = "A cone pressed into a cup: torque, pressure new and worn in, and whether it sticks."
+_DISC = (
+    "A pad on each side of a disc, fixed or floating caliper: torque, forces and pressure, new and worn in."
+)
+_PLATES = "Rings pressed together: torque and pressure, new and worn in."
+_SLIDING = (
+    "A drum brake whose shoes slide on an abutment: torque, where the linings touch, when it locks itself."
+)
+TYPES: dict[type[Machine], MachineType] = {}  # types by class of the brake
 
 
-class MachineType(ArrayBrakeType[MachineInput]):
+class MachineType(RubbingType[MachineInput]):
     """A type of brake whose linings are pressed by one force.
 
     Parameters
@@ -126,19 +139,15 @@ class MachineType(ArrayBrakeType[MachineInput]):
     made : type of Machine
         Class of the brake.
     name, title, purpose : str
-        As of `BrakeType`.
+        Name, title and purpose, as in `BrakeType`.
     draw : callable
-        Makes the drawing of a result of one case.
+        Makes the drawing of a result for a single case.
     sketch : callable
-        Makes the drawings that explain the symbols of the form.
+        Makes drawings that explain the symbols of the form.
     """
 
     method = "pressure and friction of each lining integrated in closed form"
-    error_from = "rounding of inputs and sums, over the margin to self-locking"
-    key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))
-    together = f"[load]: {LoadInput.ONE}."
     example_sweep = "brake.friction=0.1:0.25:16"
-    sweep_results = "torque,c_star,peak_pressure"
 
     def __init__(
         self, made: type[Machine], name: str, title: str, purpose: str, draw: Draw, sketch: Callable[[], Rows]
@@ -149,13 +158,30 @@ class MachineType(ArrayBrakeType[MachineInput]):
         TYPES[made] = self
 
     def solve(self, design: MachineInput) -> Answer:
-        """Forces in the brake, and its heat."""
+        """Compute the forces in the brake, and its heating."""
         return MachineAnswer(design, design.solve()).stop_again()
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Explain the symbols of the form."""
+        """Make drawings that explain the symbols of the form."""
         return *self.sketched(), (cylinder_sketch(),)
 
     def outputs(self, design: MachineInput) -> Sequence[Output]:
-        """Numbers of the brake and of its linings."""
+        """Describe the numbers of the brake, of its linings and of repeated stops."""
         return *_outputs(design.core), *heat_outputs(design)
+
+
+MACHINES = {  # types by the name of the command
+    each.name: each
+    for each in (
+        MachineType(Band, "band", "Band brake", _BAND, band.draw_band, band.band_sketch),
+        MachineType(Block, "block", "Block brake", _BLOCK, block.draw_block, block.block_sketch),
+        MachineType(Cone, "cone", "Cone brake", _CONE, annulus.draw_cone, annulus.cone_sketch),
+        MachineType(Disc, "disc", "Disc brake", _DISC, annulus.draw_disc, annulus.disc_sketch),
+        MachineType(
+            Plates, "plates", "Multi-plate brake", _PLATES, annulus.draw_plates, annulus.plates_sketch
+        ),
+        MachineType(
+            Sliding, "sliding", "Sliding shoes", _SLIDING, sliding.draw_sliding, sliding.sliding_sketch
+        ),
+    )
+}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from rich.console import RenderableType
@@ -16,17 +16,9 @@ from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
+from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import plain
-from brakes.answers.planar import (
-    MechanismFriction,
-    PlanarAnswer,
-    format_force,
-    joint_outputs,
-    name_output,
-    reactions_table,
-    select_rows,
-    units_of,
-)
+from brakes.answers import planar
 from brakes.answers.tables import SCALES
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
@@ -41,20 +33,17 @@ from brakes.drawings.mechanism import (
 from brakes.planar import Equilibrium, Mechanism, assemble, solve, solve_with_friction, stroke
 from brakes.planar.system import join_names
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 WITHOUT = "without friction"
 
 
 def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
-    """Each load and its travel at the end of the stroke, the largest force of each joint.
+    """Describe the numbers of a mechanism: loads and travels at the end of the stroke, largest joint forces.
 
-    With friction also the unknown load, squeezing and releasing.
+    With friction there are also the unknown loads, squeezing and releasing.
     """
     loads, rubbing = [], []
     for load in mechanism.loads:
-        key, (_, travel, size) = name_output(load.name), units_of(load)
+        key, (_, travel, size) = planar.name_output(load.name), planar.units_of(load)
         end, moved = f"{load.name} at the end of the stroke", f"travel of {load.name}"
         loads += [
             Output(key, end, lambda a, n=load.name: np.ravel(a.last.amplitudes[n])[-1], size),
@@ -78,11 +67,11 @@ def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
             for way in ("squeezing", "releasing")
             if load in mechanism.unknown_loads
         ]
-    return (*loads, *joint_outputs(mechanism, lambda answer: answer.last.magnitudes), *rubbing)
+    return (*loads, *planar.joint_outputs(mechanism, lambda answer: answer.last.magnitudes), *rubbing)
 
 
 @dataclass(frozen=True)
-class MechanismAnswer(PlanarAnswer):
+class MechanismAnswer(planar.PlanarAnswer):
     """Equilibrium of a mechanism as drawn, and over the stroke of a driver where one is named.
 
     Attributes
@@ -90,25 +79,25 @@ class MechanismAnswer(PlanarAnswer):
     over : Equilibrium, optional
         Equilibrium at each position of the stroke.
     friction : MechanismFriction, optional
-        Equilibria with friction, if a joint has friction, and statics determines the forces of the only
-        motion.
+        Equilibria with friction, if a joint has friction, the mobility is 1 and statics determines the
+        forces.
     branch : {"without friction", "squeezing", "releasing"}
-        The equilibrium whose forces are drawn.
+        Name of the equilibrium whose forces are drawn.
     """
 
     over: Equilibrium | None
-    friction: MechanismFriction | None
+    friction: planar.MechanismFriction | None
     branch: str = WITHOUT
 
     def branches(self) -> Mapping[str, MechanismAnswer]:
-        """The answer with the forces of each branch drawn: without friction, squeezing, releasing."""
+        """Return the answer with the forces of each branch drawn: without friction, squeezing, releasing."""
         return (
             {name: replace(self, branch=name) for name in self.friction.drawn.ways} if self.friction else {}
         )
 
     @classmethod
     def of(cls, mechanism: Mechanism, design: CaliperInput | MechanismInput) -> MechanismAnswer:
-        """Assemble the mechanism and solve for its forces; see `brakes.planar.assemble` and `stroke`.
+        """Assemble a mechanism and solve for its forces; see `brakes.planar.assemble` and `stroke`.
 
         Raises
         ------
@@ -128,17 +117,17 @@ class MechanismAnswer(PlanarAnswer):
                 raise MissingValue("run.driver", None, words)
             moved = motion and solve_with_friction(mechanism, run.driver, motion.position)
             still = solve_with_friction(mechanism, run.driver, drawn.position)
-            friction = MechanismFriction(run.driver, still, moved)
+            friction = planar.MechanismFriction(run.driver, still, moved)
         return cls(design, drawn, motion, over, friction)
 
     @property
     def last(self) -> Equilibrium:
-        """Equilibrium over the stroke, or as drawn."""
+        """Equilibrium over the stroke if there is one, else as drawn."""
         return self.over or self.equilibrium
 
     @property
     def status(self) -> str:
-        """Whether statics determines the forces."""
+        """Whether statics determines the forces; see `planar.Equilibrium`."""
         return self.last.status
 
     @property
@@ -148,7 +137,7 @@ class MechanismAnswer(PlanarAnswer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Sentences on forces not determined, contacts that open, and directions in which friction jams."""
+        """Sentences on undetermined forces, open contacts, and directions in which friction jams."""
         found = super().refusals
         if self.friction is not None:
             return (*found, *map(in_files, self.friction.refusals))
@@ -160,7 +149,7 @@ class MechanismAnswer(PlanarAnswer):
     def warnings(self) -> Sequence[str]:
         """Warnings of statics, toggle positions, and directions in which friction holds the mechanism."""
         said = [*self.last.warnings]
-        if self.motion is not None:  # joints that the motion shows to be doubtful
+        if self.motion is not None:  # warn of joints that the motion shows to be doubtful
             said += [toggle.message for toggle in self.motion.toggles]
             angles = {body: self.motion.position.angle(body) for body in self._mechanism.bodies}
             said += [words for joint in self._mechanism.joints for words in joint.doubts(angles)]
@@ -168,12 +157,12 @@ class MechanismAnswer(PlanarAnswer):
 
     @property
     def error(self) -> float:
-        """Largest error of the forces, over the largest force."""
+        """Largest error of the forces, relative to the largest force."""
         return max(self.last.largest_error, self.friction.error if self.friction else 0.0)
 
     @property
     def equilibria(self) -> Mapping[str, Equilibrium]:
-        """As drawn, or with friction the three equilibria as drawn."""
+        """Equilibrium as drawn; with friction, the three equilibria as drawn, by name."""
         return super().equilibria if self.friction is None else self.friction.drawn.ways
 
     @property
@@ -181,33 +170,35 @@ class MechanismAnswer(PlanarAnswer):
         return self.equilibrium.position.mechanism
 
     def tables(self) -> list[RenderableType]:
-        """Forces as drawn, with friction, the loads over the stroke, all forces at its end, the diagnosis."""
+        """Make the tables: forces as drawn, friction, loads over the stroke, forces at its end, statics."""
         title = f"{self.design.title}: forces {{}}{', without friction' if self.friction else ''}"
-        shown = [reactions_table(self.equilibrium, title.format("as drawn"))]
+        shown = [planar.reactions_table(self.equilibrium, title.format("as drawn"))]
         if self.friction:
             shown.append(self.friction.table())
         if self.motion is not None:
             columns, end = self._columns(), len(self.motion.values) - 1
-            rows = [[format_force(v[k], 6) for v in columns.values()] for k in select_rows(end + 1)]
+            rows = [
+                [planar.format_force(v[k], 6) for v in columns.values()] for k in planar.select_rows(end + 1)
+            ]
             last = solve(self._mechanism, self.motion.position[end])
             shown.append(table(f"Stroke of {self.motion.driver}", [*columns], rows))
-            shown.append(reactions_table(last, title.format(f"at {self._travelled(end)}")))
+            shown.append(planar.reactions_table(last, title.format(f"at {self._travelled(end)}")))
         return [*shown, self._diagnosis(self.message, self.last.virtual_work)]
 
     def _columns(self) -> dict[str, np.ndarray]:
-        """Travels and sizes of the loads over the stroke, by name and unit."""
+        """Return travels and sizes of the loads over the stroke, by name with unit."""
         if self.motion is None or self.over is None:
             return {}
         travels, loads = {}, {}
         for load in self._mechanism.loads:
-            factor, travel, size = units_of(load)
+            factor, travel, size = planar.units_of(load)
             travels[f"{load.name} [{travel}]"] = factor * self.motion.travel[load.name]
             loads[f"{load.name} [{size}]"] = self.over.amplitudes[load.name]
         rubbing = self.friction.curves() if self.friction else ()
         return travels | loads | {f"{name} [{load.unit}]": size for load, name, size in rubbing}
 
     def rows(self) -> Iterator[Sequence[object]]:
-        """The stroke, or the forces as drawn: loads, then joints on the bodies named first."""
+        """Make the rows of the stroke or, without one, of the forces of loads and joints as drawn."""
         if self.motion is not None:
             columns = self._columns()
             yield [*columns]
@@ -222,7 +213,7 @@ class MechanismAnswer(PlanarAnswer):
             yield part.name, *force, *sizes, part.unit
 
     def values(self) -> dict[str, Any]:
-        """The answer as plain numbers, lists and strings."""
+        """Convert the answer to plain numbers, lists and strings."""
         keys = ("mobility", "indeterminacy", "loose", "undetermined", "open_or_slack")
         forces = ("reactions", "magnitudes", "amplitudes")
         drawn = {key: plain(getattr(self.equilibrium, key)) for key in (*keys, *forces)}
@@ -231,26 +222,27 @@ class MechanismAnswer(PlanarAnswer):
         return told | drawn | more | {"friction": self.friction and self.friction.to_dict()}
 
     def figure(self, place: float | None = None) -> Figure:
-        """The mechanism with its forces, and the loads over the stroke.
+        """Draw the mechanism with its forces, and the loads over the stroke.
 
         Parameters
         ----------
         place : float, optional
-            Part of the stroke, from 0 to 1; if not given, as drawn, which the table of forces shows.
+            Fraction of the stroke, from 0 to 1; if not given, the mechanism is as drawn, like the table of
+            forces.
         """
         ((drawn,),) = self.drawings(place or 0.0)
         return mechanism_figure(drawn, self.charts(place or 0.0))
 
     def drawings(self, place: float) -> Rows:
-        """The mechanism as drawn and at a part of its stroke, from 0 to 1."""
+        """Make the drawing of the mechanism as drawn and at a fraction of its stroke, from 0 to 1."""
         return ((self._drawing(self._index_at(place)),),)
 
     def charts(self, place: float) -> Sequence[Chart]:
-        """Forces and moments over the stroke, if there is one."""
+        """Make the chart of forces and moments over the stroke, if there is one."""
         if self.motion is None or self.over is None:
             return ()
         curves = [(load, load.name, self.over.amplitudes[load.name]) for load in self._mechanism.loads]
-        factor, unit, _ = units_of(self._mechanism.load(self.motion.driver))
+        factor, unit, _ = planar.units_of(self._mechanism.load(self.motion.driver))
         return loads_over_stroke(
             travel_axis(f"travel of {self.motion.driver}", unit, factor * self.motion.values),
             factor * self.motion.values,
@@ -260,11 +252,11 @@ class MechanismAnswer(PlanarAnswer):
         )
 
     def _index_at(self, place: float) -> int:
-        """The position at a part of the stroke, from 0 to 1."""
+        """Return the index of the position at a fraction of the stroke, from 0 to 1."""
         return 0 if self.motion is None else round(place * (len(self.motion.values) - 1))
 
     def _drawing(self, index: int) -> Drawing:
-        """The mechanism at one of its positions, with the forces of the branch that is drawn."""
+        """Draw the mechanism at the position of an index, with the forces of the selected branch."""
         way, title = f", {self.branch}" if self.friction else "", self.design.title
         if self.motion is None:
             title += way
@@ -283,8 +275,8 @@ class MechanismAnswer(PlanarAnswer):
         return with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
 
     def _travelled(self, index: int) -> str:
-        """Travel of the driver at one of the positions."""
+        """State the travel of the driver at the position of an index."""
         if self.motion is None:
             return ""
-        factor, unit, _ = units_of(self._mechanism.load(self.motion.driver))
+        factor, unit, _ = planar.units_of(self._mechanism.load(self.motion.driver))
         return f"{factor * self.motion.values[index]:.3g} {unit} of {self.motion.driver}"

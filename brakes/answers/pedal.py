@@ -1,4 +1,4 @@
-"""What a pedal adds to the answer on a vehicle's stop: the chain from foot to wheels, and the heat."""
+"""Results of a forklift's stop from its pedal: forces from foot to wheels, energy, and heating."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from brakes.forklift import InternalForces, internal_forces
 
 @dataclass(frozen=True)
 class FromPedal(Result):
-    """A forklift's stop from its pedal.
+    """Results of a forklift's stop from its pedal.
 
     Attributes
     ----------
     braked : BrakedStop
-        The chain, and the stop.
+        Forces from the pedal to the wheels, and the stop.
     heat : Heat
-        Energy of the stop.
+        Energy of the stop, and temperature rise of the drums.
     brake_error : ndarray
         Bound of the relative error of the torque that a brake can give.
     fade : Fade, optional
-        Stops that follow each other, if the file has [heat].
+        Heating in repeated stops, if the file has [heat].
     """
 
     braked: BrakedStop
@@ -45,12 +45,12 @@ class FromPedal(Result):
     fade: Fade | None = None
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield from self.braked.headline()
 
     @property
     def error(self) -> Numbers:
-        """Bound of the relative error of the stop, by that of the brake's torque where the brake limits."""
+        """Bound of the stop's relative error, from that of the torque where the brake limits the force."""
         stop = self.braked.stop
         slowing = np.where(stop.stops, np.abs(stop.acceleration), np.inf)
         sensitive = np.where(stop.limited_by == "brake", stop.brake_force / stop.truck.mass / slowing, 0.0)
@@ -58,24 +58,25 @@ class FromPedal(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Limits that are passed, and what cannot be reached, a sentence each."""
+        """Sentences on limits that are exceeded, and on wanted values that cannot be reached."""
         asked = {
             "force at which the wheels lock": self.braked.locking,
             "least friction that stops": self.braked.friction,
         }
-        alone = {what: found for what, found in asked.items() if np.ndim(found.reason) == 0}  # not of many
+        # The reasons of many cases are not shown.
+        alone = {what: found for what, found in asked.items() if np.ndim(found.reason) == 0}
         lacking = tuple(f"{what}: {found.message}" for what, found in alone.items() if found.reason)
         return (*self.braked.actuation.warnings, *self.heat.warnings, *lacking)
 
     @property
     def refusals(self) -> tuple[str, ...]:
-        """A sentence if one of the stops that follow each other does not end."""
+        """Sentence on repeated stops of which one does not end; empty if all end."""
         return () if self.fade is None else self.fade.refusals
 
     def tables(self, doubtful: Sequence[Any] = ()) -> list[RenderableType]:
-        """The chain, the verdict on its force, and the stops that follow each other.
+        """Make the tables of the forces from the pedal on, the verdict on its force, and repeated stops.
 
-        Digits in which doubtful ones differ, such as those with other friction, are dimmed.
+        Digits in which the `doubtful` results differ, such as those with other friction, are dimmed.
         """
         title = f"From the pedal to the wheels; the {self.braked.limited_by} limits"
         said = f"Pedal, {self.braked.actuation.verdict}."
@@ -83,7 +84,8 @@ class FromPedal(Result):
         return [outputs_table(title, OUTPUTS, self, doubtful), said, *stops]
 
 
-_FADE = tuple(each for each in HEAT if each.name not in ("energy", "pv"))  # which the first stop has
+# The energy and the pv of the first stop are in the table of the first stop.
+_FADE = tuple(each for each in HEAT if each.name not in ("energy", "pv"))
 OUTPUTS = (
     *take_from(
         lambda found: found.braked.actuation,
@@ -112,18 +114,18 @@ OUTPUTS = (
 
 
 def pedal_outputs(design: ForkliftInput) -> tuple[Output, ...]:
-    """Numbers of the pedal's part of the answer, as far as the file has it."""
+    """Describe the numbers of the pedal and of repeated stops, as far as the file has tables of them."""
     repeated = () if design.heat is None else take_from(lambda found: found.fade, _FADE)
     return (*OUTPUTS, *repeated) if design.pedal else ()
 
 
 def solve_pedal(design: ForkliftInput) -> FromPedal:
-    """Solve the chain of a file that has a pedal.
+    """Compute forces from the pedal on, the stop and its heat, for a file that has a pedal.
 
     Parameters
     ----------
     design : ForkliftInput
-        The file.
+        The design that the file describes.
 
     Raises
     ------
@@ -149,7 +151,7 @@ def solve_pedal(design: ForkliftInput) -> FromPedal:
 
 
 def _repeat(design: ForkliftInput, geometry: Any, braked: BrakedStop) -> Fade | None:
-    """The stops that follow each other, if the file has them."""
+    """Compute repeated stops with heating, if the file has them."""
     if design.heat is None or design.drums is None or design.forces is None:
         return None
 
@@ -163,7 +165,7 @@ def _repeat(design: ForkliftInput, geometry: Any, braked: BrakedStop) -> Fade | 
 
 
 def _refuse_locked(unit: InternalForces, friction: Any) -> None:
-    """Refuse brakes that lock by themselves: of many, those of a sweep that do."""
+    """Raise an error for self-locking brakes; in a sweep, it names the designs that lock."""
     locked = np.asarray(unit.status) != "equilibrium"
     if locked.ndim == 0 and locked:
         raise NoAnswer(f"forces.lining_friction = {friction:.6g}: {unit.message}")

@@ -1,4 +1,4 @@
-"""Parts that answers on calipers and on mechanisms share: tables, outputs, friction, handles."""
+"""What answers on calipers and on mechanisms share: tables, outputs, friction, and handles."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from rich.console import RenderableType
@@ -15,7 +15,9 @@ from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.tables import table
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.results.one_line import error_at_most, rounded_up
+from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import Result, plain
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.words import Words
@@ -26,19 +28,16 @@ from brakes.drawings.mechanism import animate, free_body_diagrams
 from brakes.drawings.mechanism_parts import members
 from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Position, Stroke
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-_ROWS = 5  # rows of a stroke's table
+_ROWS = 5  # number of positions of a stroke that its table shows
 
 
 def units_of(load: Load) -> tuple[float, str, str]:
-    """Factor and unit of a load's travel for people, and the unit of its size."""
+    """Return factor and unit for showing a load's travel, and the unit of its size."""
     return (180 / np.pi, "deg", load.unit) if load.is_couple else (1e3, "mm", load.unit)
 
 
 def joint_outputs(mechanism: Mechanism, magnitudes: Any) -> list[Output]:
-    """The largest force of each joint; `magnitudes` takes those of all joints from an answer."""
+    """Describe each joint's largest force; `magnitudes` takes the forces of all joints from an answer."""
     return [
         Output(
             f"largest_{name_output(joint.name)}",
@@ -51,24 +50,24 @@ def joint_outputs(mechanism: Mechanism, magnitudes: Any) -> list[Output]:
 
 
 def name_output(words: str) -> str:
-    """Name of an output, without spaces and commas, of a joint's or load's name."""
+    """Make the name of an output from the name of a joint or load: no spaces, no commas."""
     return words.replace(" ", "_").replace(",", "")
 
 
 def select_rows(count: int) -> np.ndarray:
-    """Indices of the rows of a stroke's table, among `count` positions."""
-    return np.unique(np.linspace(0, count - 1, _ROWS).round().astype(int))
+    """Select which of `count` positions of a stroke have rows in the table, by index."""
+    return evenly_spread(count, _ROWS)
 
 
 def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
-    """Loads, forces of all joints on the bodies named first, and forces in two-force bodies."""
+    """Make a table of loads, joint forces on the body named first, and forces in two-force bodies."""
     mechanism, magnitudes = equilibrium.position.mechanism, equilibrium.magnitudes
     rows: list[Sequence[str]] = [
         (load.name, "load", "", "", format_force(equilibrium.amplitudes[load.name]), load.unit, "")
         for load in mechanism.loads
     ]
     rows.append(())
-    # The error of the forces [N]: a smaller one neither pulls nor pushes.
+    # Smaller forces than this error [N] count neither as tension nor as compression.
     largest = np.nan_to_num(np.abs(np.concatenate([(0.0,), *map(np.ravel, magnitudes.values())])))
     least = max(1e-9, float(np.nan_to_num(equilibrium.largest_error)) * float(largest.max(initial=0.0)))
     for joint in mechanism.joints:
@@ -90,7 +89,7 @@ def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
 
 
 def format_force(value: Any, digits: int = 5) -> str:
-    """A force as text; nan stands for a force that statics does not determine, or where friction jams."""
+    """Format a force as text; nan is a force that statics does not determine, or that jams."""
     number = float(np.ravel(value)[0])
     if np.isnan(number):
         return "not determined"
@@ -98,28 +97,28 @@ def format_force(value: Any, digits: int = 5) -> str:
 
 
 def format_size(value: Any, unit: str, digits: int = 5) -> str:
-    """A force or moment with its unit; as `format_force` where it is not a number."""
+    """Format a force or moment with its unit; nan as in `format_force`."""
     return format_force(value, digits) + ("" if np.isnan(value) else f" {unit}")
 
 
-# Friction in a mechanism: its forces without friction, squeezing and releasing, side by side -------------
+# Friction in a mechanism: forces without friction, squeezing and releasing, side by side -------------
 
 
-_ROUNDING = 1e-9  # share of the largest load that is shown as 0, such as a torque without friction
+_ROUNDING = 1e-9  # loads below this fraction of the largest are shown as 0
 
 
 @dataclass(frozen=True)
 class MechanismFriction(Result):
-    """Equilibria of a mechanism with friction, as drawn and over the stroke.
+    """Equilibria of a mechanism with friction, as drawn and over the stroke of a driver.
 
     Attributes
     ----------
     driver : str
-        The load whose travel grows while the mechanism is squeezed.
+        Name of the load whose travel grows while the mechanism is squeezed.
     drawn : FrictionalEquilibrium
-        As drawn.
+        Equilibria as drawn.
     over : FrictionalEquilibrium, optional
-        At each position of the stroke.
+        Equilibria at each position of the stroke.
     """
 
     driver: str
@@ -127,23 +126,23 @@ class MechanismFriction(Result):
     over: FrictionalEquilibrium | None
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"driven by {self.driver}"
         yield error_at_most(self.error)
         yield from (f"{name}: {way.status}" for name, way in self._moving(self.last))
 
     @staticmethod
     def _moving(found: FrictionalEquilibrium) -> list[tuple[str, Equilibrium]]:
-        """Names and equilibria of the two directions of motion."""
+        """Return names and equilibria of the two directions of motion."""
         return [*found.ways.items()][1:]
 
     @property
     def last(self) -> FrictionalEquilibrium:
-        """The equilibria over the stroke if there is one, else those as drawn."""
+        """Equilibria over the stroke if there is one, else those as drawn."""
         return self.over or self.drawn
 
     def locking(self, answered: bool) -> list[str]:
-        """Sentences on directions in which it does not just move, but has an answer, or has none."""
+        """Return sentences on directions of motion that are not "determined", with or without an answer."""
         return [
             Words(name, ": ", way.message)
             for name, way in self._moving(self.last)
@@ -152,23 +151,23 @@ class MechanismFriction(Result):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Sentences on directions in which no force moves it, a contact opens, or a cable slackens."""
+        """Sentences on directions in which no force moves it, a contact opens or a cable slackens."""
         return self.locking(answered=False)
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Sentences on directions in which it locks itself, and on what jams at the least offset."""
+        """Sentences on self-locking directions of motion, and on joints that jam at the smallest offset."""
         said = self.last.without.warnings
         jams = (warning for _, way in self._moving(self.last) for warning in way.warnings)
         return [*self.locking(answered=True), *dict.fromkeys(each for each in jams if each not in said)]
 
     @property
     def error(self) -> float:
-        """Largest error of the forces, over the largest force, where there is equilibrium."""
+        """Largest error of the forces, relative to the largest force, where there is equilibrium."""
         return max(way.largest_error for way in self.last.ways.values())
 
     def table(self) -> RenderableType:
-        """Sizes of loads, joints and friction as drawn: without friction, squeezing, releasing."""
+        """Make a table of loads, joints and friction as drawn: without friction, squeezing, releasing."""
         mechanism, ways = self.drawn.without.position.mechanism, self.drawn.ways
         sizes = [way.amplitudes | way.magnitudes for way in ways.values()]
         rows = [
@@ -187,7 +186,7 @@ class MechanismFriction(Result):
         return table(title, ("size of", *ways, "unit"), [*rows, (), *rubbing], (0, 4))
 
     def curves(self) -> list[tuple[Load, str, np.ndarray]]:
-        """Unknown loads over the stroke, squeezing and releasing: the load, its name, and its size."""
+        """Return the unknown loads over the stroke, squeezing and releasing: load, name, and sizes."""
         return [
             (load, f"{load.name}, {name}", way.amplitudes[load.name])
             for load in self.last.without.position.mechanism.unknown_loads
@@ -195,7 +194,7 @@ class MechanismFriction(Result):
         ]
 
     def captions(self, index: int) -> Iterator[str]:
-        """Each unknown load in three numbers, at one of the positions."""
+        """State each unknown load at the position of an index: without friction, squeezing, releasing."""
         for load in self.drawn.without.position.mechanism.unknown_loads:
             sizes = np.array([np.ravel(way.amplitudes[load.name])[index] for way in self.last.ways.values()])
             sizes[np.abs(sizes) < _ROUNDING * np.nanmax(np.abs(sizes), initial=0.0)] = 0.0
@@ -206,9 +205,9 @@ class MechanismFriction(Result):
             yield f"{load.name}: {', '.join(said)}"
 
     def locked(self) -> dict[str, np.ndarray]:
-        """Where the mechanism locks over the stroke, by the name of each curve on which it does.
+        """Mark where over the stroke the mechanism locks, by the name of each curve on which it does.
 
-        There it jams, so that there is no force, or the unknown load has to act in the other direction.
+        Locking means that it jams, so that there is no force, or that the unknown load must reverse.
         """
         amplitudes, found = self.last.without.amplitudes, {}
         least = _ROUNDING * np.nanmax(np.abs([*amplitudes.values()]), initial=0.0)
@@ -219,7 +218,7 @@ class MechanismFriction(Result):
         return {name: where for name, where in found.items() if where.any()}
 
     def to_dict(self) -> dict[str, Any]:
-        """The equilibria as drawn, by the direction of motion, as plain numbers, lists and strings."""
+        """Convert the equilibria as drawn to plain numbers, lists and strings, by direction of motion."""
         keys = ("status", "message", "reactions", "magnitudes", "amplitudes", "friction", "residual")
         ways = self._moving(self.drawn)
         return {"driver": self.driver} | {
@@ -227,20 +226,20 @@ class MechanismFriction(Result):
         }
 
 
-# Base of the answers on calipers and on mechanisms: diagnosis, handles, free bodies, animation -----------
+# Base of answers on calipers and on mechanisms: statics, handles, free bodies, animation -----------
 
 
-_FRAMES = 30  # frames of an animation
+_FRAMES = 30  # number of frames in an animation
 
 
 @dataclass(frozen=True)
 class PlanarAnswer(Answer):
-    """An answer on a caliper or a mechanism.
+    """Base of answers on calipers and on mechanisms.
 
     Attributes
     ----------
     design : CaliperInput or MechanismInput
-        Its file.
+        The design that the file describes.
     equilibrium : Equilibrium
         Equilibrium of a caliper at the end of its stroke, or of a mechanism as drawn.
     motion : Stroke, optional
@@ -252,14 +251,14 @@ class PlanarAnswer(Answer):
     motion: Stroke | None
 
     def headline(self) -> Iterator[str]:
-        """The answer in one line, its status first; see `Result.headline`."""
+        """Yield the answer in one line, its status first; see `Result.headline`."""
         yield self.status
         yield from (part for part in super().headline() if part != self.status)
 
     @property
     @abstractmethod
     def status(self) -> str:
-        """Whether statics determines the forces."""
+        """Whether statics determines the forces; see `planar.Equilibrium`."""
 
     @property
     @abstractmethod
@@ -268,11 +267,11 @@ class PlanarAnswer(Answer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Which bodies are loose, or which reactions statics does not determine."""
+        """Sentence on loose bodies or undetermined reactions; empty if statics determines all forces."""
         return () if self.status == "determined" else (in_files(self.message),)
 
     def _diagnosis(self, message: str, virtual_work: np.ndarray) -> str:
-        """Statics in a sentence or two, with the error of the forces, nan where there are none."""
+        """State the result of statics in a sentence or two, with the error of the forces if there are any."""
         mobility, indeterminacy = self.equilibrium.mobility, self.equilibrium.indeterminacy
         error = self.error
         stated = "" if np.isnan(error) else f" Error of the forces: {rounded_up(error)} of the largest."
@@ -283,7 +282,7 @@ class PlanarAnswer(Answer):
         )
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """The points of the file: a named caliper's dimensions, or a mechanism's named points."""
+        """Make handles on the points of the file: dimensions of a named caliper, or points of a mechanism."""
         if isinstance(self.design, MechanismInput):
             points = [(name, f"points.{name}", at) for name, at in self.design.points.items()]
         else:
@@ -299,7 +298,7 @@ class PlanarAnswer(Answer):
 
     @property
     def equilibria(self) -> Mapping[str, Equilibrium]:
-        """Equilibria whose bodies are drawn one by one, by their headings."""
+        """Equilibria whose bodies are drawn one by one, by heading."""
         return {"": self.equilibrium}
 
     def free_bodies(self) -> Figure:
@@ -307,7 +306,7 @@ class PlanarAnswer(Answer):
         return free_body_diagrams(self.equilibria)
 
     def animate(self, path: Path, force: bool) -> None:
-        """Write an animation of the stroke as GIF, over a file that exists if forced.
+        """Write an animation of the stroke as a GIF file; replace an existing file only if forced.
 
         Raises
         ------
@@ -317,7 +316,7 @@ class PlanarAnswer(Answer):
         if self.motion is None:
             raise ValueError("--animation needs a stroke: name run.driver and run.travel in the file")
         motion, mechanism = self.motion, self.motion.position.mechanism
-        frames = np.unique(np.linspace(0, len(motion.values) - 1, _FRAMES).round().astype(int))
+        frames = evenly_spread(len(motion.values), _FRAMES)
         factor, unit, _ = units_of(mechanism.load(motion.driver))
         captions = [f"{motion.driver}: {factor * motion.values[k]:.2f} {unit}" for k in frames]
         animate(Position(mechanism, motion.position.batch[frames]), path, captions.__getitem__, force)

@@ -1,4 +1,4 @@
-"""What the answers on drum brakes and on brakes pressed by one force share: doubts, heat, what locks."""
+"""What answers on drum brakes and on brakes pressed by one force share: self-locking, friction, heating."""
 
 from __future__ import annotations
 
@@ -14,33 +14,32 @@ from rich.console import RenderableType
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.inputs.checks import InvalidValue
-from brakes.answers.base import Answer
+from beamdyn.common.results.pictures import Figure
+from brakes.answers import tables
+from brakes.answers.base import Answer, ArrayBrakeType, FileModel
 from brakes.answers.doubts import PART, change
-from brakes.answers.tables import (
-    format_number,
-    outputs_csv,
-    outputs_table,
-    take_fields,
-    take_from,
-)
 from brakes.common.heat import Fade, repeat_stops
+from brakes.config.load import LoadInput
+from brakes.drawings.machine import beside_charts
 
-HEAT = take_fields(Fade, "hottest settled first_angle last_angle first_friction last_friction energy pv")
-_SHOWN = 10  # stops
+HEAT = tables.take_fields(
+    Fade, "hottest settled first_angle last_angle first_friction last_friction energy pv"
+)
+_SHOWN = 10  # largest number of stops in the table of repeated stops
 
 
 @dataclass(frozen=True)
 class RubbingAnswer(Answer):
-    """Forces in a brake that slides or locks, and how hot it gets.
+    """Base of answers on brakes that slide or lock: forces, and heating in repeated stops.
 
     Attributes
     ----------
     design : BaseModel
-        The file.
+        The design that the file describes.
     result : BrakeResult or MachineResult
-        The forces.
+        The forces in the brake.
     fade : Fade, optional
-        The stops of [heat]; none if the brake locks.
+        Repeated stops, if the file has [heat]; None if the brake locks.
     """
 
     solver: ClassVar[Callable[..., Any]]
@@ -56,7 +55,7 @@ class RubbingAnswer(Answer):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Limits that are passed, and a curve that begins with another friction than that of [brake]."""
+        """Warnings of repeated stops, and of a friction curve that does not start with [brake]'s friction."""
         if self.fade is None:
             return ()
         given, first = self.result.friction, self.fade.first_friction
@@ -68,23 +67,23 @@ class RubbingAnswer(Answer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """A sentence if the brake locks, or a stop does not end."""
+        """Sentences on a brake that locks, and on a stop that does not end."""
         locks = (self.result.message,) if np.any(self.result.locked) else ()
         return (*locks, *(() if self.fade is None else self.fade.refusals))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """A sentence on each design whose brake locks, or of which a stop does not end, by row."""
+        """Return a sentence on each design that locks or does not stop, by index; `count` is their number."""
         hot = {} if self.fade is None else self.fade.messages_of_cases(count)
         return hot | self.result.messages_of_locked(count)
 
     def again(self, brake: Any = None, **changed: Any) -> Any:
-        """The result of the same force, with another brake, friction or direction."""
+        """Solve the brake at the same force, with another brake, friction or direction."""
         result = self.result
         given = {name: getattr(result, name) for name in ("friction", "force", "reverse")}
         return type(self).solver(brake or result.brake, **given | changed)
 
     def stop_again(self) -> Answer:
-        """The answer with the stops of the file, if it has any and the brake does not lock."""
+        """Add the repeated stops of the file to the answer, if it has any and the brake does not lock."""
         if self.design.heat is None or np.all(self.result.locked):
             return self
         duty, result = self.design.heat.core, self.result
@@ -94,30 +93,30 @@ class RubbingAnswer(Answer):
         )
 
     def further_tables(self) -> list[RenderableType]:
-        """The stops, and what the torque hangs on; nothing of a brake that locks."""
+        """Make the tables of repeated stops and of the influence of friction; none for a brake that locks."""
         if self.result.locked:
             return []
         return [*([] if self.fade is None else stops_tables(self.fade)), self._doubt()]
 
     def _doubt(self) -> str:
-        """The torque at this force with less and more friction, under other laws, and in reverse."""
+        """State the torque at this force with less and more friction, under other laws, and in reverse."""
         torque, mu, back = self.result.torque, self.result.friction, not self.result.reverse
         ends = ", ".join(
             _change(self.again(friction=part * mu).torque, torque) for part in (1 - PART, 1 + PART)
         )
         others = [f"{words} {_change(found, torque)}" for words, found in self.by_other_laws()]
         turned = self.again(reverse=back).torque
-        if not abs(turned / torque - 1) < 1e-9:  # also where it locks
+        if not abs(turned / torque - 1) < 1e-9:  # the negation is also true for nan, when the brake locks
             others.append(f"{'reverse' if back else 'forward'} {_change(turned, torque)}")
         said = "; ".join((f"friction -+{100 * PART:.0f} %: {ends}", *others))
-        return f"At this force, torque {format_number(torque)} N m; {said}."
+        return f"At this force, torque {tables.format_number(torque)} N m; {said}."
 
     def by_other_laws(self) -> Iterator[tuple[str, float]]:
-        """Words and torque of the other laws of the pressure, with the same force."""
+        """Return words and torque of the other pressure laws, at the same force."""
         return ((words, self.again(brake).torque) for words, brake in self._other_laws())
 
     def doubtful(self) -> Iterator[Any]:
-        """Results of the same load with less and more friction, and under other laws of the pressure."""
+        """Yield results at the same load with less and more friction, and under other pressure laws."""
         result, given = self.result, self.design.load.given | {"reverse": self.result.reverse}
         for part in (1 - PART, 1 + PART):
             yield type(self).solver(result.brake, friction=part * result.friction, **given)
@@ -125,42 +124,56 @@ class RubbingAnswer(Answer):
             yield type(self).solver(brake, friction=result.friction, **given)
 
     def _other_laws(self) -> Iterator[tuple[str, Any]]:
-        """Words of the other laws of the pressure, and the brake under each, where there can be one."""
+        """Yield the words of each other pressure law, and the brake under it, if that is possible."""
         brake = self.result.brake
         for law in (each for each in brake.laws if each != brake.law):
             with suppress(InvalidValue):
                 yield brake.laws[law], brake.with_law(law)
 
     def rows(self) -> Iterable[Sequence[object]]:
-        """Names, values and units of all numbers."""
-        return outputs_csv((*self.outputs(), *heat_outputs(self.design)), value=self)
+        """Make the rows of names, values and units of all numbers, for a file."""
+        return tables.outputs_csv((*self.outputs(), *heat_outputs(self.design)), value=self)
+
+    def figure(self, place: float | None = None) -> Figure:
+        """Draw the brake with its forces, beside pressures and factors."""
+        ((drawing, *_), *_) = self.drawings(0.0)
+        return beside_charts(drawing, self.charts(0.0))
 
     @abstractmethod
     def outputs(self) -> tuple[Output, ...]:
-        """Numbers of the brake and of its linings."""
+        """Describe the numbers of the brake and its linings that tables, sweeps and files show."""
 
     def loadable(self) -> Any:
-        """The result of the mechanics, if there is no other."""
+        """Return the mechanics' result, which can be saved; None if repeated stops were computed."""
         return self.result if self.fade is None else None
 
     def values(self) -> dict[str, Any]:
-        """The results as plain numbers, lists and strings."""
+        """Convert the results to plain numbers, lists and strings."""
         fade = {} if self.fade is None else {"heat": self.fade.to_dict()}
         return self.result.to_dict() | fade
 
 
+class RubbingType(ArrayBrakeType[FileModel]):
+    """A type of brake that slides or locks: what its screen and sweeps show first."""
+
+    error_from = "rounding of inputs and sums, over the margin to self-locking"
+    key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))
+    together = f"[load]: {LoadInput.ONE}."
+    sweep_results = "torque,c_star,peak_pressure"
+
+
 def heat_outputs(design: Any) -> tuple[Output, ...]:
-    """Numbers of the stops, if the file has them."""
-    return () if design.heat is None else take_from(lambda answer: answer.fade, HEAT)
+    """Describe the numbers of repeated stops; none if the file has no heat."""
+    return () if design.heat is None else tables.take_from(lambda answer: answer.fade, HEAT)
 
 
 def stops_tables(fade: Fade) -> Iterator[RenderableType]:
-    """The stops as a whole, and one by one."""
+    """Make the tables of repeated stops as a whole, and stop by stop."""
     title = f"Heat in {len(fade.end)} stops at this force, without cooling while it brakes"
-    yield outputs_table(title, HEAT, fade)
+    yield tables.outputs_table(title, HEAT, fade)
     names = [str(i + 1) for i in range(len(fade.end))][:_SHOWN]
     columns = [fade.start - 273.15, fade.end - 273.15, fade.end_friction, fade.angle, fade.heat]
-    cells = [[name, *(format_number(each[i]) for each in columns)] for i, name in enumerate(names)]
+    cells = [[name, *(tables.format_number(each[i]) for each in columns)] for i, name in enumerate(names)]
     heads = ("stop", "from [degC]", "to [degC]", "friction at its end", "angle [rad]", "heat [J]")
     yield table(
         "Stop by stop" if len(fade.end) <= _SHOWN else f"The first {_SHOWN} stops", heads, cells, (0,)
@@ -168,5 +181,5 @@ def stops_tables(fade: Fade) -> Iterator[RenderableType]:
 
 
 def _change(other: float, torque: float) -> str:
-    """A torque and its relative change."""
+    """State a torque and its relative change."""
     return change(other, torque, "N m", "locks")

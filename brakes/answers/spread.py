@@ -1,4 +1,4 @@
-"""Ranges of a brake's numbers over tolerances of its inputs."""
+"""Ranges of a brake's results over tolerances of its inputs."""
 
 from __future__ import annotations
 
@@ -36,24 +36,24 @@ def spread_of_brake(
     seed: int = 0,
     run: TaskRunner | None = None,
 ) -> Spread:
-    """Find the ranges of results of a brake over tolerances of its inputs.
+    """Find the ranges of a brake's results over tolerances of its inputs.
 
     Parameters
     ----------
     brake : BrakeType
-        Its type.
+        Type of the brake.
     tables : mapping
         Tables of the design's file.
     source : str
-        Their origin, for messages.
+        Origin of the tables, for messages.
     texts : sequence of str
         Inputs and their tolerances, such as "brake.friction=+-10%".
     results : str, optional
-        Names of outputs, separated by commas; those of a sweep if not given.
+        Names of outputs, separated by commas; by default those of a sweep.
     samples, seed : int
-        As for `beamdyn.spread`.
+        Number of samples and seed, as for `beamdyn.spread`.
     run : TaskRunner, optional
-        Where designs are solved that take no arrays; in this process if not given.
+        Runs the tasks with designs that are solved one by one; by default in this process.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def spread_of_brake(
 
 
 def nominal_of(design: Any, entry: Input, option: str = SPREAD) -> tuple[float, str]:
-    """The value of an input in a design, and its SI unit; an option that asks for it is named in messages.
+    """Return the value of an input in a design, and its SI unit; `option` is named in messages.
 
     Raises
     ------
@@ -94,8 +94,8 @@ def nominal_of(design: Any, entry: Input, option: str = SPREAD) -> tuple[float, 
 
 
 def _check_reach(entry: Input, given: SpreadInput) -> None:
-    """Refuse a tolerance that reaches beyond the bounds of an input."""
-    in_unit = "1 deg" if entry.quantity.unit == "rad" else None  # in which people read the bounds
+    """Refuse a tolerance that reaches beyond the bounds of its input."""
+    in_unit = "1 deg" if entry.quantity.unit == "rad" else None  # unit in which people read the bounds
     for end in given.distribution.reach:
         try:
             entry.quantity.within_bounds(in_unit or end, end)
@@ -108,7 +108,7 @@ def _check_reach(entry: Input, given: SpreadInput) -> None:
 
 @dataclass
 class _BrakeAnswers:
-    """Answers designs of a brake."""
+    """Function that solves sampled designs of a brake."""
 
     brake: BrakeType[Any]
     asked: SweepRequest
@@ -118,7 +118,7 @@ class _BrakeAnswers:
     _called: bool = False
 
     def __call__(self, columns: dict[str, np.ndarray]) -> SpreadAnswers:
-        """Answers of designs."""
+        """Solve the designs of the sampled inputs."""
         axes = [Axis(self.inputs[name], self.units[name], v, v) for name, v in columns.items()]
         later, self._called = self._called, True
         try:

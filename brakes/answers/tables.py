@@ -1,4 +1,4 @@
-"""Tables and rows of named numbers: outputs of an answer, and of a sweep."""
+"""Tables and rows of named numbers, from outputs of an answer or of a sweep."""
 
 from __future__ import annotations
 
@@ -15,38 +15,39 @@ from rich.text import Text
 from beamdyn.common.edge.input_sweep import InputSweep, Output, columns, sweep_rows
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.tables import set_apart, table
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.results.meanings import meanings
 from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words
 
-_SHOWN = 24  # rows of a sweep
-_ROUNDING = 1e-12  # relative difference of two answers that is none
+_SHOWN = 24  # largest number of rows of a sweep that are shown
+_ROUNDING = 1e-12  # relative difference of two answers that counts as none
 SCALES = {
     "mm": 1e-3,
     "deg": pi / 180,
     "kN": 1e3,
     "MPa": 1e6,
     "MW/m2": 1e6,
-}  # sizes in SI of units that people see
+}  # SI values of the units that are shown
 
 
 def take(name: str, words: str, unit: str = "") -> Output:
-    """The output that is the attribute of its name, in a unit in which it is shown."""
+    """Make the output of an attribute of the same name, shown in a unit."""
     return Output(name, words, attrgetter(name), unit, SCALES.get(unit, 1.0))
 
 
 def take_fields(kind: type, names: str) -> tuple[Output, ...]:
-    """Outputs that are fields of a result, by their names with spaces between; each says what it means."""
+    """Make outputs of a result's fields, given their names with spaces between; `Meaning` gives the words."""
     each = ((name, meanings(kind)[name]) for name in names.split())
     return tuple(take(name, stated.words, stated.shown or stated.unit) for name, stated in each)
 
 
 def resultant(vector: np.ndarray) -> np.ndarray:
-    """Length of vectors (..., 2)."""
+    """Compute the magnitude of vectors of shape (..., 2)."""
     return np.hypot(vector[..., 0], vector[..., 1])
 
 
 def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Output, ...]:
-    """Outputs of a part of an answer as outputs of the answer."""
+    """Turn outputs of a part of an answer into outputs of the answer, from which `part` takes the part."""
     return tuple(
         Output(o.name, o.words, lambda answer, o=o: o.of(part(answer)), o.unit, o.scale) for o in outputs
     )
@@ -55,9 +56,10 @@ def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Ou
 def list_outputs(
     outputs: Iterable[Output], results: Sequence[Any], doubtful: Sequence[Sequence[Any]] = ()
 ) -> list[list[str | Text]]:
-    """Rows of a table: what each output is, its value in each result, its unit.
+    """Make rows of a table: words of each output, its value in each result, and its unit.
 
-    Digits of a result in which doubtful ones of it differ (the same with other friction, say) are dimmed.
+    Digits in which a result differs from its `doubtful` variants, such as those with other friction, are
+    dimmed.
     """
     doubted = doubtful or [()] * len(results)
     each = [*zip(results, doubted, strict=True)]
@@ -65,7 +67,7 @@ def list_outputs(
 
 
 def _doubted(output: Output, result: Any, doubtful: Sequence[Any]) -> str | Text:
-    """An output of a result, its digits dimmed in which it differs in doubtful ones; nan counts as equal."""
+    """Format an output, with those digits dimmed in which doubtful results differ; nan counts as equal."""
     value = float(output.shown(result))
     changes = [abs(float(output.shown(other)) - value) for other in doubtful]
     change = float(np.fmax.reduce([0.0, *changes]))
@@ -74,21 +76,21 @@ def _doubted(output: Output, result: Any, doubtful: Sequence[Any]) -> str | Text
 
 
 def outputs_table(title: str, outputs: Iterable[Output], result: Any, doubtful: Sequence[Any] = ()) -> Group:
-    """A table of a result's outputs."""
+    """Make a table of a result's outputs."""
     return table(title, ("", "value", "unit"), list_outputs(outputs, [result], [doubtful]), (0, 2))
 
 
 def outputs_csv(outputs: Iterable[Output], **results: Any) -> Iterator[Sequence[object]]:
-    """Rows of a CSV file: the name of each output, its value in each result, its unit."""
+    """Yield rows of a CSV file: name of each output, its value in each result, and its unit."""
     yield "result", *results, "unit"
     for output in outputs:
         yield output.name, *(float(output.shown(result)) for result in results.values()), output.unit
 
 
 def keys_tables(inputs: Iterable[Input], optional: Collection[str]) -> Iterator[Group]:
-    """Tables of the keys of a file: what each means with unit, bounds and choices, and its default.
+    """Make tables of a file's keys: meaning with unit, bounds and choices, and default.
 
-    Optional are tables that may be left out.
+    `optional` names the tables that may be left out.
     """
     for place, entries in groupby(inputs, key=lambda entry: entry.path.rpartition(".")[0]):
         rows = ((each.name, ": ".join([each.help, *_choices(each)]), _default(each)) for each in entries)
@@ -101,15 +103,15 @@ def _choices(entry: Input) -> list[str]:
 
 
 def _default(entry: Input) -> str:
-    """Default of a key, as a file would give it."""
+    """State the default of a key as a file would give it."""
     words = "required" if entry.required else default_words(entry)
     return "" if words == NOT_GIVEN else words
 
 
 def sweep_table(sweep: InputSweep) -> Group:
-    """The table of a sweep: a selection of its rows, if there are many."""
+    """Make the table of a sweep, with a selection of its rows if there are many."""
     rows = [*sweep_rows(sweep)]
-    shown = np.unique(np.linspace(0, len(rows) - 1, min(len(rows), _SHOWN)).round().astype(int))
+    shown = evenly_spread(len(rows), _SHOWN)
     part = "" if len(shown) == len(rows) else f" ({len(shown)} of {len(rows)} rows; CSV and JSON have all)"
     heads = [f"{n} [{u}]" if u else n for n, u in columns(sweep)]
     cells = [[format_number(value) for value in rows[i]] for i in shown]
@@ -122,7 +124,7 @@ def sweep_table(sweep: InputSweep) -> Group:
 
 
 def format_number(value: Any) -> str:
-    """A number as text: five significant digits, at most four decimals."""
+    """Format a number with five significant digits and at most four decimals."""
     value = float(value)
     if value != value:
         return "-"

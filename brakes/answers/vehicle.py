@@ -1,10 +1,10 @@
-"""Answers on vehicles: parking and stops in both directions, which axle locks, and the lever's force."""
+"""Answers on vehicles: parking and stops in both directions, which axle locks first, the lever's force."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from rich.console import RenderableType
@@ -14,42 +14,31 @@ from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.wording import in_range, of_file
+from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import plain
+from brakes import vehicle
 from brakes.answers.base import Answer, ArrayBrakeType
 from brakes.answers.doubts import hangs_on_friction, with_less_and_more
 from brakes.answers.tables import list_outputs, outputs_csv, outputs_table, take_fields, take_from
 from brakes.chain import Actuation, actuate, force_for, ratio_for
 from brakes.config.vehicle import VehicleInput
 from brakes.drawings.vehicle import standing, vehicle_sketch
-from brakes.vehicle import (
-    Braking,
-    Holding,
-    Needed,
-    Slowing,
-    braking_limits,
-    friction_to_hold,
-    hold,
-    slow_down,
-)
 from brakes.vehicle.axles import Axle
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _AXLES: tuple[Axle, Axle] = ("front", "rear")
 _HOLDING = (
     Output("holds", "holds on the slope: 1, else 0", lambda holding: np.equal(holding.status, "holds") * 1.0),
     *take_fields(
-        Holding,
+        vehicle.Holding,
         "largest_slope slipping_slope tipping_slope rolling_slope needed_force braking_force "
         "front_load rear_load",
     ),
 )
-_BRAKING = take_fields(Braking, "pitching front_alone rear_alone both front_locks rear_locks largest")
+_BRAKING = take_fields(vehicle.Braking, "pitching front_alone rear_alone both front_locks rear_locks largest")
 _SLOWING = take_fields(
-    Slowing,
+    vehicle.Slowing,
     "distance time deceleration ratio front_force rear_force",
-) + tuple(replace(o, name=f"braked_{o.name}") for o in take_fields(Slowing, "front_load rear_load"))
+) + tuple(replace(o, name=f"braked_{o.name}") for o in take_fields(vehicle.Slowing, "front_load rear_load"))
 _LEVER = take_fields(Actuation, "pedal_force output_force pressure actuator_force pedal_travel")
 _WORDS = {
     "friction_to_hold": ("least friction of the tyres that holds", ""),
@@ -60,28 +49,28 @@ _WORDS = {
 
 @dataclass(frozen=True)
 class OneDirection:
-    """What is found with one axle downhill, or leading in a stop.
+    """Results with one axle downhill at rest, or leading in a stop.
 
     Attributes
     ----------
     holding : Holding
-        At rest on the slope.
+        Whether the vehicle at rest holds on the slope.
     braking : Braking
-        In a stop.
+        Hardest braking in a stop, and what ends it.
     needs : mapping of str to Needed
-        Answers backwards, by name.
+        Inputs that give a wanted result, by name.
     slowing : Slowing, optional
         The stop on the slope, if the file has one.
     """
 
-    holding: Holding
-    braking: Braking
-    needs: Mapping[str, Needed]
-    slowing: Slowing | None
+    holding: vehicle.Holding
+    braking: vehicle.Braking
+    needs: Mapping[str, vehicle.Needed]
+    slowing: vehicle.Slowing | None
 
 
 def _of_one_way(design: VehicleInput) -> tuple[Output, ...]:
-    """Numbers of one way."""
+    """Describe the numbers of one direction."""
     names = ["friction_to_hold"] if design.lever is None else [*_WORDS]
     asked = (
         Output(name, _WORDS[name][0], lambda way, name=name: way.needs[name].value, _WORDS[name][1])
@@ -96,12 +85,12 @@ def _of_one_way(design: VehicleInput) -> tuple[Output, ...]:
 
 
 def _of_stop(design: VehicleInput) -> tuple[Output, ...]:
-    """Numbers of the stop of one way, if there is one."""
+    """Describe the numbers of the stop in one direction; none if the file has no stop."""
     return () if design.stop is None else take_from(lambda way: way.slowing, _SLOWING)
 
 
 def _outputs(design: VehicleInput) -> tuple[Output, ...]:
-    """All numbers; those of a way end in the axle that is downhill or leads."""
+    """Describe all numbers; names end in the axle that is downhill or leads, but for those of the lever."""
     ways = tuple(
         Output(f"{o.name}_{axle}", f"{o.words}, {axle} downhill", o.of, o.unit, o.scale)
         for axle in _AXLES
@@ -111,7 +100,7 @@ def _outputs(design: VehicleInput) -> tuple[Output, ...]:
 
 
 def _of_lever(design: VehicleInput) -> tuple[Output, ...]:
-    """Numbers of the lever, if there is one; a cable has no pressure."""
+    """Describe the numbers of the lever; none if the file has no lever, and no pressure for a cable."""
     if design.lever is None:
         return ()
     return tuple(each for each in _LEVER if design.line or each.name != "pressure")
@@ -119,16 +108,16 @@ def _of_lever(design: VehicleInput) -> tuple[Output, ...]:
 
 @dataclass(frozen=True)
 class VehicleAnswer(Answer):
-    """A vehicle at rest on a slope and in a stop, with either axle downhill.
+    """Answer on a vehicle at rest on a slope and in a stop, with either axle downhill.
 
     Attributes
     ----------
     design : VehicleInput
-        The file.
+        The design that the file describes.
     ways : mapping of {"front", "rear"} to OneDirection
-        What is found, by the axle that is downhill or leads.
+        Results by the axle that is downhill or leads.
     lever : Actuation, optional
-        From the lever to the brakes, if there is one.
+        Forces from the lever to the brakes, if the file has a lever.
     """
 
     design: VehicleInput
@@ -142,21 +131,22 @@ class VehicleAnswer(Answer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """A sentence on each way in which it does not hold on the slope."""
+        """Sentences on the directions in which the vehicle does not hold on the slope or does not stop."""
         ways = self.ways.items()
         return [f"{axle} axle downhill: {said}" for axle, way in ways for said in _failures(way)]
 
     @property
     def warnings(self) -> Sequence[str]:
-        """A sentence if the lever's force is above what is allowed, and if it rolls back uphill."""
+        """Sentences on a lever force above the limit, and on rolling back after an uphill stop."""
         ways = ((f"{axle} axle leading: ", way.slowing) for axle, way in self.ways.items())
         stops = [words + said for words, stop in ways if stop is not None for said in stop.warnings]
         return [*(() if self.lever is None else self.lever.warnings), *stops]
 
     def tables(self) -> list[RenderableType]:
-        """Both ways, what cannot be had and why, and the lever."""
+        """Make the tables of both directions, of wanted values that do not exist, and of the lever."""
         ways = [*self.ways.values()]
-        elsewhere = {"holds", *(each.name for each in _SLOWING)}  # in the row of words, and below
+        # These outputs are in the row of words, and in the table of stops.
+        elsewhere = {"holds", *(each.name for each in _SLOWING)}
         others = with_less_and_more(self.design, "road.friction", BRAKE.solve)
         doubtful = [[other.ways[axle] for other in others] for axle in self.ways]
         rows = list_outputs((o for o in _of_one_way(self.design) if o.name not in elsewhere), ways, doubtful)
@@ -180,7 +170,7 @@ class VehicleAnswer(Answer):
         return tables
 
     def _doubt(self) -> str:
-        """The largest slope on which it holds both ways, with less and more friction of the tyres."""
+        """State the largest slope on which it holds in both directions, with less and more tyre friction."""
 
         def largest(design: VehicleInput) -> float:
             ways = BRAKE.solve(design).ways.values()
@@ -198,24 +188,27 @@ class VehicleAnswer(Answer):
                     yield _WORDS[name][0], axle, found.message
 
     def rows(self) -> Iterable[Sequence[object]]:
-        """Names, values and units of all numbers."""
+        """Make the rows of names, values and units of all numbers."""
         return outputs_csv(_outputs(self.design), value=self)
 
     def figure(self, place: float | None = None) -> Figure:
-        """The vehicle on its slope, both ways."""
+        """Draw the vehicle on its slope in both directions."""
         return figure_of(self.drawings(0.0))
 
     def drawings(self, place: float) -> Rows:
-        """The vehicle on its slope with the forces on it, both ways."""
+        """Make the drawings of the vehicle on its slope, with its forces, in both directions."""
         return [[standing(way.holding) for way in self.ways.values()]]
 
     def values(self) -> dict[str, Any]:
-        """The answer as plain numbers, lists and strings."""
+        """Convert the answer to plain numbers, lists and strings."""
         return {"ways": plain(self.ways), "lever": plain(self.lever)}
 
 
 def _failures(way: OneDirection) -> list[str]:
-    """A sentence if one vehicle does not hold (of many, `holds` says which), and one if it does not stop."""
+    """Return sentences on a vehicle that does not hold, and on one that does not stop, in one direction.
+
+    Of many designs only the stop has a sentence; the output `holds` tells which of them hold.
+    """
     holding, slowing = way.holding, way.slowing
     said = [f"it {slowing.message}"] if slowing is not None and not np.all(slowing.stops) else []
     alone = np.ndim(holding.status) == 0 and holding.status != "holds"
@@ -223,7 +216,10 @@ def _failures(way: OneDirection) -> list[str]:
 
 
 class ParkingType(ArrayBrakeType[VehicleInput]):
-    """Vehicles at rest on a slope, and the limits of their stops."""
+    """Type of brake for vehicles parked on a slope.
+
+    Its answers also state the hardest braking in a stop, which axle locks first, and the lever's force.
+    """
 
     name = "vehicle"
     title = "Parking and grip"
@@ -243,7 +239,7 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
     )
 
     def solve(self, design: VehicleInput) -> VehicleAnswer:
-        """Both ways, and the lever."""
+        """Solve parking and stops with either axle downhill, and the forces from the lever."""
         with in_range(design), of_file({}):
             line = design.cable or design.line
             pulled = actuate(design.lever.core, line.core) if design.lever and line else None
@@ -255,31 +251,31 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
         return VehicleAnswer(design, ways, pulled)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Explain the symbols of the form."""
+        """Make drawings that explain the symbols of the form."""
         return vehicle_sketch()
 
     def outputs(self, design: VehicleInput) -> Sequence[Output]:
-        """Numbers of both ways, and of the lever."""
+        """Describe the numbers of both directions, and of the lever."""
         return _outputs(design)
 
 
 def _solve_way(
     design: VehicleInput, axle: Axle, force: Any, pulled: Actuation | None, gain: Any
 ) -> OneDirection:
-    """Answer with one axle downhill at rest, or leading in a stop."""
+    """Solve one direction: the axle is downhill at rest, and leads in a stop."""
     standing, road, braking = design.standing, design.road.core, design.braking
-    holding = hold(standing, road, braking.parked_by, axle, force)
-    needs = {"friction_to_hold": friction_to_hold(standing, road.slope, braking.parked_by, axle)}
+    holding = vehicle.hold(standing, road, braking.parked_by, axle, force)
+    needs = {"friction_to_hold": vehicle.friction_to_hold(standing, road.slope, braking.parked_by, axle)}
     if pulled is not None:
         each = holding.needed_force / gain
         needs["force_to_hold"] = force_for(pulled.pedal, pulled.line, each)
         needs["ratio_to_hold"] = ratio_for(pulled.pedal, pulled.line, each)
-    limits = braking_limits(standing, road.friction, braking.front_share, axle)
+    limits = vehicle.braking_limits(standing, road.friction, braking.front_share, axle)
     return OneDirection(holding, limits, needs, _solve_stop(design, limits, force))
 
 
-def _solve_stop(design: VehicleInput, limits: Braking, force: Any) -> Slowing | None:
-    """The stop of one way: by its own force, the lever's, or the hardest at which no wheel locks."""
+def _solve_stop(design: VehicleInput, limits: vehicle.Braking, force: Any) -> vehicle.Slowing | None:
+    """Solve the stop of one way: by its own force, the lever's, or the hardest at which no wheel locks."""
     if design.stop is None:
         return None
     approach, road, share = design.stop.core, design.road.core, design.braking.front_share
@@ -288,7 +284,7 @@ def _solve_stop(design: VehicleInput, limits: Braking, force: Any) -> Slowing | 
         given, share = force, {"front": 1.0, "rear": 0.0, "both": share}[design.braking.parked_by]
     elif given is None:
         given = limits.largest * design.standing.mass * road.gravity * np.cos(road.slope)
-    return slow_down(design.standing, road, approach, given, share, limits.leading)
+    return vehicle.slow_down(design.standing, road, approach, given, share, limits.leading)
 
 
 BRAKE = ParkingType()

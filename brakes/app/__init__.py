@@ -1,1 +1,1 @@
-"""The interactive program: screens of a forklift's brakes, drum brakes and calipers."""
+"""The interactive program ``brakes app``: documents, screens and lists for all types of brakes."""

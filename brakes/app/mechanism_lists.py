@@ -1,6 +1,6 @@
-"""A mechanism's bodies, points, joints and loads as lists: to add, name, join and remove them.
+"""Lists of a mechanism's bodies, points, joints and loads, in which users add, rename and remove them.
 
-All functions are pure: they take entries of the form, which are those of the TOML file, and return others.
+All functions are pure: they take the entries of the form, as in the TOML file, and return new ones.
 """
 
 from __future__ import annotations
@@ -27,9 +27,10 @@ _BODIES, _POINTS, _DIRECTIONS = (
     for kind in (DescribedBody, DescribedPoint, DescribedDirection)
 )
 _LISTED = [key for key, hint in _HINTS_OF_KEYS.items() if is_list(hint)]
-_ROLES = ("cable", "pads", "centring")  # keys of [caliper] whose values are joints and loads
-_UNITS = {"m": "mm", "rad": "deg", "N/m": "N/mm"}  # units in which a bare number is taken
-_FIRST = {  # first entries of what is added
+_ROLES = ("cable", "pads", "centring")  # keys of [caliper] whose values are names of joints and loads
+# Units that numbers typed without a unit have, by the SI unit.
+_UNITS = {"m": "mm", "rad": "deg", "N/m": "N/mm"}
+_FIRST = {  # initial values of inputs of a new joint or load
     "direction": "-90 deg",
     "along": "0 deg",
     "normal": "90 deg",
@@ -38,7 +39,7 @@ _FIRST = {  # first entries of what is added
     "free_angle": "0 deg",
 }
 _HINTS = {"direction": "0 deg is to the right, 90 deg up", "normal": "0 deg is to the right, 90 deg up"}
-_APART = 20.0  # between points that are added [mm]
+_APART = 20.0  # distance between points that are added [mm]
 
 
 # Entries and tables -------------------------------------------------------------------------------------
@@ -55,13 +56,13 @@ def _entries(tables: dict[str, Any]) -> Entries:
 
 
 def _list_at(tables: Mapping[str, Any], key: str) -> list[Any]:
-    """The list at a key; an empty one where there is none, such as a text with a mistake."""
+    """Return the list at a key of tables; an empty list if there is none, as for a text with a mistake."""
     given = tables.get(key)
     return given if isinstance(given, list) else []
 
 
 def _table_at(tables: Mapping[str, Any], key: str) -> dict[str, Any]:
-    """The table at a key; an empty one where there is none."""
+    """Return the table at a key of tables; an empty table if there is none."""
     given = tables.get(key)
     return given if isinstance(given, dict) else {}
 
@@ -71,7 +72,7 @@ def _bodies(tables: Mapping[str, Any]) -> list[str]:
 
 
 def _parts(tables: Mapping[str, Any]) -> Iterator[tuple[str, int, dict[str, Any]]]:
-    """Kind, number and table of each joint and load."""
+    """Yield kind, number within the kind, and table of each joint and load."""
     for key in _PARTS:
         for number, part in enumerate(_list_at(tables, key)):
             if isinstance(part, dict):
@@ -88,7 +89,7 @@ def _without(part: Mapping[str, Any], *keys: str) -> dict[str, Any]:
 
 
 def covers(path: str) -> bool:
-    """Whether an input is in the lists."""
+    """Tell whether the lists show the input of a path, so that the form need not."""
     table = path.partition(".")[0]
     return table in ("bodies", "points", *_PARTS) or path in ("run.driver", "run.travel")
 
@@ -97,7 +98,7 @@ def covers(path: str) -> bool:
 
 
 def groups(entries: Mapping[str, str]) -> list[ListGroup]:
-    """Bodies, points, joints, loads, and what drives the stroke."""
+    """Make the lists of bodies, points, joints and loads, and of the load that drives the stroke."""
     tables = _tables(entries)
     bodies = [Item("bodies", i, name, (_name_cell(name),)) for i, name in enumerate(_bodies(tables))]
     points = []
@@ -132,20 +133,20 @@ def _name_cell(name: str) -> Cell:
 
 
 def _coordinates(at: Any) -> dict[str, str]:
-    """Coordinates of a point as typed."""
+    """Return the coordinates of a point as the user typed them."""
     x, y = (str(part) for part in at) if isinstance(at, list) and len(at) == 2 else (str(at), "")
     return {"x": x, "y": y}
 
 
 def _item(key: str, number: int, part: Mapping[str, Any], tables: Mapping[str, Any]) -> Item:
-    """A joint or load."""
+    """Make the list item of a joint or load."""
     cells = tuple(_cell(entry, part.get(entry.path), tables) for entry in _INPUTS[key])
     kind, name = _PARTS[key].kind(), str(part.get("name", ""))
     return Item(key, number, name if name.startswith(kind) else f"{kind} {name}".strip(), cells)
 
 
 def _cell(entry: Input, value: Any, tables: Mapping[str, Any]) -> Cell:
-    """A value of a joint or load, as it is typed, or chosen from what is known."""
+    """Make the cell of an input of a joint or load, to be typed, or chosen from the known names."""
     key = entry.path
     if isinstance(value, list) and all(isinstance(part, str) for part in value):
         text = ", ".join(value)
@@ -173,7 +174,7 @@ def _cell(entry: Input, value: Any, tables: Mapping[str, Any]) -> Cell:
 
 
 def put(entries: Mapping[str, str], item: Item, key: str, text: str) -> Entries:
-    """The entries with another text in a cell; references to an item that is renamed follow."""
+    """Change the text of a cell; if an item is renamed, references to it are renamed, too."""
     tables, text = _tables(entries), text.strip()
     points, name = _table_at(tables, "points"), item.name
     if item.path == "bodies" and not text:
@@ -204,7 +205,7 @@ def put(entries: Mapping[str, str], item: Item, key: str, text: str) -> Entries:
 
 
 def _value(entry: Input, text: str) -> Any:
-    """The value that a text stands for, a bare number with the unit that the form shows."""
+    """Convert a typed text to the value of an input; a bare number gets the unit that the form shows."""
     if entry.path in _LISTED:
         return [part.strip() for part in text.split(",")]
     if entry.kind is bool:
@@ -220,13 +221,13 @@ def _value(entry: Input, text: str) -> Any:
 
 
 def _with_unit(text: str, unit: str) -> str:
-    """The text, with a unit if it is a bare number; a decimal comma is a point."""
+    """Add a unit to a text that is a bare number; a decimal comma becomes a point."""
     number = text.replace(",", ".", 1)
     return f"{number} {unit}" if re.fullmatch(r"[-+]?\d*\.?\d+(e[-+]?\d+)?", number) else text
 
 
 def _renamed(value: Any, old: str, new: str) -> Any:
-    """A name, or a list of names, in which one is replaced."""
+    """Replace a name, alone or within a list of names."""
     if isinstance(value, list):
         return [new if part == old else part for part in value]
     return new if value == old else value
@@ -235,7 +236,7 @@ def _renamed(value: Any, old: str, new: str) -> Any:
 def _with_references(
     tables: dict[str, Any], names: Iterable[str], keys: Sequence[str], old: str, new: str
 ) -> dict[str, Any]:
-    """Tables of which some, or lists of these, refer by some of their keys to a name that is replaced."""
+    """Replace a name where the tables `names`, or lists of tables, refer to it by one of the keys `keys`."""
 
     def changed(table: Any) -> Any:
         if isinstance(table, list):
@@ -248,11 +249,11 @@ def _with_references(
 
 
 def add(entries: Mapping[str, str], kind: str) -> Entries:
-    """The entries with one more body, point, joint or load, on bodies and points that there are."""
+    """Add a body, point, joint or load to the entries, with references to existing bodies and points."""
     tables = _tables(entries)
     if kind == "body":
         tables["bodies"] = [*_bodies(tables), _fresh("body", _bodies(tables))]
-    elif kind == "point":  # beside the last one where there is none, named by the next letter
+    elif kind == "point":  # a new point at a free place, named by the next letter
         points = _table_at(tables, "points")
         name = next((letter for letter in ascii_uppercase if letter not in points), _fresh("P", [*points]))
         taken = {tuple(at) for at in points.values() if isinstance(at, list)}
@@ -273,7 +274,7 @@ def _fresh(word: str, taken: Sequence[str]) -> str:
 
 
 def _first(key: str, kind: str, tables: Mapping[str, Any]) -> Any:
-    """The first value of an input of a new part: the last body or the last points, which are the newest."""
+    """Choose the first value of an input of a new joint or load: the newest body, the newest points."""
     points, body = [*_table_at(tables, "points")], next(reversed(_bodies(tables)), "")
     if key == "name":
         return _fresh(_PARTS[kind].kind(), [str(part.get("name")) for _, _, part in _parts(tables)])
@@ -288,10 +289,10 @@ def _first(key: str, kind: str, tables: Mapping[str, Any]) -> Any:
 
 
 def remove(entries: Mapping[str, str], item: Item) -> Entries:
-    """The entries without a body, point, joint or load, and without joints and loads that name it.
+    """Remove a body, point, joint or load from the entries, with joints and loads that refer to it.
 
-    A driver that goes ends the stroke.  A [caliper] names none of these parts; without cable and pads it is
-    none.
+    Without its driver there is no stroke.  [caliper] loses the names that are removed; without cable and pads
+    it is removed itself.
     """
     tables, name = _tables(entries), item.name
     keys: Sequence[str] = ()
@@ -328,7 +329,7 @@ def remove(entries: Mapping[str, str], item: Item) -> Entries:
 
 
 def empty(entries: Mapping[str, str]) -> Entries:
-    """Entries of one body and two points, to begin with."""
+    """Make the entries of a new mechanism, with one body and two points."""
     points = {"A": ["0 mm", "0 mm"], "B": ["40 mm", "0 mm"]}
     return _entries({"title": "my mechanism", "bodies": ["body 1"], "points": points})
 
@@ -337,7 +338,7 @@ def empty(entries: Mapping[str, str]) -> Entries:
 
 
 def advice(entries: Mapping[str, str]) -> list[str]:
-    """Sentences on what a mechanism still lacks before its forces are determined and it moves."""
+    """Return sentences on what a mechanism lacks until its forces are determined and it moves."""
     tables = _tables(entries)
     return [*_structure(tables)] or [*_motion(tables)]
 
@@ -363,16 +364,16 @@ def _structure(tables: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
-    """Compare degrees of freedom with unknown loads, and ask for what drives the stroke."""
+    """Compare degrees of freedom with unknown loads, and ask for a driver of the stroke, in sentences."""
     run = _table_at(tables, "run")
     try:
         core = mechanism_from_dict({**tables, "run": _without(run, "driver", "travel")}, "mechanism").core
     except (ConfigError, ValueError):
-        return  # the mistakes stand at the fields
+        return  # the form shows the mistakes at their fields
     if not isinstance(core, Mechanism):
         return
     free = core.system.size - core.system.constraints
-    # The magnitude of a spring follows from its length.
+    # A spring has no unknown magnitude: it follows from the spring's length.
     unknown = sum(getattr(load, "magnitude", 0.0) is None for load in core.loads)
     if free > unknown:
         yield (

@@ -1,4 +1,4 @@
-"""The program ``brakes app``: its documents, of which those of standard brakes follow from their types."""
+"""The program ``brakes app`` and its documents; those of standard brakes are made from their types."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput, parse_mechanism
 from brakes.reproduce.forklift_as_printed import answer_as_printed
 
-# The forklift: vehicle, kinematics and internal forces, which use results of those before ----------------
+# The forklift: vehicle, kinematics and internal forces; later screens use results of earlier ones --------
 
 
 def _as_printed(answer: ForkliftAnswer) -> str:
-    """Results beside those that follow from the paper's stop, in HTML."""
+    """Make an HTML table of the results beside those of the paper's printed stop."""
     printed = answer_as_printed(answer.design, answer.stages) or answer
     rows = list_outputs(stage_outputs(answer.stages), [answer, printed])
     return html([table("", ("", "corrected", "as printed", "unit"), rows, (0, 3))])
@@ -39,7 +39,7 @@ FORKLIFT = make_document(forklift.FORKLIFT, (VEHICLE, KINEMATICS, FORCES))
 
 
 def check_caliper(text: str, source: str) -> CaliperInput:
-    """Parse the file of a named caliper; raises `ConfigError` if it is of another kind."""
+    """Parse the file of a named caliper; raises `ConfigError` if it describes a mechanism of parts."""
     design = parse_mechanism(text, source)
     if not isinstance(design, CaliperInput):
         raise ConfigError(source, ["caliper: missing; a mechanism of parts has a screen of its own"])

@@ -1,4 +1,4 @@
-"""Screens and documents made from types of brakes, without knowledge of any particular brake."""
+"""Screens and documents that are made from any type of brake."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ def make_document(
     Parameters
     ----------
     brake : BrakeType
-        The type of brake, whose file is the document.
+        Type of brake whose file is the document.
     screens : tuple of Screen
-        Screens of the document; the one of the type if not given.
+        Screens of the document; by default the one of the type.
     check : callable, optional
-        ``check(text, name)`` raises `ConfigError` for a file that is not for this document; the commands'
-        check if not given.
+        ``check(text, name)`` raises `ConfigError` if a file is not for this document; by default the
+        commands' check.
     """
 
     def accept(text: str, source: str) -> object:
@@ -55,7 +55,7 @@ def make_document(
 
 
 def _nest(entries: Mapping[str, str]) -> dict[str, Any]:
-    """Entries of a form, "table.key", as tables."""
+    """Convert the entries of a form, by "table.key", to nested tables."""
     tables: dict[str, Any] = {}
     for path, text in entries.items():
         table, dot, key = path.partition(".")
@@ -67,7 +67,7 @@ def _nest(entries: Mapping[str, str]) -> dict[str, Any]:
 
 
 def make_screen(brake: BrakeType[Any], *more: FoldedPart) -> Screen:
-    """Make the screen of a type of brake; `more` are further parts that fold out on it."""
+    """Make the screen of a type of brake; `more` are further parts that can be folded out."""
     return Screen(
         brake.title,
         brake.purpose,
@@ -94,7 +94,7 @@ def make_screen(brake: BrakeType[Any], *more: FoldedPart) -> Screen:
 
 
 def make_sweeps(brake: BrakeType[Any]) -> Sweeps:
-    """Make the sweeps of a type of brake: one input against any of its outputs."""
+    """Make the sweeps of a type of brake: one input against any of the outputs."""
 
     def names(tables: Mapping[str, Any]) -> list[str]:
         return [output.name for output in brake.outputs(brake.read(tables, brake.name))]
@@ -106,7 +106,7 @@ def make_sweeps(brake: BrakeType[Any]) -> Sweeps:
 
 
 def _make_backwards(brake: BrakeType[Any]) -> Backwards:
-    """Make the questions backwards of a type of brake: any of its inputs for any of its outputs."""
+    """Make the questions backwards of a type of brake: any input for a wanted value of any output."""
 
     def units(tables: Mapping[str, Any]) -> dict[str, str]:
         return {output.name: output.unit for output in brake.outputs(brake.read(tables, brake.name))}

@@ -1,4 +1,4 @@
-"""A caliper: a mechanism that a cable closes until its two pads press on the rim."""
+"""A bicycle caliper: a mechanism that a cable closes until its two pads press on the rim."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from brakes.planar.statics import combine, find_wrong_way, one_way_parts, tolera
 from brakes.planar.system import OppositeTravelError
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
-_FINGER = 40.0  # N, a firm squeeze
+_FINGER = 40.0  # usual force of the hand on the lever of a brake [N], a firm squeeze
 _PAD = OneWay(
     "pad",
     "pull",
@@ -37,33 +37,35 @@ PivotRadius = Annotated[float, Described("m", meaning="radius of the pivots", le
 
 @dataclass(frozen=True)
 class Caliper:
-    """A mechanism with a cable and two pads, drawn open.
+    """A caliper as a mechanism with a cable and two pads, described in its open position.
 
     Parameters
     ----------
     mechanism : Mechanism
-        Its bodies and joints, and among its loads the cable and the pads' forces, whatever their magnitudes.
+        Bodies, joints and loads; the loads include the cable and the rim's forces on the pads, of any
+        magnitude.
     centring : tuple of joints
-        What keeps the free arms in step until the pads touch, such as equal return springs.  Empty where
-        the mechanism does so by itself: then `split` says how the rim loads the two pads, not statics.
+        Joints that keep the free arms in step until the pads touch, such as equal return springs.  Empty if
+        the mechanism does so itself: then `split`, not statics, tells how the rim loads the two pads.
     cable : str
-        The load that closes the brake.
+        Name of the load that closes the brake.
     pads : tuple of 2 str
-        The forces of the rim on the right and on the left pad, which point away from the rim.
+        Names of the rim's forces on the right and on the left pad, which point away from the rim.
     split : {"equal force", "equal work"}
-        Both pads press alike, or both do the same work (with no springs, tension 2 F_R delta_R).
+        Both pads press with the same force, or both do the same work during a small motion of the cable.
     lever_ratio : float
-        Travel of the finger over that of the cable.
+        Travel of the finger over the travel of the cable.
     clearance : float
         Mean gap between pad and rim [m]; the brake is centred so that both pads touch at once.
     pivot_radius : float
         Radius of the pivots [m].
     name : str
-        For titles.
+        Name for titles.
 
     References
     ----------
-    As `planar.solve`; advantage is force over force, and by virtual work travel over travel (standard).
+    The sources of `planar.solve`.  The advantage is the pad's force over the hand's, and by virtual work the
+    hand's travel over the pad's (standard).
 
     Examples
     --------
@@ -89,7 +91,7 @@ class Caliper:
         check_inputs(self)
         one_of("split", self.split, ("equal force", "equal work"))
         for name in (self.cable, *self.pads):
-            self.mechanism.load(name).with_magnitude(None)  # raises if it is a spring
+            self.mechanism.load(name).with_magnitude(None)  # with_magnitude raises if the load is a spring
         if len({self.cable, *self.pads}) < 3:
             raise ValueError(f"cable {self.cable!r} and pads {self.pads}: name three different loads")
 
@@ -97,13 +99,13 @@ class Caliper:
 
     @cached_property
     def free(self) -> Mechanism:
-        """The mechanism before the pads touch: with its centring joints and without tension."""
+        """The mechanism before the pads touch: with its centring joints, without tension and pad forces."""
         held = replace(self.mechanism, joints=(*self.mechanism.joints, *self.centring))
         return _with_magnitudes(held, {self.cable: 0.0, **dict.fromkeys(self.pads, 0.0)})
 
     @cached_property
     def contact(self) -> float:
-        """Travel of the cable at which the pads touch: their mean travel is the clearance [m].
+        """Travel of the cable at which the pads touch, their mean travel being the clearance [m].
 
         Raises
         ------
@@ -119,7 +121,7 @@ class Caliper:
             ) from None
 
     def _pads(self, travel: dict[str, np.ndarray]) -> np.ndarray:
-        """Travel of the pads (S, 2) towards the rim, against their forces."""
+        """Order the travels of the two pads, shape (S, 2), positive towards the rim."""
         return -np.stack([travel[name] for name in self.pads], axis=-1)
 
     # Forces -----------------------------------------------------------------------------------------
@@ -130,14 +132,14 @@ class Caliper:
         points: int = 100,
         finger: float = _FINGER,
     ) -> CaliperStroke:
-        """The caliper over its stroke.
+        """Compute travel and forces of the caliper over its stroke.
 
         Parameters
         ----------
         travel : float or sequence of floats, optional
-            Largest travel of the cable, or its travels [m]; up to where the pads touch if not given.
+            Largest travel of the cable, or all its travels [m]; if not given, up to where the pads touch.
         points : int
-            How many, from 0 to the largest.
+            Number of positions from 0 to the largest travel.
         finger : float
             Force of the finger on the hand lever [N].
 
@@ -173,20 +175,20 @@ class Caliper:
         )
 
     def equilibrium(self, travel: float | None = None, finger: float = _FINGER) -> Equilibrium:
-        """All forces at one travel of the cable [m], where the pads touch if not given; for free bodies."""
+        """Compute all forces at a travel of the cable [m], by default at contact, for free-body diagrams."""
         position = stroke(self.free, self.cable, [self.contact if travel is None else travel]).position
         tension = self.lever_ratio * positive("finger", finger, "N")
-        # without centring joints the split gives one of the two forces
+        # Without centring joints `split` fixes the force of the right pad.
         force = np.nan if self.centring else float(self._forces(position, tension)["pad_force"][0, 0])
         return self._at(position[0], tension, force)
 
     def equilibrium_after(self, run: CaliperStroke) -> Equilibrium:
-        """All forces at the last position of a stroke of this caliper; for free bodies."""
+        """Compute all forces at the last position of a stroke of this caliper, for free-body diagrams."""
         force = np.nan if self.centring else float(run.pad_force[-1, 0])
         return self._at(run.motion.position[-1], run.tension, force)
 
     def _at(self, position: Position, tension: float, right: float) -> Equilibrium:
-        """Equilibrium at a position; the force of the right pad [N] is unknown if it is nan."""
+        """Solve the equilibrium at a position; the right pad's force [N] is an unknown if it is nan."""
         return solve(self._with(tension, None if np.isnan(right) else right, None), position)
 
     def _with(self, tension: float | None, right: float | None, left: float | None) -> Mechanism:
@@ -195,10 +197,10 @@ class Caliper:
         )
 
     def _forces(self, position: Position, tension: float) -> dict[str, Any]:
-        """Forces at a tension [N], by the names of the attributes of a `CaliperStroke`.
+        """Compute forces at a cable tension [N], by the names of the attributes of `CaliperStroke`.
 
-        Where the arms are coupled, the answer is between those with one pad alone: any such mean is in
-        equilibrium, and the weight is the share of the right pad in the work.
+        If the arms are coupled, the result is a weighted mean of the equilibria with only one pad: any such
+        mean is in equilibrium, and the weight is the right pad's fraction of the work.
         """
         if self.centring:
             return _mean(solve(self._with(tension, None, None), position), None, self.pads, 1.0)
@@ -215,10 +217,10 @@ class Caliper:
     def friction(
         self, coefficient: float, travel: float | None = None, finger: float = _FINGER
     ) -> PivotFriction:
-        """Efficiency with friction at a travel of the cable [m], that of contact if not given.
+        """Compute the caliper's efficiency with friction at a travel of the cable [m], by default at contact.
 
-        The coefficient is that of all pivots that have none of their own; slots and contacts have their own.
-        The pads keep the forces that they have without friction; the tension is what friction changes.
+        The coefficient applies to all pivots that have none of their own; slots and contacts have their own.
+        The forces of the pads are those without friction; friction changes the tension that they need.
         """
         coefficient = not_negative("coefficient", coefficient)
         travel = self.contact if travel is None else travel
@@ -232,7 +234,7 @@ class Caliper:
         squeeze, release = (float(e.amplitudes[self.cable][0]) for e in (band.squeeze, band.release))
         ways = {name: way for name, way in band.ways.items() if way is not band.without}
         wrong = {name: way for name, way in ways.items() if way.status != "determined"}
-        # One that opens outweighs one that locks.
+        # A contact that opens is reported rather than a way that locks.
         worst = max(
             (way.status for way in wrong.values()), key=lambda s: s != "self-locking", default="determined"
         )
@@ -251,13 +253,13 @@ class Caliper:
         )
 
     def worn(self, lost: float) -> Caliper:
-        """The caliper whose pads have each lost a thickness [m]: their faces lie further from the rim."""
+        """Copy the caliper with each pad thinner by `lost` [m]: the pads' faces lie farther from the rim."""
         lost = not_negative("lost", lost, "m", "it is the thickness that a pad has lost")
         loads = tuple(load.shifted(lost) if load.name in self.pads else load for load in self.mechanism.loads)
         return replace(self, mechanism=replace(self.mechanism, loads=loads), clearance=self.clearance + lost)
 
     def wear(self, lost: Sequence[float] | np.ndarray) -> PadWear:
-        """Travel of contact and advantage there, for pads worn by several thicknesses (W,) [m]."""
+        """Compute the travel to contact, and the advantage there, for pads worn by thicknesses (W,) [m]."""
         lost = real_array("lost", lost)
         worn = [self.worn(thickness) for thickness in lost]
         runs = [caliper.stroke([caliper.contact]) for caliper in worn]
@@ -267,7 +269,7 @@ class Caliper:
 
 
 def _with_magnitudes(mechanism: Mechanism, magnitudes: dict[str, float | None]) -> Mechanism:
-    """The mechanism with other magnitudes of some of its loads."""
+    """Copy a mechanism with other magnitudes of the named loads."""
     loads = tuple(
         load.with_magnitude(magnitudes[load.name]) if load.name in magnitudes else load
         for load in mechanism.loads
@@ -278,7 +280,10 @@ def _with_magnitudes(mechanism: Mechanism, magnitudes: dict[str, float | None]) 
 def _mean(
     a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: np.ndarray | float
 ) -> dict[str, Any]:
-    """The weighted mean of two equilibria, `share` the weight of the first; or the first alone."""
+    """Compute the mean of two equilibria, with the weight `share` of the first; without `b`, take `a`.
+
+    Errors and residuals are the larger of the two, and the status is judged anew.
+    """
     b = a if b is None else b
     weight = np.broadcast_to(share, a.residual.shape)
 

@@ -1,9 +1,10 @@
-"""Six calipers as data: their dimensions, and the mechanisms these give.
+"""Six bicycle calipers as data: their dimensions, and the mechanisms that these describe.
 
 x points to the right and y up, seen from the front; the wheel's mid-plane is x = 0 and the brake is drawn
-open.  "Right" and "left" are the sides of the pads; the rim pushes them outward.  A dimension of a symmetric
-caliper is that of the right-hand side.  The eeBrake is a reconstruction that meets the numbers of the page on
-it, whose own coordinates are lost; the others have dimensions usual for their kind, of no particular product.
+open.  "Right" and "left" are the sides of the pads; the rim pushes the pads outward.  Dimensions of a
+symmetric caliper are given for its right side.  The eeBrake is reconstructed so that it meets the numbers of
+a web page whose own coordinates are lost; the others have dimensions usual for their kind, of no particular
+product.
 """
 
 from __future__ import annotations
@@ -35,16 +36,16 @@ def _point(meaning: str) -> DescribedPoint:
 
 @dataclass(frozen=True, kw_only=True)
 class Design:
-    """Dimensions that every caliper has.
+    """Dimensions that all calipers have: lever ratio, clearance, and radius of the pivots.
 
     Parameters
     ----------
     lever_ratio : float
-        Travel of the finger over that of the cable, at the hand lever.
+        Travel of the finger over the travel of the cable, at the hand lever.
     clearance : float
-        Mean gap between pad and rim, open [m].
+        Mean gap between pad and rim in the open position [m].
     pivot_radius : float
-        Radius of the pivots [m]; it matters with friction only.
+        Radius of the pivots [m]; it matters only with friction.
 
     Examples
     --------
@@ -64,7 +65,7 @@ class Design:
         check_inputs(self)
 
     def build(self) -> Caliper:
-        """The caliper of these dimensions."""
+        """Make the caliper with these dimensions."""
         raise NotImplementedError
 
     def _caliper(self, mechanism: Mechanism, centring: tuple[RotationLock, ...] = (), **more: Any) -> Caliper:
@@ -81,23 +82,23 @@ class Design:
 
 @dataclass(frozen=True, kw_only=True)
 class EeBrake(Design):
-    """The eeBrake: two levers on the panel, a strut and a link that keep them in step; reconstructed.
+    """The eeBrake, reconstructed: two levers on the panel, which a strut and a link keep in step.
 
     Parameters
     ----------
     pivot, pad, upper_pin : tuple of 2 floats
-        Of the right lever: its pivot on the panel, its pad, the pin of the strut; the left lever mirrors it,
-        and its upper pin is O of the upper-left lever [m].
+        Pivot of the right lever on the panel, its pad, and its pin with the strut [m]; the left lever is the
+        mirror image, and its upper pin O carries the upper-left lever.
     link_pin, strut_pin, housing : tuple of 2 floats
-        Points A, B and C of the upper-left lever: the link, the strut, and the face on which the cable's
-        housing stands [m].
+        Points A (link), B (strut) and C (face on which the cable's housing stands) of the upper-left lever
+        [m].
     link_anchor : tuple of 2 floats
-        The link's end G on the panel [m].
+        End G of the link on the panel [m].
     cable_anchor : tuple of 2 floats
-        Where the inner wire ends on the panel: at the right pivot [m].
+        End of the inner wire on the panel, at the right pivot [m].
     split : {"equal force", "equal work"}
-        How the rim shares the load between the pads, which statics alone does not say: "equal work" is the
-        reading T = 2 delta_R under which the page's X = 0.875 comes out.
+        How the two pads share the load of the rim, which statics alone does not fix; "equal work" is the
+        reading T = 2 delta_R, which gives the published X = 0.875.
 
     Examples
     --------
@@ -125,7 +126,7 @@ class EeBrake(Design):
     split: Split = "equal force"
 
     def build(self) -> Caliper:
-        """The caliper of these dimensions."""
+        """Make the caliper with these dimensions."""
         right, left, upper, strut, link = "right lever", "left lever", "upper-left lever", "strut", "link"
         joints = (
             Pin("right pivot", right, GROUND, self.pivot),
@@ -145,14 +146,14 @@ class EeBrake(Design):
 
 @dataclass(frozen=True, kw_only=True)
 class SinglePivot(Design):
-    """Single-pivot side-pull: both arms on the mount bolt, the cable pulls their ends together at the side.
+    """Single-pivot side-pull: both arms turn on the mount bolt, and the cable pulls their ends together.
 
     Parameters
     ----------
     bolt, pad : tuple of 2 floats
         The mount bolt, on which both arms turn, and the right pad [m].
     clamp, housing : tuple of 2 floats
-        Cable clamp on the arm of the right pad, housing's stop on the arm of the left pad [m].
+        Cable clamp on the arm of the right pad, and housing stop on the arm of the left pad [m].
 
     Examples
     --------
@@ -168,7 +169,7 @@ class SinglePivot(Design):
     housing: Annotated[Point, _point("stop of the housing, on the arm of the left pad")] = (-42 * MM, 34 * MM)
 
     def build(self) -> Caliper:
-        """The caliper of these dimensions."""
+        """Make the caliper with these dimensions."""
         joints = (
             Pin("bolt, right arm", RIGHT, GROUND, self.bolt),
             Pin("bolt, left arm", LEFT, GROUND, self.bolt),
@@ -179,18 +180,18 @@ class SinglePivot(Design):
 
 @dataclass(frozen=True, kw_only=True)
 class DualPivot(Design):
-    """Dual-pivot side-pull: one arm on the mount bolt, the other beside it, a roller keeps them in step.
+    """Dual-pivot side-pull: one arm turns on the mount bolt, one beside it; a roller keeps them in step.
 
     Parameters
     ----------
     bolt, side_pivot : tuple of 2 floats
-        Pivot of the arm of the left pad, and of that of the right pad [m].
+        Pivots of the arm of the left pad and of the arm of the right pad [m].
     roller : tuple of 2 floats
-        Where the right pad's arm lifts the left pad's arm [m].
+        Point where the right pad's arm lifts the left pad's arm [m].
     pad : tuple of 2 floats
         The right pad [m].
     clamp, housing : tuple of 2 floats
-        Cable clamp on the arm of the right pad, housing's stop on the arm of the left pad [m].
+        Cable clamp on the arm of the right pad, and housing stop on the arm of the left pad [m].
 
     Examples
     --------
@@ -210,7 +211,7 @@ class DualPivot(Design):
     split: Split = "equal force"
 
     def build(self) -> Caliper:
-        """The caliper of these dimensions."""
+        """Make the caliper with these dimensions."""
         joints = (
             Pin("side pivot", RIGHT, GROUND, self.side_pivot),
             Pin("bolt", LEFT, GROUND, self.bolt),
@@ -222,12 +223,13 @@ class DualPivot(Design):
 
 @dataclass(frozen=True, kw_only=True)
 class CentrePull(Design):
-    """Centre-pull: arms that cross, on a pivot each; a yoke pulls the straddle cable between their ends.
+    """Centre-pull: arms that cross, each on its pivot; a yoke pulls the straddle cable between their ends.
 
     Parameters
     ----------
     pivot, pad, hook : tuple of 2 floats
-        Pivot and pad of the right arm, and its end of the straddle cable, beyond the middle [m].
+        Pivot and pad of the right arm, and its end of the straddle cable, on the other side of the middle
+        [m].
     yoke, stop : tuple of 2 floats
         The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
 
@@ -246,13 +248,13 @@ class CentrePull(Design):
     stop: Annotated[Point, _point("stop of the main cable's housing")] = (0 * MM, 120 * MM)
 
     def build(self) -> Caliper:
-        """The caliper of these dimensions."""
+        """Make the caliper with these dimensions."""
         return self._caliper(straddled(self), CENTRED)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cantilever(Design):
-    """Cantilever: arms on bosses below the rim, a yoke pulls the straddle cable between their outer ends.
+    """Cantilever: arms on bosses below the rim; a yoke pulls the straddle cable between their outer ends.
 
     Parameters
     ----------
@@ -276,18 +278,19 @@ class Cantilever(Design):
     stop: Annotated[Point, _point("stop of the main cable's housing")] = (0 * MM, 130 * MM)
 
     def build(self) -> Caliper:
-        """The caliper of these dimensions."""
+        """Make the caliper with these dimensions."""
         return self._caliper(straddled(self), CENTRED)
 
 
 @dataclass(frozen=True, kw_only=True)
 class VBrake(Design):
-    """V-brake (linear-pull): long arms on bosses below the rim, the cable pulls their tops together.
+    """V-brake (linear-pull): long arms on bosses below the rim; the cable pulls their tops together.
 
     Parameters
     ----------
     pivot, pad, clamp : tuple of 2 floats
-        Boss and pad of the right arm, and the cable clamp at its top; the left arm's noodle mirrors it [m].
+        Boss and pad of the right arm, and the cable clamp at its top [m]; the left arm with
+        the cable's noodle is its mirror image.
 
     Examples
     --------
@@ -303,7 +306,7 @@ class VBrake(Design):
     clamp: Annotated[Point, _point("cable clamp at the top of the right arm")] = (34 * MM, 80 * MM)
 
     def build(self) -> Caliper:
-        """The caliper of these dimensions."""
+        """Make the caliper with these dimensions."""
         joints = (
             Pin("right boss", RIGHT, GROUND, self.pivot),
             Pin("left boss", LEFT, GROUND, mirrored(self.pivot)),
@@ -326,12 +329,12 @@ CENTRED = (RotationLock("return springs", LEFT, RIGHT, -1.0),)
 
 
 def mirrored(point: Point) -> Point:
-    """Mirror image of a point, on the other side."""
+    """Mirror a point on the wheel's mid-plane x = 0."""
     return -point[0], point[1]
 
 
 def pads(right: Point, right_body: str = RIGHT, left_body: str = LEFT) -> tuple[Force, Force]:
-    """Forces of the rim on the right pad and on its mirror image."""
+    """Make the rim's forces on the right pad at a point, and on the left pad at its mirror image."""
     return (
         Force(RIGHT_PAD, right_body, right, (1.0, 0.0)),
         Force(LEFT_PAD, left_body, mirrored(right), (-1.0, 0.0)),
@@ -339,7 +342,7 @@ def pads(right: Point, right_body: str = RIGHT, left_body: str = LEFT) -> tuple[
 
 
 def straddled(arms: CentrePull | Cantilever) -> Mechanism:
-    """Two arms and a yoke that slides on the straddle cable; the main cable keeps it in the middle."""
+    """Make the mechanism of two arms and a yoke on a straddle cable, which the main cable keeps centred."""
     yoke = "yoke"
     joints = (
         Pin("right pivot", RIGHT, GROUND, arms.pivot),

@@ -1,4 +1,4 @@
-"""Results of a caliper: over its stroke, with friction in the pivots, and with worn pads."""
+"""Results of a bicycle caliper: over its stroke, with friction in the pivots, and with worn pads."""
 
 from __future__ import annotations
 
@@ -16,45 +16,45 @@ from brakes.planar.statics import is_answer
 
 @dataclass(frozen=True)
 class CaliperStroke(Result):
-    """A caliper over its stroke; S positions, and the pads in the order right, left.
+    """Travel and forces of a caliper over its stroke, at S positions; pads in the order right, left.
 
-    The pads are loaded at every position as if the rim were just there.  What is not determined is nan.
+    At every position the pads are loaded as if the rim were just there.  What cannot be determined is nan.
 
     Parameters
     ----------
     caliper : str
-        Its name.
+        Name of the caliper.
     status, message : str
-        Worst of the positions, as in `planar.Equilibrium`; "contact opens" also where a pad would have to
+        Worst status of all positions, as in `planar.Equilibrium`; "contact opens" also if a pad would have to
         pull.
     warnings : tuple of str
-        Toggle positions.
+        One sentence for each toggle position.
     finger_force, tension : float
         Force of the finger on the hand lever and tension of the cable [N].
     lever_ratio : float
-        Travel of the finger over that of the cable.
+        Travel of the finger over the travel of the cable.
     cable, finger : ndarray, shape (S,)
         Travels of cable and finger from the open position [m].
     pad_travel : ndarray, shape (S, 2)
         Travel of each pad towards the rim [m].
     pad_ratio : ndarray, shape (S, 2)
-        Its velocity over that of the cable.
+        Velocity of each pad over the velocity of the cable.
     pad_force : ndarray, shape (S, 2)
         Force of each pad on the rim [N].
     advantage : ndarray, shape (S, 2)
-        The same over the force of the finger.
+        Force of each pad over the force of the finger.
     reactions : dict of ndarray, shape (S, 2)
-        Force (x, y) of each joint on the body named first [N].
+        Force (x, y) of each joint on the body that it names first [N].
     magnitudes : dict of ndarray, shape (S,)
-        Its size, as in `planar.Equilibrium` [N, or N m of a rotation lock].
+        Magnitude of each joint's reaction, as in `planar.Equilibrium` [N, or N m of a rotation lock].
     virtual_work : ndarray, shape (S,)
-        Largest work of the loads on a free motion over the largest force: 0 but for rounding.
+        Largest virtual work of the loads in a free motion, over the largest force: zero up to rounding.
     residual : ndarray, shape (S,)
-        Largest force or moment left over on a body, over the largest force.
+        Largest residual force or moment on a body, over the largest force.
     error : ndarray, shape (S,)
-        Error of the forces over the largest, as in `planar.Equilibrium`.
+        Error of the forces relative to the largest, as in `planar.Equilibrium`.
     motion : Stroke
-        Positions of the bodies.
+        Positions of the bodies over the stroke.
 
     Examples
     --------
@@ -89,7 +89,7 @@ class CaliperStroke(Result):
     motion: Stroke = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{self.caliper}, {counted(len(self.cable), 'position')}"
         yield f"cable to {number(1e3 * self.cable[-1], 'mm')}"
         yield f"advantage {number(self.total_advantage[-1])}"
@@ -98,26 +98,26 @@ class CaliperStroke(Result):
 
     @property
     def position(self) -> Position:
-        """Positions of the bodies."""
+        """Positions of the bodies over the stroke."""
         return self.motion.position
 
     @property
     def total_advantage(self) -> np.ndarray:
-        """Sum of both pads' forces over that of the finger, shape (S,)."""
+        """Sum of both pads' forces over the force of the finger, shape (S,)."""
         return self.advantage.sum(axis=1)
 
     @property
     def travel_symmetry(self) -> np.ndarray:
-        """Velocity of the left pad over that of the right, shape (S,)."""
+        """Velocity of the left pad over the velocity of the right pad, shape (S,)."""
         return self.pad_ratio[:, 1] / self.pad_ratio[:, 0]
 
     @property
     def force_symmetry(self) -> np.ndarray:
-        """Force of the left pad over that of the right, shape (S,)."""
+        """Force of the left pad over the force of the right pad, shape (S,)."""
         return self.pad_force[:, 1] / self.pad_force[:, 0]
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings."""
+        """Convert the result to plain numbers, lists and strings."""
         sets = {
             key: {name: plain(values) for name, values in getattr(self, key).items()}
             for key in ("reactions", "magnitudes")
@@ -137,17 +137,19 @@ class PivotFriction(Result):
     cable : float
         Travel of the cable [m].
     tension, squeezing_tension, releasing_tension : float
-        Tension of the cable that gives the same forces of the pads without friction, while it is squeezed and
-        while it is let go [N].  Negative where the cable would have to push the brake open, nan where the
+        Tension of the cable that gives the same pad forces without friction, while the lever is squeezed, and
+        while it is released [N].  Negative if the cable would have to push the brake open, nan if the
         brake jams.
     squeeze : float
-        Efficiency while it is squeezed: tension without friction over that with it, for the same pad forces.
+        Efficiency while the lever is squeezed: tension without friction over tension with it.
     release : float
-        While it is let go: tension with friction over that without; 0 where friction holds the brake closed.
+        Ratio while the lever is released: tension with friction over tension without; 0 if friction holds the
+        brake.
     error : float
-        Error of the forces with friction over the largest, as in `planar.Equilibrium`; nan where it jams.
+        Error of the forces with friction relative to the largest, as in `planar.Equilibrium`; nan if the
+        brake jams.
     status, message : str
-        "determined"; "self-locking", "contact opens" or "cable slackens", and in which direction.
+        "determined", or "self-locking", "contact opens" or "cable slackens" with the direction of motion.
 
     Examples
     --------
@@ -170,29 +172,29 @@ class PivotFriction(Result):
     message: str
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"coefficient {number(self.coefficient)}"
         yield f"efficiency {number(self.squeeze)} squeezing, {number(self.release)} releasing"
         yield self.status
 
     @property
     def has_answer(self) -> bool:
-        """Whether a tension moves the brake either way, and no contact opens and no cable slackens."""
+        """Whether a tension moves the brake both ways, while no contact opens and no cable slackens."""
         return is_answer(self.status, (self.squeezing_tension, self.releasing_tension))
 
 
 @dataclass(frozen=True)
 class PadWear(Result):
-    """Contact and advantage after both pads have worn by W thicknesses, the cable not readjusted.
+    """Travel to contact, and advantage there, with pads worn by W thicknesses and the cable not readjusted.
 
     Parameters
     ----------
     lost : ndarray, shape (W,)
         Thickness lost by each pad [m].
     cable, finger : ndarray, shape (W,)
-        Travel at which the pads touch [m].
+        Travel of cable and finger at which the pads touch [m].
     advantage : ndarray, shape (W, 2)
-        Force of the right and left pad over that of the finger there.
+        Force of the right and of the left pad over the force of the finger, where the pads touch.
 
     Examples
     --------
@@ -209,6 +211,6 @@ class PadWear(Result):
     advantage: np.ndarray
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{spanned(1e3 * self.lost, 'mm')} lost"
         yield f"finger to {spanned(1e3 * self.finger, 'mm')}, advantage {spanned(self.advantage.sum(axis=1))}"

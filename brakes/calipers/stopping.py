@@ -1,4 +1,4 @@
-"""Stopping distance of a vehicle, by its energy M v^2 = 4 mu F L or step by step, and its stance."""
+"""Stopping distance of a vehicle with one rim brake, limited by grip and by pitching over."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Result
 from brakes.planar.part import check_inputs
 
-# How much a two-wheeled vehicle can be braked at one wheel: grip of the tyre, and pitching over ----------
+# Limits of braking a two-wheeled vehicle at one wheel: grip of the tyre, and pitching over ----------
 
 
-GRAVITY = 9.80665  # [m/s2] standard
-EQUAL = 1e-9  # relative difference that is rounding
+GRAVITY = 9.80665  # standard acceleration of gravity [m/s2]
+EQUAL = 1e-9  # relative difference of two values that counts as rounding
 TyreFriction = Annotated[float, Described("", "mu_t", "friction of the tyre on the road", above=0, most=2)]
 Wheelbase = Annotated[float, Described("m", "L", "distance of the axles", above=0)]
 Height = Annotated[float, Described("m", "h", "height of the centre of gravity, with rider", above=0)]
@@ -30,22 +30,22 @@ Behind = Annotated[
 
 @dataclass(frozen=True)
 class Stance:
-    """Where the weight of a vehicle with two wheels lies, and what the braked tyre holds.
+    """Centre of gravity, wheelbase and tyre friction of a two-wheeled vehicle, with the wheel that is braked.
 
-    What is not given is that of a usual upright bicycle with its rider.
+    The defaults are those of a usual upright bicycle with its rider.
 
     Parameters
     ----------
     braked_wheel : {"front", "rear"}
         The wheel with the brake.
     tyre_friction : float
-        Friction of its tyre on the road.
+        Coefficient of friction between the braked wheel's tyre and the road.
     wheelbase : float
-        Distance of the axles [m].
+        Distance between the axles [m].
     cg_height : float
         Height of the centre of gravity above the road, with rider [m].
     cg_behind_front : float
-        Its horizontal distance behind the front axle [m].
+        Horizontal distance of the centre of gravity behind the front axle [m].
 
     Raises
     ------
@@ -78,24 +78,25 @@ class Stance:
             raise InvalidValue("cg_behind_front", self.cg_behind_front, bound, **given)
 
     def pitch_limit(self, lift: float) -> float:
-        """Deceleration at which the rear wheel lifts [m/s2].
+        """Compute the deceleration at which the rear wheel lifts [m/s2].
 
         Parameters
         ----------
         lift : float
-            (M h + J / R) / (M h): what the wheels' inertia adds to the moment that lifts it.
+            Factor (M h + J / R) / (M h) by which the wheels' inertia increases the moment that lifts the
+            wheel.
         """
         return GRAVITY * self.cg_behind_front / (self.cg_height * lift)
 
     def grip_limit(self, lift: float, inertia: float) -> float:
-        """Deceleration at which the braked tyre slips [m/s2], inf if it never does.
+        """Compute the deceleration at which the braked tyre slips [m/s2]; inf if it never does.
 
         Parameters
         ----------
         lift : float
             As for `pitch_limit`.
         inertia : float
-            (M + J / R^2) / M.
+            Factor (M + J / R^2) / M by which the wheels' inertia increases the mass.
         """
         mu, length, x = self.tyre_friction, self.wheelbase, self.cg_behind_front
         moved = mu * self.cg_height * lift
@@ -105,32 +106,32 @@ class Stance:
         return mu * GRAVITY * (length - x) / holds if holds > 0 else math.inf
 
 
-_RTOL, _ATOL = 1e-12, 1e-12  # tolerances of the integration; the latter [m]
+_RTOL, _ATOL = 1e-12, 1e-12  # relative, and absolute [m], tolerance of the integration
 _USUAL = Stance()
 _WHEEL_INERTIA = Described("kg m2", "J", "moment of inertia of all wheels", least=0)
 
 
 @dataclass(frozen=True)
 class StoppingDistance(Result):
-    """A stop on one rim with two pads.
+    """A vehicle's stop by the two pads on one rim.
 
     Parameters
     ----------
     distance : float
         Stopping distance [m]; inf where the brake does not stop the vehicle.
     energy : float
-        Energy that the pads take up [J].
+        Energy that the pads absorb [J].
     deceleration : float
         Mean deceleration over the distance [m/s2].
     grip_limit, pitch_limit : float
-        Decelerations at which the braked tyre slips, inf if it never does, and at which the rear wheel lifts
+        Decelerations at which the braked tyre slips (inf if it never does), and at which the rear wheel lifts
         [m/s2].
     pad_limit : float
-        Force on each pad at the lower of the two limits [N], which is not exceeded.
+        Force on each pad at the lower of these two limits [N], which is not exceeded.
     limited_by : {"brake", "grip", "pitching over"}
         What limits the deceleration.
     status : {"stops", "does not stop"}
-        Whether it stops.
+        Whether the vehicle stops.
     message : str
         The status as a sentence, with what limits the stop if that is not the brake.
 
@@ -159,7 +160,7 @@ class StoppingDistance(Result):
     message: str
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{number(self.distance, 'm')} at {number(self.deceleration, 'm/s2')}"
         yield f"limited by {self.limited_by}"
         yield self.status
@@ -175,11 +176,11 @@ def stop(
     rim_radius: Annotated[float, Described("m", "r", "radius at the pads", above=0)] | None = None,
     stance: Stance = _USUAL,
 ) -> StoppingDistance:
-    """Stop on level ground by the pads of one rim alone, with no more than grip and balance allow.
+    """Compute a stop on level ground by the pads on one rim, within the limits of grip and pitching over.
 
     With the force F on each of two pads, E = (M + J / R^2) v^2 / 2 = integral of 2 mu F (r / R) ds over the
-    stopping distance; constant F, no inertia and r = R give M v^2 = 4 mu F L (the eeBrake page's form).
-    The rider does not squeeze harder than at the limit of the stance.
+    stopping distance. For constant F, no inertia and r = R this is M v^2 = 4 mu F L (as on the eeBrake page).
+    The rider does not squeeze harder than grip and pitching over allow.
 
     Parameters
     ----------
@@ -194,11 +195,11 @@ def stop(
     wheel_inertia : float
         Moment of inertia J of all wheels about their axles [kg m2].
     tyre_radius : float, optional
-        Rolling radius R of the wheels [m]; needed with the inertia of the wheels.
+        Rolling radius R of the wheels [m]; needed if `wheel_inertia` or `rim_radius` is given.
     rim_radius : float, optional
-        Radius r at which the pads press [m]; that of the tyre if not given, as on that page.
+        Radius r at which the pads press [m]; if not given, that of the tyre, as on the eeBrake page.
     stance : Stance
-        The braked wheel, its grip, and where the centre of gravity is; that of a usual bicycle if not given.
+        The braked wheel, its grip, and the centre of gravity; by default those of a usual bicycle.
 
     Returns
     -------
@@ -236,7 +237,7 @@ def stop(
         distance = float(path[-1])
         peak = max(float(pad_force(s)) for s in path if s < math.inf) if energy else 0.0
     else:
-        peak = not_negative("pad_force", pad_force, "N")  # the greatest force of a pad that is asked for
+        peak = not_negative("pad_force", pad_force, "N")  # greatest force of a pad that is asked for
         distance = energy / (factor * min(peak, most)) if peak else math.inf
     limit = "grip" if grip < pitch * (1 - EQUAL) else "pitching over"
     limited_by = "brake" if peak <= most * (1 + EQUAL) else limit
@@ -278,7 +279,10 @@ def _radius_ratio(rim_radius: float | None, tyre_radius: float | None) -> float:
 
 
 def _integrated(energy: float, factor: float, force: Callable[[float], float]) -> np.ndarray:
-    """Distances s at which ds/dE = 1 / (factor F(s)) uses the energy up; the last is inf if F vanishes."""
+    """Compute the distances in which a force that depends on distance takes up the energy.
+
+    It integrates ds/dE = 1/(factor F(s)); the last distance is inf if the force F vanishes before.
+    """
     from scipy.integrate import solve_ivp
 
     if not force(0.0) > 0:

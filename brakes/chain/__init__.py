@@ -1,9 +1,8 @@
-"""From pedal or lever to the wheels: actuation by line or cable, what brakes and road give, and the heat."""
+"""From pedal or lever to the wheels: actuation by line or cable, braking force, fading and heat of a stop."""
 
 from brakes.chain.actuation import Actuation, actuate, force_for, ratio_for
 from brakes.chain.braked import BrakedStop, brake_from_pedal
-from brakes.chain.fading import fade_of_stops
-from brakes.chain.heat import Drums, Heat, heat_of_stop
+from brakes.chain.heat import Drums, Heat, fade_of_stops, heat_of_stop
 from brakes.chain.lines import BrakeCable, HydraulicLine
 from brakes.chain.pedal import Pedal
 from brakes.chain.wheel_brakes import WheelBrakes

@@ -1,8 +1,8 @@
-"""From the force on the pedal to that on the brakes' actuators, and back.
+"""Actuation of brakes: from the force on the pedal to the force on the brakes' actuators, and back.
 
-Force and stroke rise with the pedal's force, each by a formula that is solved for it; at a given force on the
-actuators the stroke of the rod is given too, so that the pedal's force falls as 1 / ratio while its travel
-rises in proportion to the ratio. Each question backwards so has one answer or none.
+Force and stroke rise with the pedal's force, each by a formula that can be inverted. A given force on the
+actuators also fixes the stroke of the pedal's rod, so that the pedal's force falls as 1 / ratio while its
+travel rises in proportion to the ratio. So each question backwards has one answer or none.
 """
 
 from __future__ import annotations
@@ -20,11 +20,10 @@ from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.chain.lines import BrakeCable, HydraulicLine
 from brakes.chain.pedal import Pedal
-from brakes.common.limits import passes, verdict
+from brakes.common.limits import EDGE, passes, verdict
 from brakes.vehicle.backwards import Needed, needed
 
 Line = HydraulicLine | BrakeCable
-_EDGE = 1e-9  # relative excess over a limit that is rounding
 
 
 @dataclass(frozen=True)
@@ -34,17 +33,17 @@ class Actuation(Result):
     Attributes
     ----------
     pedal, line : Pedal, HydraulicLine or BrakeCable
-        What was pressed.
+        The pedal, and the line or cable that it acts on.
     pedal_force : ndarray
-        On the pedal [N].
+        Force on the pedal [N].
     output_force : ndarray
-        Behind pedal and booster [N].
+        Force behind pedal and booster [N].
     pressure : ndarray
-        Of the line [Pa]; nan of a cable.
+        Pressure of the line [Pa]; nan for a cable.
     actuator_force : ndarray
-        On each actuator of a brake [N].
+        Force on each actuator of a brake [N].
     pedal_travel : ndarray
-        Of the pedal [m].
+        Travel of the pedal [m].
 
     Examples
     --------
@@ -63,32 +62,32 @@ class Actuation(Result):
     pedal_travel: Annotated[Numbers, Meaning("m", "travel of pedal or lever, by the travels given", "mm")]
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{spanned(self.pedal_force, 'N')} on the pedal"
         yield f"{spanned(self.actuator_force, 'N')} on each actuator"
         yield warned(self.warnings)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The verdict if the force is above what the standards allow."""
+        """Sentence on a pedal force above what the standards allow; empty if it is allowed."""
         limb = self.pedal.operated_by
         return (f"the {self.verdict}",) if passes(limb, self.pedal_force) else ()
 
     @property
     def verdict(self) -> str:
-        """Whether the force keeps the limit of the standards, in one sentence."""
+        """One sentence that compares the pedal's force with the limit of the standards."""
         return verdict(self.pedal.operated_by, self.pedal_force)
 
 
 def actuate(pedal: Pedal, line: Line) -> Actuation:
-    """Find the forces and the travel at the pedal's force.
+    """Compute forces and travel from the pedal to the actuators at the pedal's force.
 
     Parameters
     ----------
     pedal : Pedal
         The pedal and the force on it.
     line : HydraulicLine or BrakeCable
-        What carries the force on.
+        What carries the force on to the actuators.
 
     Returns
     -------
@@ -116,7 +115,7 @@ def actuate(pedal: Pedal, line: Line) -> Actuation:
     travel = pedal.ratio * line.stroke(output)
     _refuse_pressure(line, output)
     if pedal.travel is not None:
-        late = np.asarray(travel) > pedal.travel * (1 + _EDGE)
+        late = np.asarray(travel) > pedal.travel * (1 + EDGE)
         bound, remedy = "it needs a travel of {limit}", "less lost travel, or a smaller ratio"
         refuse(late, "travel", pedal.travel, "m", bound, remedy, limit=travel)
     force = pedal.force + 0.0 * output
@@ -124,21 +123,21 @@ def actuate(pedal: Pedal, line: Line) -> Actuation:
 
 
 def force_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
-    """Force on the pedal [N] that gives a force on the actuators.
+    """Find the force on the pedal [N] that gives a wanted force on the actuators.
 
     Parameters
     ----------
     pedal : Pedal
         The pedal; its own force is not used.
     line : HydraulicLine or BrakeCable
-        What carries the force on.
+        What carries the force on to the actuators.
     actuator_force : float or ndarray
-        Wanted on each actuator [N].
+        Wanted force on each actuator [N].
 
     Returns
     -------
     Needed
-        The force; none where the line or the travel of the pedal ends before.
+        The force; none if the line's pressure or the pedal's travel reaches its limit first.
 
     Raises
     ------
@@ -161,21 +160,21 @@ def force_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
 
 
 def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
-    """Ratio of the pedal that gives a force on the actuators at the pedal's force.
+    """Find the pedal ratio that gives a wanted force on the actuators at the pedal's force.
 
     Parameters
     ----------
     pedal : Pedal
         The pedal; its own ratio is not used.
     line : HydraulicLine or BrakeCable
-        What carries the force on.
+        What carries the force on to the actuators.
     actuator_force : float or ndarray
-        Wanted on each actuator [N].
+        Wanted force on each actuator [N].
 
     Returns
     -------
     Needed
-        The ratio; none where the pedal's travel runs out before, as it rises with the ratio.
+        The ratio; none if the pedal's travel, which rises with the ratio, reaches its limit first.
 
     Raises
     ------
@@ -206,7 +205,7 @@ def _check(pedal: Pedal, line: Line) -> None:
 
 
 def _output_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Numbers:
-    """Force behind the booster that gives a force on the actuators [N]."""
+    """Compute the force behind the booster [N] that gives a wanted force on the actuators."""
     _check(pedal, line)
     wanted = not_negative("actuator_force", actuator_force, "N")
     together(actuator_force=wanted, pedal=pedal.output_force * line.gain)
@@ -214,9 +213,9 @@ def _output_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Numbers:
 
 
 def _ends(pedal: Pedal, line: Line, output: Numbers, travel: Numbers) -> tuple[tuple[Numbers, str], ...]:
-    """Which cases have no answer, and why."""
-    over = output > line.limit * (1 + _EDGE)
-    far = travel > (np.inf if pedal.travel is None else pedal.travel * (1 + _EDGE))
+    """Decide which cases have no answer, and why."""
+    over = output > line.limit * (1 + EDGE)
+    far = travel > (np.inf if pedal.travel is None else pedal.travel * (1 + EDGE))
     return (
         (over, "the line would exceed the pressure of its cylinders, which rises with the force"),
         (far, "the travel runs out before: it rises with the ratio and with the force"),
@@ -225,6 +224,6 @@ def _ends(pedal: Pedal, line: Line, output: Numbers, travel: Numbers) -> tuple[t
 
 def _refuse_pressure(line: Line, output: Numbers) -> None:
     if isinstance(line, HydraulicLine) and line.most_pressure is not None:
-        over = np.asarray(output) > line.limit * (1 + _EDGE)
+        over = np.asarray(output) > line.limit * (1 + EDGE)
         bound, remedy = "the pedal's force gives {limit}", "less force, or a larger master cylinder"
         refuse(over, "most_pressure", line.most_pressure, "Pa", bound, remedy, limit=line.pressure(output))

@@ -1,7 +1,7 @@
-"""A truck's stop from its pedal: the smaller of what the brakes give and what the road holds.
+"""A truck's stop from its pedal, with the smaller of the forces that brakes and road can give.
 
-The torque of a brake is in proportion to the force on its actuator, by the brake factor C* times the radius.
-So the pedal's force at which the wheels just lock follows from the torque of locked wheels in closed form.
+The torque of a brake is C* r times the force on its actuator, with brake factor C* and drum radius r.
+So the pedal force at which the wheels just lock follows from the torque of locked wheels in closed form.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from brakes.vehicle.backwards import Needed
 
 @dataclass(frozen=True)
 class BrakedStop(Result):
-    """A stop from the pedal; arrays have one entry per case.
+    """A truck's stop from the force on its pedal; arrays have one entry per case.
 
     Attributes
     ----------
     actuation : Actuation
-        From the pedal to the actuators.
+        Forces and travel from the pedal to the actuators.
     stop : Stop
-        The stop with what brakes and road give.
+        The stop, with the smaller of the forces that brakes and road can give.
     available_torque : ndarray
         Torque that each front brake can give at the pedal's force [N m].
     locking_torque : ndarray
@@ -61,13 +61,13 @@ class BrakedStop(Result):
     friction: Needed
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield from self.stop.headline()
         yield "" if np.ndim(self.limited_by) else f"the {self.limited_by} limits"
 
     @property
     def limited_by(self) -> Any:
-        """Name of the smaller braking force: that of the "brake", or of the "road"."""
+        """The limit of the braking force: "brake", or "road" where the wheels lock."""
         return self.stop.limited_by
 
     @property
@@ -77,19 +77,19 @@ class BrakedStop(Result):
 
     @property
     def locking_pressure(self) -> Numbers:
-        """Pressure of the line there [Pa], to which a brake's torque is in proportion; nan of a cable."""
+        """Line pressure at which the wheels just lock [Pa]; nan for a cable."""
         return self.actuation.pressure * self.locking_torque / self.available_torque
 
     @property
     def least_friction(self) -> Numbers:
-        """Least friction of the tyres with which locked wheels stop the truck; nan where there is none."""
+        """Least tyre friction with which locked wheels stop the truck; nan if none of 2 or less does."""
         return self.friction.value
 
 
 def brake_from_pedal(
     truck: Truck, conditions: StopConditions, pedal: Pedal, line: Line, torque_per_force: Numbers
 ) -> BrakedStop:
-    """Stop a truck by its pedal.
+    """Compute the stop of a truck from the force on its pedal.
 
     Parameters
     ----------

@@ -1,29 +1,39 @@
-"""Where the energy of a stop goes, and how warm the drums get.
+"""Energy of a stop into drums and tyres, the temperature of the drums, and fading by repeated stops.
 
-From the moment the brakes act, the work of the braking force along the ground is m V^2 / 2 + m g sin(beta) s.
-While the force rises the wheels still roll, so that the brakes take its work; at full force they take it if
-the wheels roll, and the sliding tyres if they are locked. The speed is held in the reaction time, and what
-holds it (the engine) is left out. A drum that nothing cools meanwhile warms by its energy over m c.
+From the moment the brakes act, the braking force does the work m V^2 / 2 + m g sin(beta) s along the ground.
+While the force rises the wheels still roll, and the brakes take this work; at full force the brakes take it
+if the wheels roll, and the sliding tyres if they are locked. The speed is constant in the reaction time, and
+what holds it (the engine) is left out. The drums are not cooled during the stop: each warms by energy / (m
+c).
+
+In repeated stops each front brake stops half the mass from the speed V, J = M r^2 / 2 and w = V / r at a
+wheel of radius r, while the slope drives on with L = M g sin(beta) r / 2. Its torque is the smaller of what
+the brake gives at the pedal's force and of what locks the wheel: the driver eases off before the wheels
+slide, so that all heat goes into the drums. While the force rises, a wheel turns farther than at full force:
+by the angle that makes the heat of a stop with unfaded linings equal the energy of that stop. Uphill the help
+of the slope is left out, as if the road were level: this overestimates the temperature.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import kind
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
-from brakes.common.heat import warn_of_pv
+from brakes.chain.braked import BrakedStop
+from brakes.common.heat import Duty, Fade, repeat_stops, warn_of_pv
 from brakes.vehicle import Stop
 
-BRAKES = 2  # that share the energy
+_LEAST = 1e-12  # friction that replaces zero, at which no brake gives a torque
+BRAKES = 2  # number of brakes that share the energy
 
 
 @dataclass(frozen=True)
@@ -62,27 +72,26 @@ class Drums:
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        together(**{name: x for name, x in vars(self).items() if x is not None})
 
 
 @dataclass(frozen=True)
 class Heat(Result):
-    """Energy of a stop and what it warms; arrays have one entry per case, nan where there is no stop.
+    """Energy of a stop, its parts, and the temperature rise; arrays by case, nan if the truck never stops.
 
     Attributes
     ----------
     stop : Stop
         The stop.
     drums : Drums, optional
-        What is warmed.
+        The drums that are heated.
     energy : ndarray
         Energy of the stop, from the moment the brakes act [J].
     drum_energy, tyre_energy : ndarray
-        Its parts into the drums and into the sliding tyres [J].
+        Parts of the energy into the drums and into the sliding tyres [J].
     temperature_rise : ndarray
         Temperature rise of each drum, without cooling [K]; nan without drums.
     lining_pv : ndarray
-        Bound of the mean pressure of the linings times their rubbing speed: the full pressure at the speed
+        Bound of mean pressure times rubbing speed of the linings: full pressure at the speed
         before the stop [W/m2]; nan without drums.
 
     Examples
@@ -107,31 +116,31 @@ class Heat(Result):
     ]
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"energy {spanned(self.energy, 'J')}, of it in the drums {spanned(self.drum_energy, 'J')}"
         yield warned(self.warnings)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """A sentence if pressure times speed is above the linings' limit."""
+        """Sentence on a product of pressure and rubbing speed above the linings' limit; empty if none is."""
         return warn_of_pv(self.lining_pv, None if self.drums is None else self.drums.most_pv)
 
 
 def heat_of_stop(
     stop: Stop, drums: Drums | None = None, normal_force: Numbers = np.nan, drum_radius: Numbers = np.nan
 ) -> Heat:
-    """Find where the energy of a stop goes.
+    """Compute the energy of a stop, its parts into drums and tyres, and the temperature rise of the drums.
 
     Parameters
     ----------
     stop : Stop
         The stop.
     drums : Drums, optional
-        What is warmed.
+        The drums that are heated.
     normal_force : float or ndarray, optional
         Sum of the normal forces of the linings of one brake on its drum, at full force [N].
     drum_radius : float or ndarray, optional
-        Radius at which they rub [m].
+        Radius at which the linings rub [m].
 
     Returns
     -------
@@ -172,3 +181,82 @@ def heat_of_stop(
         rubbing = V * drum_radius / stop.truck.front_wheel_radius
         pv = np.where(stops, normal_force / drums.lining_area * rubbing, np.nan)
     return Heat(stop, drums, (rising + full)[()], drum_energy[()], into_tyres[()], rise[()], pv[()])
+
+
+def fade_of_stops(
+    braked: BrakedStop,
+    drums: Drums,
+    friction: Numbers,
+    torque_per_force: Callable[[Numbers], Numbers],
+    **repeated: Any,
+) -> Fade:
+    """Compute repeated stops of a truck at the same force on the pedal, with heating and fading.
+
+    Parameters
+    ----------
+    braked : BrakedStop
+        The first stop, from the pedal.
+    drums : Drums
+        The drums that are heated.
+    friction : float or ndarray
+        Friction of the linings, used if no `friction_curve` is given.
+    torque_per_force : callable
+        Torque of a brake over the force on its actuator [m], at frictions of shape (..., cases); nan where
+        the brake locks.
+    **repeated
+        ``stops``, ``interval``, ``cooling``, ``surroundings`` and ``friction_curve`` of `Duty`.
+
+    Returns
+    -------
+    Fade
+        Complete result; its angle is the rotation of the wheels.
+
+    Raises
+    ------
+    ValueError
+        As for `Duty`, or if a brake locks at a friction of the curve.
+
+    References
+    ----------
+    Standard (conservation of energy): the docstring of the module, and of `repeat_stops`.
+
+    Examples
+    --------
+    >>> truck = vehicle.Truck(
+    ...     5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89
+    ... )
+    >>> conditions = vehicle.StopConditions(0.1, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
+    >>> line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175)
+    >>> stopped = chain.brake_from_pedal(truck, conditions, chain.Pedal(5.0, 450.0), line, 0.728)
+    >>> drums, curve = chain.Drums(18.0, 0.05), [[293.15, 0.39], [493.15, 0.2]]
+    >>> found = chain.fade_of_stops(
+    ...     stopped, drums, 0.39, lambda mu: 0.728 * mu / 0.39, stops=3, friction_curve=curve
+    ... )
+    >>> found.angle.round(1)  # rad: each stop is longer
+    array([53.7, 60.4, 70.1])
+    """
+    kind("braked", braked, BrakedStop)
+    stop, force = braked.stop, braked.actuation.actuator_force
+    radius, c = stop.truck.front_wheel_radius, stop.conditions
+    share = stop.truck.mass / BRAKES
+    duty = Duty(
+        inertia=share * np.square(radius),
+        speed=c.speed / radius,
+        heated_mass=drums.drum_mass,
+        specific_heat=drums.specific_heat,
+        load_torque=share * c.gravity * np.maximum(np.sin(c.slope), 0.0) * radius,
+        free_angle=_free_way(stop) / radius,
+        **repeated,
+    )
+
+    def torque(mu: Numbers) -> Numbers:
+        """Return the torque of a brake [N m], limited by the torque that locks its wheel; nan stays nan."""
+        return np.minimum(force * torque_per_force(np.maximum(mu, _LEAST)), braked.locking_torque)
+
+    return repeat_stops(duty, friction, torque)
+
+
+def _free_way(stop: Stop) -> np.ndarray:
+    """Compute the distance before a sudden full force [m] that makes a stop as long and hot as the given."""
+    way = np.where(stop.stops, stop.rise_distance + stop.braking_distance, np.nan)
+    return np.nan_to_num(np.maximum(way - heat_of_stop(stop).energy / stop.brake_force, 0.0))

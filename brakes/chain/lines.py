@@ -1,7 +1,7 @@
-"""What carries the force from the pedal to the brakes: a hydraulic line, or a cable.
+"""Transmission of the force from the pedal to the brakes: a hydraulic line, or a cable.
 
-Both are a gain, the force on an actuator of a brake over that behind the pedal, and the stroke that this
-takes: lost travel, what gives way under load, and what moves the actuators.
+Each has a gain, the force on a brake's actuator over the force behind the pedal, and a stroke: lost travel,
+elastic deformation under load, and the travel that moves the actuators.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.described import Described
 
 
@@ -26,11 +26,11 @@ class HydraulicLine:
     pistons : float or ndarray
         Number of pistons of all wheel cylinders on the line.
     piston_travel : float or ndarray
-        Travel of each of them until the linings press [m].
+        Travel of each wheel cylinder's piston until the linings press [m].
     lost_travel : float or ndarray
-        Travel of the master cylinder's piston before it presses [m].
+        Travel of the master cylinder's piston before pressure builds up [m].
     compliance : float or ndarray
-        Volume that hoses, fluid and brakes take up, over the pressure [m3/Pa].
+        Volume that hoses, fluid and brakes take up, divided by the pressure [m3/Pa].
     most_pressure : float or ndarray, optional
         Largest pressure that the cylinders bear [Pa]; not checked if not given.
 
@@ -67,24 +67,23 @@ class HydraulicLine:
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        together(**{name: x for name, x in vars(self).items() if x is not None})
 
     @property
     def gain(self) -> Numbers:
-        """Force on a wheel cylinder's piston over that on the master cylinder's."""
+        """Force on a wheel cylinder's piston over the force on the master cylinder's piston."""
         return (self.cylinder_bore / self.master_bore) ** 2
 
     @property
     def limit(self) -> Numbers:
-        """Largest force on the master cylinder's piston [N]; inf if no pressure is given."""
+        """Largest allowed force on the master cylinder's piston [N]; inf if no largest pressure is given."""
         return np.inf if self.most_pressure is None else self.most_pressure * self._area
 
     def pressure(self, force: Numbers) -> Numbers:
-        """Pressure at a force on the master cylinder's piston [Pa]."""
+        """Compute the line's pressure [Pa] at a force on the master cylinder's piston [N]."""
         return force / self._area
 
     def stroke(self, force: Numbers) -> Numbers:
-        """Travel of the master cylinder's piston at a force on it [m]."""
+        """Compute the travel of the master cylinder's piston [m] at a force on it [N]."""
         taken = (
             self.pistons * self.piston_travel * self.gain
             + self.compliance * self.pressure(force) / self._area
@@ -103,17 +102,17 @@ class BrakeCable:
     Parameters
     ----------
     cable_gain : float or ndarray
-        Force on the actuator of each brake over that in the cable behind the lever, without losses.
+        Force on the actuator of each brake over the force in the cable behind the lever, without losses.
     efficiency : float or ndarray
-        Share of the force that arrives, after friction, above 0 up to 1.
+        Fraction of the force that arrives in spite of friction, above 0 up to 1.
     actuator_travel : float or ndarray
         Travel of each actuator until the linings press [m].
     brakes : float or ndarray
-        Number of actuators that the cable pulls at, by an equalizer.
+        Number of actuators that the cable pulls, through an equalizer.
     lost_travel : float or ndarray
         Slack of the cable [m].
     stretch : float or ndarray
-        Travel that the cable gives way by, over its force [m/N].
+        Stretch of the cable over its force [m/N].
 
     Raises
     ------
@@ -146,18 +145,17 @@ class BrakeCable:
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        together(**vars(self))
 
     @property
     def gain(self) -> Numbers:
-        """Force on each actuator over that behind the lever."""
+        """Force on each actuator over the force in the cable behind the lever, with losses."""
         return self.cable_gain * self.efficiency
 
     def pressure(self, force: Numbers) -> Numbers:
-        """None, nan: there is no fluid."""
+        """Return the pressure [Pa]: nan, as a cable has no fluid."""
         return force * np.nan
 
     def stroke(self, force: Numbers) -> Numbers:
-        """Travel of the cable at a force in it [m], by the work of a line without losses."""
+        """Compute the travel of the cable [m] at a force in it [N]: slack, stretch, and actuators' motion."""
         moved = self.brakes * self.cable_gain * self.actuator_travel
         return self.lost_travel + self.stretch * force + moved

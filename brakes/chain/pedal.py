@@ -1,4 +1,4 @@
-"""A pedal or lever, with a booster behind it: the force that it pushes or pulls with, and its limits."""
+"""A pedal or lever with a booster: its output force, and the limits of the force on it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import one_of
 from beamdyn.common.inputs.described import Described
 from brakes.common.limits import LIMITS
@@ -20,21 +20,22 @@ _LIMB = "what presses: a foot, a hand, a squeezed grip of a truck, or a hand on 
 class Pedal:
     """A pedal or lever and its booster; every number may be an array, one entry per design.
 
-    The rod behind the pedal has ratio times the force; a booster multiplies that up to its run-out, past
-    which only the driver's force grows: output = rod + (booster - 1) min(rod, runout).
+    The rod behind the pedal has `ratio` times the pedal's force; a booster multiplies this up to its run-out,
+    past which only the driver's force adds: output = rod + (booster - 1) min(rod, runout).
 
     Parameters
     ----------
     ratio : float or ndarray
-        Travel of the pedal over that of its rod, at the end of either.
+        Travel of the pedal over the travel of its rod.
     force : float or ndarray
         Force on the pedal [N].
     operated_by : {"foot", "hand", "grip", "bicycle"}
-        What presses: a foot, a hand that pulls, one that squeezes a truck's grip, or a bicycle's lever.
+        What presses: a foot, a hand that pulls, a hand that squeezes a truck's grip, or one on a bicycle's
+        lever.
     booster : float or ndarray
-        Force behind the booster over that of the rod, up to the run-out.
+        Force behind the booster over the force of the rod, up to the run-out.
     runout : float or ndarray, optional
-        Force of the rod at which the booster gives all that it can [N]; never reached if not given.
+        Force of the rod at which the booster reaches its largest assistance [N]; never reached if not given.
     travel : float or ndarray, optional
         Largest travel of the pedal [m]; not checked if not given.
 
@@ -67,8 +68,6 @@ class Pedal:
     def __post_init__(self) -> None:
         one_of("operated_by", self.operated_by, tuple(LIMITS))
         keep_checked(self)
-        numbers = {name: x for name, x in vars(self).items() if name != "operated_by" and x is not None}
-        together(**numbers)
 
     @property
     def allowed_force(self) -> float:
@@ -77,13 +76,13 @@ class Pedal:
 
     @property
     def output_force(self) -> Numbers:
-        """Force behind the booster [N]."""
+        """Output force behind the booster [N]."""
         rod = self.ratio * self.force
         most = np.inf if self.runout is None else self.runout
         return (rod + (self.booster - 1) * np.minimum(rod, most))[()]
 
     def rod_force_for(self, output: Numbers) -> Numbers:
-        """Force of the rod [N] at which the booster gives a force: the inverse of both its lines."""
+        """Compute the rod's force [N] at which the booster gives an output force [N]."""
         assisted = output / self.booster
         if self.runout is None:
             return assisted

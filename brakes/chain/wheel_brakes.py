@@ -1,11 +1,11 @@
-"""Brakes at the wheels whose torque is in proportion to the force on their actuators."""
+"""Equal brakes at the wheels, whose torque is proportional to the force on their actuators."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Annotated
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.described import Described
 
 
@@ -43,9 +43,8 @@ class WheelBrakes:
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        together(**vars(self))
 
     @property
     def force_per_actuator_force(self) -> Numbers:
-        """Force of all braked wheels along the ground, over that on each actuator."""
+        """Braking force of all braked wheels along the ground, over the force on each actuator."""
         return self.number * self.c_star * self.drum_radius / self.wheel_radius

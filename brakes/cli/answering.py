@@ -1,4 +1,4 @@
-"""The program `brakes`, and what every command on a brake does: read, solve, write files, print, warn."""
+"""The program `brakes`, and what each of its commands does: read, solve, write files, print, and warn."""
 
 from __future__ import annotations
 
@@ -39,23 +39,23 @@ Inputs are TOML files with units; `brakes COMMAND --help` lists the options of a
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; see `beamdyn.common.edge.exit_codes.run`."""
+    """Run the command line, and return the exit code; see `beamdyn.common.edge.exit_codes.run`."""
     return exit_codes.run(app, arguments)
 
 
 @Parameter(name="*")
 @dataclass(frozen=True)
 class FindOptions:
-    """The question backwards.
+    """Options of a question backwards, for the value of an input that gives a wanted result.
 
     Parameters
     ----------
     find : str, optional
         An input whose values are sought, such as "brake.friction", from a tenth to ten times its value in the
-        file; or from bounds and a number of samples to others, such as "brake.friction=0.1:0.6:51"; of what
-        is counted, every whole number between is tried.
+        file; or, with bounds and a number of samples, between these: "brake.friction=0.1:0.6:51"; for whole
+        numbers, each one between the bounds is tried.
     so_that : str, optional
-        The result that they are to give, such as "torque = 300 N m"; a wrong name lists all.
+        The result that the input shall give, such as "torque = 300 N m"; a wrong name lists all.
     """
 
     find: Annotated[str | None, Parameter(show_default=False)] = None
@@ -63,11 +63,11 @@ class FindOptions:
 
     @property
     def options(self) -> dict[str, object]:
-        """The options that are given, for the head of a report."""
+        """The options that are given, by name, for the head of a report."""
         return {"find": self.find, "so_that": self.so_that}
 
     def check(self, **others: object) -> None:
-        """Refuse one of them without the other, and beside an option that asks for many designs."""
+        """Refuse one of the two options without the other, and --find beside options on many designs."""
         if (self.find is None) != (self.so_that is None):
             raise ValueError(
                 "--find and --so-that go together: the input that is sought, and what it is to give"
@@ -80,7 +80,7 @@ class FindOptions:
 @Parameter(name="*")
 @dataclass(frozen=True)
 class Asked:
-    """What is asked of many designs, or of one if nothing is.
+    """Options that ask about many designs: variations, tolerances, or a question backwards.
 
     Parameters
     ----------
@@ -101,17 +101,17 @@ class Asked:
 
     @property
     def options(self) -> dict[str, object]:
-        """The options that are given, for the head of a report."""
+        """The options that are given, by name, for the head of a report."""
         return self.varying.options | self.spreading.options | self.finding.options | {"what": self.what}
 
     @property
     def many(self) -> str:
-        """The option that asks for many designs; "" if there is one design."""
+        """Name of the option that asks about many designs; "" if the question is about one design."""
         given = {OPTION: self.varying.vary, SPREAD: self.spreading.spread, "--find": self.finding.find}
         return next((option for option, value in given.items() if value), "")
 
     def check(self) -> None:
-        """Refuse what does not go together, or says nothing."""
+        """Refuse options that do not go together, or that have no effect."""
         self.finding.check(vary=self.varying.vary, spread=self.spreading.spread, what=self.what)
         self.spreading.check(self.varying)
         if not self.spreading.spread:
@@ -133,22 +133,22 @@ def run_command(
     further: Files | None = None,
     **options: object,
 ) -> None:
-    """Answer a file, write the files asked for and print the answer.
+    """Solve the design of a file, write the files that are asked for, and print the answer.
 
     Parameters
     ----------
     brake : BrakeType
-        What the file describes.
+        Type of the brake that the file describes.
     command : str
         Name of the command.
     file : str
-        The file.
+        Path of the file with the design.
     asked : Asked
-        What is asked of many designs.
+        Options that ask about many designs.
     outputs : Outputs
         Files to write.
     further : mapping, optional
-        Further options that name a file: the file, if given, and what writes it.
+        Further options that name a file to write: its path, if given, and the function that writes it.
     **options
         Options of the command that the HTML report repeats.
 
@@ -171,7 +171,7 @@ def run_command(
     asked.check()
     for option, path in written.items():
         if asked.many and path is not None:
-            raise ValueError(f"--{option} = {path}: it is of one design; leave {asked.many} out")
+            raise ValueError(f"--{option} = {path}: it shows one design; leave {asked.many} out")
     if asked.many:
         made, warnings, none = _answer_many(brake, tables, file, asked)
         said, more = [*[none] * bool(none), *warnings], ()
@@ -191,7 +191,7 @@ def run_command(
 
 
 def _folded(brake: BrakeType[Any], answer: Answer) -> Sequence[tuple[str, Callable[[], str]]]:
-    """Titles of the further drawings of an answer, and what makes them for a report."""
+    """Return title and HTML of each further drawing of an answer, for a report."""
     from beamdyn.common.screens.screens import FoldedPart
 
     folded = (FoldedPart.of_drawings(*each) for each in brake.more.items())
@@ -201,7 +201,7 @@ def _folded(brake: BrakeType[Any], answer: Answer) -> Sequence[tuple[str, Callab
 def _answer_many(
     brake: BrakeType[Any], tables: Mapping[str, Any], file: str, asked: Asked
 ) -> tuple[Any, Sequence[str], str]:
-    """A sweep, a spread, or a question backwards; warnings, and that there is no answer if so."""
+    """Solve a sweep, a spread or a question backwards; return the result, warnings, and a refusal or ""."""
     import numpy as np
 
     from brakes.answers.finding import find_in_file

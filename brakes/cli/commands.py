@@ -1,4 +1,4 @@
-"""The commands of `brakes`.  What is heavy is imported by the commands that need it."""
+"""The commands of `brakes`.  Slow imports are inside the commands that need them."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def mechanism(
 def _run_planar(
     command: str, name: str, free_bodies: Path | None, animation: Path | None, asked: Asked, outputs: Outputs
 ) -> None:
-    """Answer a caliper or a mechanism, with the pictures that others do not have."""
+    """Solve a caliper or a mechanism, with options for free-body diagrams and an animation."""
     from brakes.answers.caliper import MECHANISM
 
     further = {
@@ -209,7 +209,7 @@ def reproduce(*, output: SomeFolder = Path("brakes-reproduce")) -> None:
 
 
 def make_program() -> Program:
-    """The program, imported when it is wanted."""
+    """Import and return the interactive program."""
     from brakes.app.program import BRAKES
 
     return BRAKES
@@ -224,7 +224,7 @@ add_command(
 
 
 def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> None:
-    """Add a command on a type of brake that needs no options of its own: name, help, type."""
+    """Add the command of a type of brake that has no options of its own."""
     plain = f"brakes {name} examples/{name}.toml"
 
     @app.command(name=name, help=help, help_epilogue=examples(plain, f"{plain} --plot {name}.png"))

@@ -1,1 +1,1 @@
-"""What all brakes share: what they are loaded by, what locks, and the energy of a stop."""
+"""What all brakes share: their loads, self-locking, energy and heat of a stop, and questions backwards."""

@@ -1,4 +1,4 @@
-"""Energy of a stop, and the heat that it leaves in what brakes."""
+"""Energy that the brakes absorb in a stop, and the temperature rise that it causes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def stop_energy(
     mass : float or ndarray
         Mass of the vehicle [kg].
     speed, final_speed : float or ndarray
-        Speed before and after [m/s].
+        Speed before and after the stop [m/s].
     descent : float or ndarray
         Height lost during the stop [m]; negative uphill.
     inertia : float or ndarray

@@ -1,9 +1,9 @@
-"""Backwards: all inputs between two bounds at which an answer has a wanted value.
+"""Questions backwards: find all inputs between two bounds at which an answer has a wanted value.
 
 The answer is sampled, each time twice as densely, until the pieces over which it rises, falls or is level
-stay the same. The end of a piece (a turning point, or where there is no answer any more) is found by sampling
-around it again and again. A rising or falling piece has the wanted value once if that lies between those at
-its ends, else nowhere.
+stay the same. The end of a piece (a turning point, or the last input that has an answer) is found by sampling
+more densely around it, several times. A rising or falling piece has the wanted value once if that lies
+between the answers at its two ends, else nowhere.
 
 References
 ----------
@@ -25,15 +25,20 @@ from beamdyn.common.inputs.checks import InvalidValue, ascending, function, real
 from brakes.common.solutions import Gap, Piece, Solutions, WholeSolutions, step
 
 _EPS = np.finfo(float).eps
-_SURE = 1e-13  # difference from the wanted value that is rounding, over it or over the last step to it
-_JUMP = 1e-6  # part of a bracket's height that the answer at a root of a continuous function has not left
-_TURN = 1e-9  # relative width of the place of a turning point: its height is known to the square
-_EDGE = 1e-13  # relative width of the place past which there is no answer, or where it becomes level
-_PARTS, _FEW_PARTS = 16, 4  # into which such a place is divided when it is sampled again
-_DOUBLED = 4  # times at most that the samples are doubled
+_SURE = 1e-13  # relative difference from the wanted value that counts as rounding
+# Part of an answer's change over the bracket of a root, by which a continuous answer may differ from the
+# wanted value there.
+_JUMP = 1e-6
+# Relative width of the bracket of a turning point; in a narrower one rounding hides the turning point.
+_TURN = 1e-9
+# Relative width of the bracket of the last input with an answer, or of the end of a level part of the answer.
+_EDGE = 1e-13
+# Parts into which each refinement divides the bracket of a turning point, and of an edge.
+_PARTS, _FEW_PARTS = 16, 4
+_DOUBLED = 4  # largest number of times that the samples are doubled
 
 Answer = Callable[[np.ndarray], Any]
-Curve = tuple[np.ndarray, np.ndarray]  # inputs, and answers: both (n,)
+Curve = tuple[np.ndarray, np.ndarray]  # inputs and answers, each of shape (n,)
 
 
 def find(
@@ -49,17 +54,17 @@ def find(
     Parameters
     ----------
     answer : callable
-        ``answer(x)``: the answers to an array of inputs (n,), nan where there is none.  Inputs for which the
-        functions of this package refuse it have none either.
+        ``answer(x)``: the answers to an array of inputs (n,), nan where there is none.  Inputs that the
+        functions of this package refuse count as without an answer.
     target : float
         The wanted value [unit of the answer].
     samples : array_like, shape (n,)
-        Inputs in ascending order, where the search begins: it ends at the first and at the last of them.
+        Inputs in ascending order at which the search begins; the first and the last are its bounds.
     why : callable, optional
         ``why(x)``: why there is no answer at an input, in a sentence.
     rounding : float
-        By how much the wanted value may be rounded [unit of the answer]: a level answer as near to it is
-        what is wanted.
+        By how much the wanted value may have been rounded [unit of the answer]: a level answer within
+        this distance counts as the wanted one.
 
     Returns
     -------
@@ -112,7 +117,7 @@ def find(
 def find_whole(
     answer: Answer, target: float, samples: Any, why: Callable[[float], str] | None = None
 ) -> WholeSolutions:
-    """Find all of some whole numbers at which an answer has a wanted value, or has just passed it.
+    """Find all of the given whole numbers at which an answer has a wanted value, or has just passed it.
 
     Parameters
     ----------
@@ -168,21 +173,21 @@ def find_whole(
 
 @dataclass(frozen=True)
 class _Answers:
-    """Answers to inputs, nan where there is none, and the reasons."""
+    """The function whose answers are asked for, with its refusals turned into nan and a reason."""
 
     answer: Answer
     reason: Callable[[float], str] | None
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
-        """Answers to inputs (n,)."""
+        """Compute the answers to inputs of shape (n,); nan where there is none."""
         return self._with_refusals(x)[0]
 
     def there(self, x: np.ndarray) -> np.ndarray:
-        """Whether inputs (n,) have answers."""
+        """Tell for inputs of shape (n,) which of them have an answer."""
         return np.isfinite(self(x))
 
     def why(self, x: float) -> str:
-        """Why there is no answer at an input."""
+        """Return the reason why an input has no answer."""
         refused = self._with_refusals(np.array([x]))[1]
         return refused[0].advice(str) if refused else self.reason(x) if self.reason else "it has no value"
 
@@ -198,7 +203,7 @@ class _Answers:
 
 @dataclass(frozen=True)
 class _Run:
-    """Inputs side by side that have answers, and on either side the nearest one without, if there is one."""
+    """Neighbouring samples that all have answers, with the nearest input without an answer on either side."""
 
     x: np.ndarray
     y: np.ndarray
@@ -207,7 +212,7 @@ class _Run:
 
 
 def _settle(answers: _Answers, x: np.ndarray) -> tuple[Curve, bool]:
-    """Inputs so dense that twice as many show the same pieces, and whether that was reached."""
+    """Double the samples until the pieces stay the same; return the curve, and whether the pieces did."""
     y, settled = answers(x), False
     for _ in range(_DOUBLED):
         between, courses = (x[1:] + x[:-1]) / 2, _courses(y)
@@ -218,26 +223,26 @@ def _settle(answers: _Answers, x: np.ndarray) -> tuple[Curve, bool]:
 
 
 def _joined(x: np.ndarray, y: np.ndarray, more_x: Any, more_y: Any) -> Curve:
-    """A curve with further points."""
+    """Return a curve (inputs, answers) with further points inserted in ascending order."""
     x, places = np.unique(np.append(x, more_x), return_index=True)
     return x, np.append(y, more_y)[places]
 
 
 def _courses(y: np.ndarray) -> list[list[float]]:
-    """Signs of the steps of each run of answers, side by side each once."""
+    """Find the signs (1, 0, -1) of the rising, level and falling pieces of each run of finite answers."""
     return [[sign for sign, _ in _courses_of_run(y[run])] for run in _finite(y)]
 
 
 def _finite(y: np.ndarray) -> list[slice]:
-    """Places of the runs of answers."""
+    """Find the slices of neighbouring finite answers."""
     ends = np.flatnonzero(np.diff(np.concatenate([[False], np.isfinite(y), [False]]).astype(int)))
     return [slice(*run) for run in ends.reshape(-1, 2).tolist()]
 
 
 def _courses_of_run(y: np.ndarray) -> list[tuple[float, int]]:
-    """Signs of steps, side by side each once, and the place of the last answer of each.
+    """Find the pieces of one run of answers: sign of each (1 rises, 0 level, -1 falls) and its last index.
 
-    A single level step counts to that before it: a turning point may lie within.
+    A single level step counts as part of the piece before it: a turning point may lie within.
     """
     signs = step(y[:-1], y[1:])
     alone = np.flatnonzero((signs[1:-1] == 0) & (signs[:-2] != 0) & (signs[2:] != 0)) + 1
@@ -247,7 +252,7 @@ def _courses_of_run(y: np.ndarray) -> list[tuple[float, int]]:
 
 
 def _courses_as_they_are(run: _Run) -> Iterator[Piece]:
-    """Pieces of a run of whole numbers."""
+    """Yield the pieces over which the answers to whole numbers rise, fall or are level."""
     cuts = [0, *(last for _, last in _courses_of_run(run.y))] + [0] * (len(run.x) == 1)
     for i, j in pairwise(cuts):
         yield _piece((run.x[i : j + 1], run.y[i : j + 1]))
@@ -259,14 +264,14 @@ def _piece(curve: Curve) -> Piece:
 
 
 def _run_as_it_is(x: np.ndarray, y: np.ndarray, run: slice) -> _Run:
-    """A run of whole numbers: its ends are known."""
+    """Make a run of whole numbers, whose ends need no search: they are samples."""
     before = float(x[run.start - 1]) if run.start else None
     after = float(x[run.stop]) if run.stop < len(x) else None
     return _Run(x[run], y[run], before, after)
 
 
 def _runs(answers: _Answers, x: np.ndarray, y: np.ndarray) -> Iterator[_Run]:
-    """Runs of inputs that have answers, each as far as it goes."""
+    """Yield the runs of inputs that have answers, each extended to the last input that has one."""
     for run in _finite(y):
         first, last = run.start, run.stop - 1
         low = _edge(answers.there, x[first], x[first - 1]) if first > 0 else (x[first], None)
@@ -276,7 +281,7 @@ def _runs(answers: _Answers, x: np.ndarray, y: np.ndarray) -> Iterator[_Run]:
 
 
 def _edge(holds: Callable[[np.ndarray], Any], inside: Any, outside: Any) -> tuple[float, float]:
-    """The last input at which something holds, and the next one, on the way from one to the other."""
+    """Bracket the end of a condition between an input where it holds and one where it does not."""
     width = _EDGE * max(abs(inside), abs(outside))
     while abs(outside - inside) > width:
         grid = np.linspace(inside, outside, _FEW_PARTS + 1)
@@ -286,7 +291,7 @@ def _edge(holds: Callable[[np.ndarray], Any], inside: Any, outside: Any) -> tupl
 
 
 def _gaps(answers: _Answers, x: np.ndarray, runs: Sequence[_Run]) -> Iterator[Gap]:
-    """Ranges without an answer: before, between and after the runs."""
+    """Yield the ranges without an answer before, between and after the runs."""
     starts = [float(x[0]), *(run.after for run in runs)]
     ends = [*(run.before for run in runs), float(x[-1])]
     for k, (start, end) in enumerate(zip(starts, ends, strict=True)):
@@ -295,7 +300,7 @@ def _gaps(answers: _Answers, x: np.ndarray, runs: Sequence[_Run]) -> Iterator[Ga
 
 
 def _pieces(answers: _Answers, run: _Run) -> Iterator[Curve]:
-    """The run, cut at its turning points and where it becomes level."""
+    """Cut a run of samples at its turning points and at the ends of its level parts."""
     x, y = run.x, run.y
     cuts = [
         _turn(answers, x[last - 1], x[last + 1], sign)
@@ -309,15 +314,15 @@ def _pieces(answers: _Answers, run: _Run) -> Iterator[Curve]:
 
 
 def _level_edge(answers: _Answers, level: float, inside: float, outside: float) -> float:
-    """Where answers that are level begin or cease to be so.
+    """Find the input at which a level part of the answer begins or ends.
 
-    The edge has half of the rounding that is allowed: the piece is level beside its other end, too.
+    Half of the rounding that counts as level is allowed, so that the piece is level from its other end, too.
     """
     return _edge(lambda x: step(level, answers(x), 0.5) == 0, inside, outside)[0]
 
 
 def _turn(answers: _Answers, low: float, high: float, sign: float) -> float:
-    """Where answers that rise (sign 1) begin to fall, or where those that fall (-1) begin to rise."""
+    """Find the turning point between two inputs: a maximum (sign 1) or a minimum (sign -1)."""
     width = _TURN * max(abs(low), abs(high))
     while high - low > width:
         grid = np.linspace(low, high, _PARTS + 1)
@@ -330,14 +335,17 @@ def _turn(answers: _Answers, low: float, high: float, sign: float) -> float:
 
 
 def _unrounded(pieces: Sequence[Curve], target: float, rounding: float) -> float:
-    """The wanted value; or a level answer that it may have been rounded from, the nearest one."""
+    """Return the constant answer over a range of inputs of which the wanted value may be a rounding.
+
+    That is the nearest such answer within the rounding; without one, the wanted value itself.
+    """
     heights = [float(y[0]) for _, y in pieces if step(y[0], y[-1]) == 0]
     nearest = min(heights, key=lambda height: abs(height - target), default=target)
     return nearest if abs(nearest - target) <= rounding else target
 
 
 def _level(pieces: Sequence[Curve], target: float) -> np.ndarray:
-    """Ranges of inputs (r, 2) over which the answer is the wanted value."""
+    """Find the ranges of inputs, shape (r, 2), over which the answer is level at the wanted value."""
     ends = [x[[0, -1]] for x, y in pieces if step(y[0], y[-1]) == 0 == step(y[0], target)]
     return np.array(ends).reshape(-1, 2)
 
@@ -345,11 +353,12 @@ def _level(pieces: Sequence[Curve], target: float) -> np.ndarray:
 def _solve(
     answers: _Answers, pieces: Sequence[Curve], ranges: np.ndarray, target: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Inputs outside of ranges that give the wanted value, and those at which the answer jumps past it."""
+    """Find inputs that give the wanted value, outside of level ranges, and those where the answer jumps."""
     found, jumps = list[float](), list[float]()
     for x, y in pieces:
         past = y - target
-        steps = {0: y[1] - y[0], -1: y[-1] - y[-2]}  # beside which the height of a turning point is rounding
+        # A turning point as near to the wanted value as rounding counts as touching it.
+        steps = {0: y[1] - y[0], -1: y[-1] - y[-2]}
         ends = [x[i] for i, way in steps.items() if abs(past[i]) <= _SURE * max(abs(target), abs(way))]
         if not ends and past[0] * past[-1] < 0:
             k = int(np.argmax(np.sign(past) != np.sign(past[0])))
@@ -358,17 +367,18 @@ def _solve(
             )
             (jumps if jumped else found).append(root)
         found += ends
-    alone, near = np.unique(found), 2 * _EDGE * np.abs(ranges)  # to which the ends of ranges are known
+    # `near` is the uncertainty of the ends of ranges.
+    alone, near = np.unique(found), 2 * _EDGE * np.abs(ranges)
     low, high = (ranges + near * np.array([-1, 1])).T[..., None]
     return alone[~np.any((alone >= low) & (alone <= high), axis=0)], np.unique(jumps)
 
 
 def _root(answers: _Answers, target: float, bracket: dict[float, float]) -> tuple[float, bool]:
-    """Where the answer passes the wanted value between two inputs, and whether it jumps there.
+    """Find where the answer passes the wanted value between two inputs, and whether it jumps there.
 
-    The differences at both are known: computed alone they may round otherwise, to another sign.
+    The differences at both ends are given: computed one by one they may round to another sign.
     """
-    from scipy.optimize import toms748  # here: only a question backwards needs it
+    from scipy.optimize import toms748  # imported here, as only a question backwards needs it
 
     def difference(x: float) -> float:
         return float(bracket[x] if x in bracket else answers(np.array([x]))[0] - target)

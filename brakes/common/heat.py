@@ -1,18 +1,18 @@
-"""How hot a brake gets in stops that follow each other, and how far its lining fades.
+"""Temperatures of a brake in repeated stops, and the fading of its lining.
 
-A stop turns kinetic energy, and the work of a load that drives on, into heat of what is warmed, C = m c, all
-of one temperature T and cooled between the stops only. With the torque M(T) at a constant actuating force,
-each turn dq heats by C dT = M dq: energy alone decides how hot a stop ends, and the angle is a quadrature,
+A stop turns kinetic energy, and the work of a driving load, into heat of the mass with the heat capacity
+C = m c. It has one temperature T and cools between the stops only. With the torque M(T) at a constant
+actuating force, an angle dq of rotation heats it by C dT = M dq. So energy alone decides how hot a stop ends,
 
     T1 = T0 + (J w^2 / 2 + L (q + q0)) / C,    q = C int dT / M(T) from T0 to T1,
 
-with the angle q0 that it turns before the torque is there.
-Without a load nothing is iterated. With one, T1 is the fixed point of a function of T1 that increases:
-iterated from T0, it rises and is bounded by the least solution, the one that the stop reaches first. It is
-there if the torque stays above the load on the way: T1 - L q / C increases then, and is bracketed closer
-and closer.
-Where the lining fades to the load before, the brake never stops it. Between stops T - T_a falls by exp(-h t
-/ C). Without a load each stop heats by the same J w^2 / (2 C): the temperatures of the stops follow an
+with the angle q0 that the brake turns before its torque acts.
+Without a load this is explicit. With a load, T1 is the fixed point of an increasing function of T1:
+the iteration from T0 rises and is bounded by the least fixed point, the one that the stop reaches first. A
+fixed point exists if the torque stays above the load on the way: T1 - L q / C then increases, and T1 is
+bracketed.
+Where the lining fades to the load before, the brake never stops the load. Between stops T - T_a falls by
+exp(-h t / C). Without a load each stop heats by J w^2 / (2 C): the temperatures of the stops follow an
 affine map, which contracts by exp(-h t / C) and so has one limit.
 """
 
@@ -25,27 +25,28 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import refuse, set_fields
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
 
-_NODES = 20  # of the quadrature between two temperatures of the curve
-_FEWER = 12  # that estimate its error
-_PARTS, _MOST_AT_ONCE = 16, 1000  # parts of a bracket that are tried together, of so many cases; else halves
+_NODES = 20  # nodes of the quadrature between two temperatures of the curve
+_FEWER = 12  # nodes of the coarser quadrature that estimates the error of the finer one
+# A bracket is divided into _PARTS for at most _MOST_AT_ONCE cases, else halved.
+_PARTS, _MOST_AT_ONCE = 16, 1000
 _EPS = np.finfo(float).eps
 
 
 @dataclass(frozen=True)
 class FrictionCurve(Described):
-    """Description of a curve of friction over temperature, which files give as rows."""
+    """Description of a curve of friction over temperature, which a file gives as a list of rows."""
 
 
 @dataclass(frozen=True)
 class Duty:
-    """What a brake stops, how often, and what it warms; every number may be an array, one entry per case.
+    """The repeated stops of a brake and the mass that they heat; numbers may be arrays, one entry per case.
 
     Parameters
     ----------
@@ -57,17 +58,17 @@ class Duty:
     heated_mass : float or ndarray
         Mass m that one brake warms [kg].
     specific_heat : float or ndarray
-        Its specific heat c [J/(kg K)]; by default that of cast iron, about 500.
+        Specific heat c of that mass [J/(kg K)]; by default that of cast iron, about 500.
     load_torque : float or ndarray
-        Torque L that drives on, such as that of a slope or of a hanging load [N m].
+        Torque L that drives the brake on, such as that of a slope or of a hanging load [N m].
     free_angle : float or ndarray
-        Angle q0 that it turns in each stop before the brake's torque is there [rad].
+        Angle q0 that the brake turns in each stop before its torque acts [rad].
     stops : float or ndarray
-        Number of stops, a whole one.
+        Number of stops, a whole number.
     interval : float or ndarray
         Time t between the end of a stop and the next [s].
     cooling : float or ndarray
-        Heat that is lost then, over the difference to the surroundings, h [W/K].
+        Heat flow to the surroundings between stops, over the temperature difference, h [W/K].
     surroundings : float or ndarray
         Temperature of the surroundings, and of the brake before the first stop [K].
     friction_curve : array_like, shape (n, 2), optional
@@ -121,14 +122,12 @@ class Duty:
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        given = vars(self).items()
-        together(**{name: x for name, x in given if x is not None and name != "friction_curve"})
         if self.friction_curve is not None:
             curve = np.asarray(self.friction_curve)
             self._check(curve)
             set_fields(
                 self, friction_curve=tuple(map(tuple, curve.tolist()))
-            )  # comparable, as an array is not
+            )  # tuples can be compared, arrays cannot
 
     def _check(self, curve: np.ndarray) -> None:
         if curve.ndim != 2 or curve.shape[1] != 2 or len(curve) < 2:
@@ -141,29 +140,29 @@ class Duty:
 
     @property
     def capacity(self) -> Numbers:
-        """Heat capacity C [J/K]."""
+        """Heat capacity C of the mass that one brake heats [J/K]."""
         return self.heated_mass * self.specific_heat
 
     @property
     def rise_of_a_stop(self) -> Numbers:
-        """Temperature rise by the kinetic energy, and by the load before the torque is there [K]."""
+        """Temperature rise of one stop by the kinetic energy, and by the load before the torque acts [K]."""
         energy = self.inertia * np.square(self.speed) / 2 + self.load_torque * self.free_angle
         return energy / self.capacity
 
     @property
     def kept(self) -> Numbers:
-        """Share of the difference to the surroundings that is left after an interval."""
+        """Fraction of the temperature rise above the surroundings that an interval between stops leaves."""
         return np.exp(-np.asarray(self.cooling) * self.interval / self.capacity)
 
 
 @dataclass(frozen=True)
 class Fade(Result):
-    """Stops that follow each other; arrays have the stop as their first axis, then one entry per case.
+    """Temperatures, friction and angles of repeated stops; arrays have the axes (stop, case).
 
     Attributes
     ----------
     duty : Duty
-        What is stopped, and warmed.
+        The stops, and the mass that they heat.
     status : str or ndarray of str
         ``"stops"``; ``"never stops"`` where the lining fades to the torque of the load; ``"too hot"`` past
         the last temperature of the curve: the numbers from that stop on are nan.
@@ -172,17 +171,17 @@ class Fade(Result):
     end_friction : ndarray
         Friction at the end of each stop.
     angle : ndarray
-        Angle of each stop [rad].
+        Angle that the brake turns in each stop [rad].
     heat : ndarray
         Heat of each stop [J].
     hottest, first_angle, last_angle, first_friction, last_friction, energy : ndarray
         Largest rise above the surroundings [K], angles of the first and last stop [rad], friction at the
         start of the first and at the end of the last, heat of the last [J], of each case.
     settled : ndarray
-        Rise above the surroundings at the end of a stop after very many of them [K]; inf without cooling, nan
-        with a load.
+        Temperature rise above the surroundings at the end of a stop after very many stops [K]; inf without
+        cooling, nan with a load.
     pv : ndarray
-        Largest pressure times rubbing speed, before the first stop [W/m2].
+        Largest pressure times rubbing speed, at the start of the first stop [W/m2].
     error : ndarray
         Estimate of the relative error of the angles, by a quadrature of fewer nodes.
 
@@ -216,20 +215,20 @@ class Fade(Result):
     error: Annotated[Numbers, Meaning("", "estimate of the relative error of the angles")]
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"hottest {spanned(self.hottest, 'K')} above the surroundings"
         yield warned(self.warnings)
 
     @property
     def refusals(self) -> tuple[str, ...]:
-        """A sentence if a stop does not end, or is hotter than the curve says."""
+        """Why a stop has no answer: it does not end, or gets hotter than the friction curve goes."""
         if np.ndim(self.status) == 0:
             return tuple(self.messages_of_cases(1).values())
         found = [(status, words) for status, words in _WORDS.items() if np.any(self.status == status)]
         return tuple(f"{words}, in {np.sum(self.status == status)} cases" for status, words in found)
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """Which stop of a case has no answer, and why, of as many cases, by their rows."""
+        """Tell by the index of a case which stop has no answer, and why; `count` is the number of cases."""
         status, stops = (np.broadcast_to(x, (count,)) for x in (self.status, self.duty.stops))
         ended = np.isfinite(self.end).reshape(len(self.end), -1)
         first = np.broadcast_to(1 + ended.argmin(axis=0), (count,))
@@ -240,12 +239,12 @@ class Fade(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """A sentence if pressure times speed is above its limit."""
+        """Sentence on a product of pressure and rubbing speed above its limit; empty if none is."""
         return warn_of_pv(self.pv, self.duty.most_pv)
 
 
 def warn_of_pv(pv: Numbers, most: Numbers | None) -> tuple[str, ...]:
-    """A sentence if pressure times rubbing speed [W/m2] is above its limit in any case: of those alone."""
+    """Compose a warning of pressure times rubbing speed [W/m2] above its limit; empty if no case is above."""
     if most is None or not np.any(above := np.greater(pv, most)):
         return ()
     highest, least = (
@@ -263,14 +262,14 @@ TorqueAt = Callable[[Numbers], Numbers]
 
 
 def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers = np.nan) -> Fade:
-    """Compute stops that follow each other, at a constant actuating force.
+    """Compute repeated stops of a brake at a constant actuating force.
 
     Parameters
     ----------
     duty : Duty
-        What is stopped, how often, and what is warmed.
+        The stops, and the mass that they heat.
     friction : float or ndarray
-        Friction where the duty has no curve.
+        Coefficient of friction, used if `duty` has no friction curve.
     torque_at : callable
         Torque [N m] at a friction of shape (..., cases); it increases with the friction, and is nan where the
         brake locks.
@@ -309,7 +308,7 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     count = np.broadcast_to(duty.stops, status.shape).astype(int)
 
     def at_last(each: np.ndarray) -> np.ndarray:
-        """The value of the last stop of each case."""
+        """Pick the value of the last stop of each case."""
         return np.take_along_axis(each, count[None] - 1, axis=0)[0]
 
     heat, kept = duty.capacity * (ended - begun), np.asarray(duty.kept)
@@ -337,7 +336,7 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
 
 
 def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Temperature after a stop, nan if it does not end, and its status."""
+    """Compute the temperature after a stop, nan if it does not end, and the status of the stop."""
     duty, load = path.duty, np.asarray(path.duty.load_torque)
     low = start + duty.rise_of_a_stop
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -345,16 +344,16 @@ def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndar
     high = np.where(np.isfinite(path.last), path.last, most)
 
     def over(end: np.ndarray) -> np.ndarray:
-        """Whether a stop has ended, or the lining faded to the load, before a temperature."""
+        """Tell whether the stop has ended, or its lining has faded to the load, below a temperature."""
         return path.stopped(start, end) | (path.least(start, end) <= load)
 
-    # Without a curve `most` is where it ends, which rounding may put just past `high`.
+    # Without a curve the stop ends at `most`, which rounding may put just past `high`.
     hot = np.isfinite(path.last) & ((low > high) | ~over(high))
     high = np.where(hot | over(low), low, high)
     parts = _PARTS if start.size <= _MOST_AT_ONCE else 2
     while np.any(high - low > 2 * _EPS * high):
         grid = np.linspace(low, high, parts + 1)
-        grid[-1] = high  # whatever rounding makes of it
+        grid[-1] = high  # linspace may round its last point
         ended = np.concatenate([over(grid[1:-1]), np.full((1, *start.shape), True)])
         first = ended.argmax(axis=0)[None]
         low, high = (np.take_along_axis(grid, k, axis=0)[0] for k in (first, first + 1))
@@ -365,12 +364,12 @@ def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 @cache
 def _gauss(nodes: int) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes and weights of Gauss and Legendre."""
+    """Return nodes and weights of Gauss-Legendre quadrature."""
     return np.polynomial.legendre.leggauss(nodes)
 
 
 class _Warming:
-    """Friction and torque over the temperature, and their integrals."""
+    """Friction and torque of a brake as functions of the temperature, and the angle of a stop."""
 
     def __init__(self, duty: Duty, friction: Numbers, torque_at: TorqueAt) -> None:
         self.duty, self.given, self.torque_at = duty, friction, torque_at
@@ -385,27 +384,28 @@ class _Warming:
 
     @cached_property
     def cases(self) -> np.ndarray:
-        """Zeros, one for each case."""
+        """Zeros with the shape of the cases, to broadcast with."""
         given = [x for name, x in vars(self.duty).items() if x is not None and name != "friction_curve"]
         return 0 * sum(given, np.asarray(self.given)) + 0 * self.torque(self.given)
 
     def _along(self, values: np.ndarray) -> np.ndarray:
-        """Values along a first axis before that of the cases."""
+        """Broadcast values over the cases, along a new first axis."""
         return values.reshape(-1, *(1,) * self.cases.ndim) + 0 * self.cases
 
     def torque(self, friction: Numbers) -> np.ndarray:
-        """Torque at frictions; nan stays."""
+        """Compute the torque [N m] at coefficients of friction; nan where the friction is nan."""
         known = np.isfinite(friction)
         return np.where(known, self.torque_at(np.where(known, friction, 0.0)), np.nan)
 
     def friction(self, temperature: Numbers) -> Numbers:
-        """Friction at temperatures."""
+        """Compute the coefficient of friction at temperatures [K]."""
         if self.knots is None:
             return self.given + 0 * np.asarray(temperature)
-        return np.interp(temperature, *self.knots.T) + 0 * np.asarray(temperature)  # nan stays
+        # Adding 0 times the temperature keeps nan.
+        return np.interp(temperature, *self.knots.T) + 0 * np.asarray(temperature)
 
     def least(self, start: Numbers, end: Numbers | None = None) -> np.ndarray:
-        """Least torque between two temperatures: at either, or at a knot between, as it follows friction."""
+        """Compute the least torque [N m] between two temperatures: at either, or at a knot between them."""
         ends = (start,) if end is None else (start, end)
         found = [self.friction(each) for each in ends]
         if self.knots is not None and end is not None:
@@ -413,18 +413,21 @@ class _Warming:
         return self.torque(np.min(np.broadcast_arrays(*found), axis=0))
 
     def angle(self, start: Numbers, end: Numbers, nodes: int = _NODES) -> np.ndarray:
-        """Angle of a stop between two temperatures, C int dT / M [rad], knot by knot."""
+        """Compute the angle [rad] in which a stop warms the brake from one temperature to another.
+
+        It is the integral of heat capacity over torque.
+        """
         if self.knots is None:
             return self.duty.capacity * (end - start) / self.least(start)
         x, weights = _gauss(nodes)
         bounds = [np.clip(at, start, end) for at, _ in self.knots]
         low, high = np.stack(bounds[:-1]), np.stack(bounds[1:])
         half, middle = (high - low) / 2, (high + low) / 2
-        each = x.reshape(-1, *(1,) * half.ndim)  # nodes, parts of the curve, cases
+        each = x.reshape(-1, *(1,) * half.ndim)  # axes: nodes, parts of the curve, cases
         slowness = 1 / self.torque(self.friction(middle + half * each))
         return self.duty.capacity * (np.tensordot(weights, slowness, 1) * half).sum(axis=0)
 
     def stopped(self, start: Numbers, end: Numbers) -> np.ndarray:
-        """Whether the heat up to a temperature is that of the whole stop."""
+        """Tell whether the heat up to a temperature is at least the energy of the whole stop."""
         driven = self.duty.load_torque * self.angle(start, end) / self.duty.capacity
         return end - start >= self.duty.rise_of_a_stop + driven - 4 * _EPS * np.abs(end)

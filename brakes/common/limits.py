@@ -1,4 +1,4 @@
-"""Largest forces of hand and foot by the standards whose text was opened, and the verdict on a force."""
+"""Largest forces that standards allow for a hand or a foot, and the comparison of a force with them."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers
 
-_EDGE = 1e-9  # relative excess over a limit that is rounding
-LIMITS = MappingProxyType(  # by what presses: the force [N], and who says so
+EDGE = 1e-9  # relative excess of a value over its limit that counts as rounding
+LIMITS = MappingProxyType(  # largest force [N], and who states it, by what presses
     {
         "foot": (450.0, "ISO 6292:2020, 4.5.2"),
         "hand": (300.0, "ISO 6292:2020, 4.5.4"),
@@ -20,12 +20,12 @@ LIMITS = MappingProxyType(  # by what presses: the force [N], and who says so
 
 
 def passes(limb: str, force: Numbers) -> bool:
-    """Whether a force [N], or any of many, is above the limit of what presses."""
-    return bool(np.max(force) > LIMITS[limb][0] * (1 + _EDGE))
+    """Whether a force [N], or any of many, is above the limit of a limb, a key of `LIMITS`."""
+    return bool(np.max(force) > LIMITS[limb][0] * (1 + EDGE))
 
 
 def verdict(limb: str, force: Numbers) -> str:
-    """One sentence on the largest of the forces [N] of what presses."""
+    """Compare the largest force [N] with the limit of a limb (a key of `LIMITS`), in one sentence."""
     most, source = LIMITS[limb]
     said = "exceeded" if passes(limb, force) else "kept"
     limb = "hand on a bicycle's lever" if limb == "bicycle" else limb

@@ -1,4 +1,4 @@
-"""What a brake is asked with: the force that presses it, or what it is to give; and what makes that force."""
+"""Load of a brake: actuating force, largest pressure or torque; and the force of a wheel cylinder."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ UNITS = {"force": "N", "peak_pressure": "Pa", "torque": "N m"}
 
 
 def take_load(**given: Numbers | None) -> tuple[str, Numbers]:
-    """Name and checked value of the one of force, peak_pressure and torque that is given.
+    """Return name and checked value of the one load that is given: force, peak_pressure or torque.
 
     Raises
     ------

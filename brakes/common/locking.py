@@ -1,4 +1,4 @@
-"""What slides, or locks by itself: its status, and the sentence on what locks."""
+"""Status of brakes that slide or are self-locking, and the sentence that explains it."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.results.result import Result
 
-_NEAR = 1e-9  # relative distance from self-locking within which a brake without an equilibrium locks
-LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that cannot be told from none
+# Relative distance from self-locking within which a brake without an equilibrium counts as locked
+_NEAR = 1e-9
+LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that counts as zero
 
 
 class SlidesOrLocks(Result):
-    """Base of results of brakes that slide, or lock by themselves if the friction is large enough."""
+    """Base of results of brakes that slide, or are self-locking if the friction is large enough."""
 
-    grips: ClassVar[str] = "brake"  # what it is that locks
+    grips: ClassVar[str] = "brake"  # name of the part that locks, for messages
 
     friction: Numbers
     locking_friction: Numbers
@@ -24,12 +25,12 @@ class SlidesOrLocks(Result):
 
     @property
     def status(self) -> Any:
-        """``"slides"`` or ``"locked"``; an array of these for many cases."""
+        """Status ``"slides"`` or ``"locked"``; an array for many cases."""
         return np.where(self.locked, "locked", "slides")[()]
 
     @property
     def message(self) -> str:
-        """Meaning of the status, in one sentence."""
+        """One sentence that tells whether the brake slides or locks, and why."""
         locked = np.asarray(self.locked)
         if not locked.any():
             return "slides: the friction is below self-locking"
@@ -38,14 +39,14 @@ class SlidesOrLocks(Result):
         return _say_locked(self.grips, mu, least, where)
 
     def messages_of_locked(self, count: int) -> dict[int, str]:
-        """The message of each case that locks, of as many cases, by its row."""
+        """Return the message of each case that locks, by its index; `count` is the number of cases."""
         given = self.friction, self.locking_friction, self.locked
         mu, least, locked = (np.broadcast_to(x, (count,)) for x in given)
         return {i: _say_locked(self.grips, mu[i], least[i]) for i in np.flatnonzero(locked).tolist()}
 
 
 def _say_locked(grips: str, friction: np.ndarray, locking: np.ndarray, where: str = "") -> str:
-    """Say that it locks, with the ranges of their friction and of that at which they do."""
+    """Compose the message of cases that lock, with the ranges of friction and of locking friction."""
     mu, least = (
         " to ".join(dict.fromkeys(f"{float(end(values)):.4g}" for end in (np.min, np.max)))
         for values in (friction, locking)

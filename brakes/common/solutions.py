@@ -1,24 +1,24 @@
-"""What a question backwards finds: the inputs at which an answer has a wanted value, or why there is none."""
+"""Result of a question backwards: the inputs at which an answer has a wanted value, or why there is none."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.common.results.one_line import number
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_LEVEL = 1e-12  # relative difference of two answers that is rounding
+_LEVEL = 1e-12  # relative difference of two answers that counts as rounding
 
 
 def step(first: np.ndarray | float, last: np.ndarray | float, part: float = 1.0) -> np.ndarray:
-    """Sign of the way from one answer to another; 0 if that is rounding, or less than a part of the most."""
+    """Sign of the change from one answer to another; 0 if it is rounding.
+
+    `part` scales the relative difference that counts as rounding.
+    """
     size = part * _LEVEL * np.maximum(np.abs(first), np.abs(last))
     return np.sign(np.where(np.abs(np.subtract(last, first)) <= size, 0.0, np.subtract(last, first)))
 
@@ -32,7 +32,7 @@ class Piece:
     start, end : float
         Ends of the range.
     first, last : float
-        Answers at them.
+        Answers at `start` and at `end`.
     """
 
     start: float
@@ -42,7 +42,7 @@ class Piece:
 
     @property
     def course(self) -> str:
-        """Course of the answer over the piece: "rises", "falls" or "is level"."""
+        """Word for the answer over this range: "rises", "falls" or "is level"."""
         return ("falls", "is level", "rises")[int(step(self.first, self.last)) + 1]
 
 
@@ -72,11 +72,11 @@ class Solutions(Result):
     target : float
         The wanted value [output_unit].
     values : ndarray, shape (k,)
-        Inputs that give it [unit], in ascending order; empty if there are none.
+        Inputs that give the wanted value [unit], in ascending order; empty if there are none.
     ranges : ndarray, shape (r, 2)
-        Ranges of inputs that all give it [unit], where the answer is level; `values` are outside of them.
+        Ranges of inputs over which the answer is level at the wanted value [unit]; not repeated in `values`.
     residuals : ndarray, shape (k,)
-        Answers there, less the wanted value [output_unit].
+        Answers at `values` less the wanted value [output_unit].
     pieces : tuple of Piece
         Ranges over which the answer rises, falls or is level, which show that there are no other solutions.
     gaps : tuple of Gap
@@ -90,9 +90,9 @@ class Solutions(Result):
     input, unit, output, output_unit : str
         Names of input and answer, and their units.
     wanted : str
-        The wanted value as a person gave it, where that reads otherwise: in another unit, or rounded.
+        The wanted value as the user gave it, if that reads differently: in another unit, or rounded.
     provenance : Provenance, optional
-        Version, method and time taken, of a question on a file.
+        Version, method and computing time, if the question was about a file.
 
     Examples
     --------
@@ -121,7 +121,7 @@ class Solutions(Result):
     provenance: Provenance | None = None
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{self.output} {number(self.target, self.output_unit)}"
         yield self._where() if self.there else self.message
 
@@ -132,18 +132,18 @@ class Solutions(Result):
 
     @property
     def refusals(self) -> tuple[str, ...]:
-        """A sentence if no input gives the wanted value."""
+        """Sentence that says why no input gives the wanted value; empty if one does."""
         return () if self.there else (self.message,)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """A sentence if there may be more solutions."""
+        """Sentence that there may be more solutions; empty if the pieces have settled."""
         count = f"the pieces of {self.output} still change with {len(self.samples)} samples"
         return () if self.settled else (f"{count}: there may be more solutions; give a narrower range",)
 
     @property
     def message(self) -> str:
-        """The solutions, or "none" with its reason, in a sentence."""
+        """One sentence with the solutions, or with the reason why there are none."""
         low, high = self.samples[[0, -1]]
         if not self.there:
             which = f" gives {self.wanted}" if self.wanted else ""
@@ -152,12 +152,12 @@ class Solutions(Result):
 
     @property
     def _target(self) -> str:
-        """The wanted value, as it was given and in the answer's unit."""
+        """Text of the wanted value, as it was given and in the answer's unit."""
         target = self._output(self.target)
         return f"{self.wanted} ({target})" if self.wanted else target
 
     def _where(self) -> str:
-        """The inputs that give the wanted value."""
+        """State the inputs that give the wanted value."""
         alone = f"{self.input} = {' and '.join(map(self._input, self.values))}"
         ends = ([*map(self._input, span)] for span in self.ranges)
         spans = (f"any {self.input} from {low} to {high}" for low, high in ends)
@@ -165,19 +165,19 @@ class Solutions(Result):
 
     @property
     def lacking(self) -> tuple[str, ...]:
-        """Where there is no answer, and why: a sentence each."""
+        """One sentence for each range of inputs without an answer, with the reason."""
         return tuple(
             f"no answer from {self._input(g.start)} to {self._input(g.end)}: {g.reason}" for g in self.gaps
         )
 
     def _reasons(self) -> Iterator[str]:
-        """Reason why the answer does not reach the wanted value."""
+        """Yield the reasons why the answer does not reach the wanted value."""
         yield from self._extremes() if self.pieces else ()
         yield from (f"it jumps past at {self.input} = {self._input(each)}" for each in self.jumps)
         yield from self.lacking if self.pieces else (gap.reason for gap in self.gaps)
 
     def _extremes(self) -> Iterator[str]:
-        """The answers next to the wanted value, and where they are."""
+        """Yield the answers nearest to the wanted value, below and above, and the inputs that give them."""
         ends = [each for p in self.pieces for each in ((p.first, p.start), (p.last, p.end))]
         if step(min(ends)[0], max(ends)[0]) == 0:
             yield f"{self.output} is {self._output(ends[0][0])} whatever {self.input} is"
@@ -189,7 +189,7 @@ class Solutions(Result):
                 yield f"{self.output} is {words} {self._output(value)}, at {self._places(value, at)}"
 
     def _places(self, value: float, at: float) -> str:
-        """Where the answer has a value: at an input, or over the range in which it is level."""
+        """State where the answer has a value: at one input, or over the range in which it is level."""
         for p in self.pieces:
             if p.course == "is level" and step(p.first, value) == 0:
                 return f"any {self.input} from {self._input(p.start)} to {self._input(p.end)}"
@@ -202,7 +202,7 @@ class Solutions(Result):
         return f"{value:.6g} {self.output_unit}".rstrip()
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the answer over the input, the wanted value, and the solutions."""
+        """Draw the answer over the input, with the wanted value and the solutions."""
         from beamdyn.common.plots.axes_and_lines import set_up_axes
 
         labels = (f"{name} [{unit}]" if unit else name for name, unit in self.named)
@@ -214,7 +214,7 @@ class Solutions(Result):
 
     @property
     def named(self) -> tuple[tuple[str, str], tuple[str, str]]:
-        """Names and units of input and answer."""
+        """Name and unit of the input, and name and unit of the answer."""
         return (self.input, self.unit), (self.output, self.output_unit)
 
 
@@ -222,8 +222,8 @@ class Solutions(Result):
 class WholeSolutions(Solutions):
     """All whole numbers between two bounds at which an answer has a wanted value, or has just passed it.
 
-    Each number is tried. `values` are those whose answer is the wanted one; and where it lies between the
-    answers of two numbers side by side, the second of them, the first past it.
+    Each number is tried. `values` has those whose answer is the wanted value; where the wanted value lies
+    between the answers of two neighbouring numbers, it has the second of them.
 
     Examples
     --------
@@ -234,7 +234,7 @@ class WholeSolutions(Solutions):
 
     @property
     def message(self) -> str:
-        """The numbers, or "none" with its reason, in a sentence."""
+        """One sentence with the numbers found, or with the reason why there are none."""
         meets = self.residuals == 0
         if meets.all():
             return super().message
@@ -243,7 +243,7 @@ class WholeSolutions(Solutions):
         return "; ".join((*said, *map(self._passing, self.values[~meets])))
 
     def _passing(self, value: float) -> str:
-        """What the answer passes on the way to a number."""
+        """Return the values of the answer between which it jumps over the wanted number."""
         k = int(np.searchsorted(self.samples, value))
         (before, now), (first, last) = self.samples[k - 1 : k + 1], self.answers[k - 1 : k + 1]
         steps = f"{self._input(before)} ({self._output(first)}) to {self._input(now)} ({self._output(last)})"

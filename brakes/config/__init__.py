@@ -1,1 +1,1 @@
-"""Brakes in TOML files: text with units in, core objects out, all mistakes in one message."""
+"""Input files of brakes: TOML text with units is read into core objects; all mistakes are in one message."""

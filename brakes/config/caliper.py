@@ -1,4 +1,4 @@
-"""A named caliper in TOML: its dimensions, which make the mechanism, and what is run on it."""
+"""Input files of named calipers: dimensions, from which the mechanism is made, stroke and stop."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ from brakes.calipers import NAMED, Caliper, Stance, StoppingDistance, stop
 from brakes.planar.part import DescribedDirection, DescribedPoint
 from brakes.planar.rows import Point as Coordinates
 
-SHORT_TEXTS = ConfigDict(str_max_length=200)  # limit of titles and names: they are drawn
+SHORT_TEXTS = ConfigDict(str_max_length=200)  # limit of titles and names, which are drawn
 
 # Kinds of values ----------------------------------------------------------------------------------
 
 
-_FARTHEST = 1e6  # coordinates of a mechanism [m]: far beyond any, and far from overflow
+_FARTHEST = 1e6  # largest coordinate of a mechanism [m]: beyond any real one, far from overflow
 
 
 class PointQuantity(Quantity):
-    """A point: two lengths."""
+    """An input that is a point: two lengths."""
 
     def parse(self, given: object) -> Any:
-        """Its coordinates [m]."""
+        """Return the coordinates of the point [m]."""
         if isinstance(given, str):
             raise InvalidInput("", given, "no such point in [points]", 'name one, or give ["1 mm", "2 mm"]')
         point = tuple(quantity(value, "m") for value in _two(given, '["1 mm", "2 mm"]'))
@@ -40,10 +40,10 @@ class PointQuantity(Quantity):
 
 
 class DirectionQuantity(Quantity):
-    """A direction: two numbers, or an angle from x anticlockwise."""
+    """An input that is a direction: two numbers, or an angle from x, anticlockwise."""
 
     def parse(self, given: object) -> Any:
-        """Its components."""
+        """Return the components of the direction."""
         if isinstance(given, str):
             angle = quantity(given, "rad")
             return math.cos(angle), math.sin(angle)
@@ -51,14 +51,14 @@ class DirectionQuantity(Quantity):
 
 
 class Angle(float):
-    """A travel that was given as an angle [rad]."""
+    """A travel that was given as an angle, in [rad]."""
 
 
 class TravelQuantity(Quantity):
-    """A travel: a length, or an angle where the driver is a moment."""
+    """An input that is a travel: a length, or an angle if the driver is a moment."""
 
     def convert(self, given: object) -> float:
-        """A length [m], or an `Angle` [rad]."""
+        """Return the travel as a length [m], or as an `Angle` [rad]."""
         try:
             return Angle(quantity(given, "rad"))
         except ValueError:
@@ -75,14 +75,14 @@ Point = Annotated[Coordinates, PointQuantity("m", meaning="point in the drawing"
 QUANTITIES = {DescribedPoint: PointQuantity, DescribedDirection: DirectionQuantity}
 
 
-# A caliper's run ----------------------------------------------------------------------------------
+# The stroke of a caliper, and the stop ------------------------------------------------------------
 
 
 _Loss = Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]
 
 
 class RunInput(Section):
-    """[run]: the stroke, the finger's force, and what else is to be computed."""
+    """Table [run] of a file: the stroke, the finger's force, and what else is to be computed."""
 
     finger: Annotated[float, Quantity("N", "P", "force of the finger on the hand lever", above=0)] = 40.0
     driver: Annotated[
@@ -98,15 +98,15 @@ class RunInput(Section):
 
 
 class _StopInput(CoreSection):
-    """[stop]: the vehicle that this brake alone stops, by what `stop` and `Stance` describe."""
+    """Table [stop] of a file: the vehicle that this brake alone stops; inputs of `stop` and `Stance`."""
 
     @cached_property
     def core(self) -> StoppingDistance:
-        """The stop without any force."""
+        """The stop without pad force; it checks the inputs."""
         return self.with_force(0.0)
 
     def with_force(self, pad_force: float) -> StoppingDistance:
-        """The stopping distance with a force on each pad [N]."""
+        """Compute the stop with a force on each pad [N]."""
         stance = Stance(**{key: getattr(self, key) for key in _STANCE})
         return stop(pad_force=pad_force, stance=stance, **{key: getattr(self, key) for key in _STOP})
 
@@ -125,16 +125,16 @@ else:
 
 
 class DimensionsInput(MadeSection):
-    """[dimensions] of a named caliper."""
+    """Table [dimensions] of a named caliper, with the lengths that differ from the usual ones."""
 
     @cached_property
     def core(self) -> Caliper:
-        """The caliper."""
+        """The caliper with these dimensions."""
         return self.made(**self.given).build()
 
 
 class CaliperInput(Section):
-    """A named caliper: its name, and where they differ its dimensions."""
+    """File of a named caliper: its name, and dimensions that differ from the usual ones."""
 
     model_config = SHORT_TEXTS
 
@@ -148,14 +148,14 @@ class CaliperInput(Section):
 
     @property
     def core(self) -> Caliper:
-        """The caliper."""
+        """The caliper with the dimensions of the file."""
         built = self.dimensions.core  # pyright: ignore[reportAttributeAccessIssue]  (added by model_of)
         return dataclasses.replace(built, name=self.title) if self.title else built
 
 
 @cache
 def model_of(name: str) -> type[CaliperInput]:
-    """The model of a caliper's file, with the dimensions of its design."""
+    """Make the description of the file of a named caliper, with the dimensions of its design."""
     design = NAMED[name]
     dimensions = section_of(design, tables=QUANTITIES, base=DimensionsInput)
     return create_model(
@@ -164,5 +164,5 @@ def model_of(name: str) -> type[CaliperInput]:
 
 
 def named(name: str) -> CaliperInput:
-    """A caliper of `calipers.NAMED` with its usual dimensions."""
+    """Make the input of a named caliper with its usual dimensions."""
     return validated(model_of(name), {"caliper": name}, name)

@@ -1,4 +1,4 @@
-"""Drum brakes in TOML: the tables [brake], [shoe], [load]; where it differs [second_shoe]; [heat]."""
+"""Input files of drum brakes: [brake], [shoe], [load]; [second_shoe] where it differs; [heat]."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def load_drum(path: str | PathLike[str]) -> DrumInput:
     Returns
     -------
     DrumInput
-        Its ``core`` is the brake, its ``solve()`` the answer.
+        The input; its ``core`` is the brake, its ``solve()`` computes the forces.
 
     Raises
     ------
@@ -49,16 +49,16 @@ def parse_drum(text: str, source: str = "drum brake") -> DrumInput:
 
 
 def drum_from_dict(data: Mapping[str, Any], source: str = "drum brake") -> DrumInput:
-    """A drum brake from the tables of a TOML file; see `load_drum`."""
+    """Read a drum brake from the tables of a TOML file; see `load_drum`."""
     return validated(DrumInput, data, source)
 
 
 class ShoeInput(MadeSection):
-    """[shoe]: a shoe on a fixed pin, described as if it lay on the right of the drum's centre."""
+    """Table [shoe] of a file: a shoe on a fixed pin, described as if right of the drum's centre."""
 
     @property
     def given(self) -> dict[str, Any]:
-        """The arguments of `Shoe`, whose pin lies at minus its depth."""
+        """The arguments of `Shoe`; its pin has y = -depth."""
         given = super().given
         offset, depth = given["pivot"]
         return given | {"pivot": (offset, -depth)}
@@ -77,7 +77,7 @@ else:
 
 
 class DrumBrakeInput(RubbingInput):
-    """[brake]: which shoes lead, the direction of the drum, and the friction of the linings."""
+    """Table [brake] of a file: which shoes lead, direction of rotation, and friction of the linings."""
 
     assembly: Annotated[
         Literal["simplex", "duplex", "single"],
@@ -89,7 +89,7 @@ class DrumBrakeInput(RubbingInput):
 
 
 class DrumInput(CoreSection):
-    """A drum brake: the tables [brake], [shoe], [load]; where it differs [second_shoe]; [heat]."""
+    """File of a drum brake: [brake], [shoe], [load]; [second_shoe] where it differs; [heat]."""
 
     brake: DrumBrakeInput
     shoe: _ShoeInput
@@ -99,12 +99,12 @@ class DrumInput(CoreSection):
 
     @cached_property
     def core(self) -> DrumBrake:
-        """The brake."""
+        """The brake of these shoes."""
         given = {key: value for key, value in self.second_shoe or () if value is not None}
-        try:  # the second shoe is what [second_shoe] gives, and the rest of the first
+        try:  # the second shoe has what [second_shoe] gives, and is like the first one in all else
             second = _Shoe.model_construct(**dict(self.shoe) | given).core if self.second_shoe else None
         except InvalidValue as error:
-            between = ": " if " " in error.field else "."  # text with a space is no key
+            between = ": " if " " in error.field else "."  # a text with a space is not a key
             raise replace(error, field=f"second_shoe{between}{error.field}") from None
         if self.brake.assembly == "single":
             if self.second_shoe is not None:

@@ -1,6 +1,6 @@
-"""A forklift's brakes in TOML: [truck] and [stop], [brake] or [levers], [forces]; each stage alone or all.
+"""Input files of a forklift's brakes: [truck] and [stop], [brake] or [levers], [forces]; some stages or all.
 
-[pedal] and [line] put the driver's foot in place of a given force of the piston.
+[pedal] and [line] replace a given piston force by the force of the driver's foot.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def load_forklift(path: str | PathLike[str]) -> ForkliftInput:
     Returns
     -------
     ForkliftInput
-        Parts of the file; `brakes.answers.forklift.solve_stages` solves them.
+        The tables of the file; `brakes.answers.forklift.solve_stages` solves them.
 
     Raises
     ------
@@ -54,29 +54,29 @@ def parse_forklift(text: str, source: str = "forklift") -> ForkliftInput:
 
 
 def forklift_from_dict(data: Mapping[str, Any], source: str = "forklift") -> ForkliftInput:
-    """A forklift's brakes from the tables of a TOML file; see `load_forklift`."""
+    """Read a forklift's brakes from the tables of a TOML file; see `load_forklift`."""
     return validated(ForkliftInput, data, source)
 
 
 class DuoServoInput(MadeSection):
-    """[brake]: geometry of a duo-servo brake, the right side of it at rest; the left side mirrors it."""
+    """Table [brake] of a file: geometry of a duo-servo brake's right side at rest; the left is its mirror."""
 
-    if TYPE_CHECKING:  # described by `DuoServo.move_shoes`
+    if TYPE_CHECKING:  # `DuoServo.move_shoes` describes this input
         clearance: float
 
     @property
     def motion(self) -> ShoeMotion:
-        """Motion of the shoes."""
+        """Motion of the shoes at the file's clearance."""
         with of_file(self.key_of):
             return self.core.move_shoes(self.clearance)
 
 
 class LeversInput(MadeSection):
-    """[levers]: lever arms and directions of the forces, where no geometry of the brake is known."""
+    """Table [levers] of a file: lever arms and directions of the forces, for a brake of unknown geometry."""
 
     @cached_property
     def core(self) -> Levers:
-        """The arms."""
+        """Lever arms and directions of the forces; refuses different arms of the adjuster's force."""
         arms: Levers = super().core
         if abs(arms.b1 - arms.b2) > 1e-9 * arms.b1:
             raise ValueError(
@@ -87,7 +87,7 @@ class LeversInput(MadeSection):
 
 
 def _slope_of_road(**described: Any) -> SlopeQuantity:
-    """A slope in files, which is that of a road."""
+    """Make the description of a slope in files, within the bounds of a road."""
     bounds: dict[str, Any] = {"above": None, "below": None, "least": -STEEPEST, "most": STEEPEST}
     bounds["remedy"] = "no road is steeper"
     return SlopeQuantity(**{**described, **bounds})
@@ -111,7 +111,7 @@ else:
 
 
 class ForcesInput(Section):
-    """[forces]: the inputs of the forces in one brake."""
+    """Table [forces] of a file: piston force, torque and lining friction for the forces in one brake."""
 
     piston_force: Annotated[
         float | None,
@@ -136,9 +136,9 @@ class ForcesInput(Section):
 
 
 class ForkliftInput(Section):
-    """A forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], as far as they are wanted.
+    """File of a forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], for the stages wanted.
 
-    [pedal], [line], [drums] and [heat] go with all of them.
+    [pedal], [line], [drums] and [heat] need all of them.
     """
 
     truck: _TruckInput | None = None
@@ -187,7 +187,7 @@ class ForkliftInput(Section):
 
     @property
     def stages(self) -> tuple[StageName, ...]:
-        """The stages whose tables are there."""
+        """The stages whose tables are in the file."""
         there = {
             "vehicle": self.truck is not None and self.stop is not None,
             "kinematics": self.brake is not None,

@@ -1,4 +1,4 @@
-"""The table [heat] of files: what a brake stops again and again, and what it warms."""
+"""The table [heat] of input files: repeated stops, and the mass that they heat."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ _SUCH_AS = 'such as [["20 degC", 0.4], ["300 degC", 0.3]]'
 
 
 class CurveQuantity(Quantity):
-    """Rows of a temperature and a friction."""
+    """An input that is a list of rows, each with a temperature and a friction coefficient."""
 
     @property
     def bounds(self) -> str:
-        """How rows are written."""
+        """An example of rows, for messages."""
         return _SUCH_AS
 
     def parse(self, given: object) -> Any:
-        """Rows of temperatures [K] and frictions."""
+        """Return the rows as temperatures [K] and friction coefficients."""
         if not isinstance(given, list) or any(not isinstance(row, list) or len(row) != 2 for row in given):
             raise InvalidInput("", given, f"give rows {_SUCH_AS}")
         return tuple((quantity(at, "K"), Quantity(least=self.least).parse(mu)) for at, mu in given)
@@ -30,7 +30,7 @@ class CurveQuantity(Quantity):
 
 _TABLES = {FrictionCurve: CurveQuantity}
 _OF_A_STOP = ("inertia", "speed", "heated_mass", "specific_heat", "load_torque", "free_angle", "most_pv")
-REPEATED = fields_of(Duty, _TABLES, _OF_A_STOP)  # keys of a file that has the stop itself
+REPEATED = fields_of(Duty, _TABLES, _OF_A_STOP)  # keys of [heat] in a file that describes the stop itself
 
 if TYPE_CHECKING:
     HeatInput = CoreSection

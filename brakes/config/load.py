@@ -1,4 +1,4 @@
-"""Tables of files that all brakes share: what presses them, how they turn, and their friction."""
+"""Tables of input files that all brakes share: load, direction of rotation, and friction."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from brakes.common.loads import wheel_cylinder_force
 
 
 class RubbingInput(Section):
-    """[brake]: direction of rotation, and friction of the linings."""
+    """Table [brake] of a file: direction of rotation, and friction of the linings."""
 
     direction: Annotated[Literal["forward", "reverse"], Field(description="direction of the drum")] = (
         "forward"
@@ -22,7 +22,7 @@ class RubbingInput(Section):
 
 
 class LoadInput(Section):
-    """[load]: the actuating force, or the torque or pressure that the brake is to give: exactly one."""
+    """Table [load] of a file: actuating force, or the torque or pressure that the brake is to give."""
 
     force: Annotated[
         float | None,
@@ -53,7 +53,7 @@ class LoadInput(Section):
 
     @property
     def given(self) -> dict[str, Any]:
-        """The load as an argument of what solves the brake."""
+        """The load as the keyword argument of the function that solves the brake."""
         if self.line_pressure is not None:
             return {"force": wheel_cylinder_force(self.cylinder_bore, self.line_pressure)}
         return {name: value for name, value in self if value is not None}

@@ -1,4 +1,4 @@
-"""Brakes whose linings are pressed by one force in TOML: [brake], a table of dimensions, [load], [heat]."""
+"""Input files of brakes whose linings are pressed by one force: [brake], dimensions, [load], [heat]."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from brakes.machines import Machine, MachineResult, solve_brake
 
 
 class MachineInput(CoreSection):
-    """A brake; its dimensions stand in a table of its own name, made from its class."""
+    """File of a brake; a table named after the brake, made from its class, has the dimensions."""
 
     table: ClassVar[str]
     title: ClassVar[str]
@@ -27,12 +27,12 @@ class MachineInput(CoreSection):
 
     @property
     def dimensions(self) -> MadeSection:
-        """The table of its dimensions."""
+        """The table with the dimensions of the brake."""
         return getattr(self, self.table)
 
     @cached_property
     def core(self) -> Machine:
-        """The brake."""
+        """The brake with these dimensions."""
         return self.dimensions.core
 
     def solve(self) -> MachineResult:
@@ -49,7 +49,7 @@ class MachineInput(CoreSection):
 
 
 def file_of(made: type[Machine], table: str, title: str) -> type[MachineInput]:
-    """Make the description of the file of a brake, by the name of its table of dimensions, and its title."""
+    """Make the description of a brake's file from its class, the name of its table, and a title."""
     fields: dict[str, Any] = {table: (section_of(made), ...)}
     model = create_model(f"{made.__name__}File", __base__=MachineInput, __doc__=made.__doc__, **fields)
     model.table, model.title = table, title

@@ -1,4 +1,4 @@
-"""Any planar mechanism in TOML: bodies, joints and loads, their inputs, and whether it is a named caliper."""
+"""Input files of planar mechanisms: bodies, joints and loads, or a named caliper."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def load_mechanism(path: str | PathLike[str]) -> CaliperInput | MechanismInput:
     Returns
     -------
     CaliperInput or MechanismInput
-        A file with the key ``caliper = "name"`` is of the first kind.
+        The input; a file with the key ``caliper = "name"`` is a `CaliperInput`.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def parse_mechanism(text: str, source: str = "mechanism") -> CaliperInput | Mech
 
 
 def mechanism_from_dict(data: Mapping[str, Any], source: str = "mechanism") -> CaliperInput | MechanismInput:
-    """A caliper or a mechanism from the tables of a TOML file; see `load_mechanism`."""
+    """Read a caliper or a mechanism from the tables of a TOML file; see `load_mechanism`."""
     name = data.get("caliper")
     if isinstance(name, str):
         return validated(model_of(name) if name in NAMED else CaliperInput, data, source)
@@ -71,26 +71,26 @@ def mechanism_from_dict(data: Mapping[str, Any], source: str = "mechanism") -> C
 
 
 class PartSection(MadeSection):
-    """Table of a joint or load."""
+    """A table that describes a joint or a load."""
 
     model_config = SHORT_TEXTS
 
 
-SECTIONS = {  # sections by the name of their table
+SECTIONS = {  # sections by the name of the table
     part.key(): section_of(part, tables=QUANTITIES, base=PartSection) for part in (*JOINTS, *LOADS)
 }
 
 
 class RolesInput(Section):
-    """[caliper] of a mechanism: its centring joints, and what `Caliper` describes (added by `_Roles`)."""
+    """Table [caliper] of a mechanism: centring joints; `_Roles` adds the inputs that `Caliper` describes."""
 
     centring: Annotated[list[str], Field(description="joints that hold only until the pads touch")] = []  # noqa: RUF012
 
 
 class MechanismInput(CoreSection):
-    """Any mechanism: its bodies, joints and loads, and where it is a caliper its cable and pads.
+    """File of a mechanism: bodies, joints and loads; if it is a caliper, also its cable and pads.
 
-    A list of tables for each kind of joint and load is added by `CompleteMechanismInput`.
+    `CompleteMechanismInput` adds a list of tables for each kind of joint and load.
     """
 
     model_config = SHORT_TEXTS
@@ -104,14 +104,14 @@ class MechanismInput(CoreSection):
 
     @cached_property
     def core(self) -> Caliper | Mechanism:
-        """The caliper, or the mechanism if it does not say which loads are cable and pads."""
+        """The caliper, or the mechanism if the file does not tell which loads are cable and pads."""
         joints, loads = (
             [table.core for part in parts for table in getattr(self, part.key())] for parts in (JOINTS, LOADS)
         )
         self._check_run({load.name: load for load in loads})
         if self.caliper is None:
             friction = self.run.friction
-            try:  # that of [run] is of the pins that have none of their own
+            try:  # [run] has the friction of the pins that have none of their own
                 joints = [joint.with_pivot(0.0, friction) for joint in joints] if friction else joints
             except ValueError as error:
                 bound = f"it is that of every pin; {error}"
@@ -135,7 +135,7 @@ class MechanismInput(CoreSection):
         return Caliper(Mechanism(tuple(self.bodies), lasting, tuple(loads)), **given, name=self.title)
 
     def _check_run(self, loads: Mapping[str, Load]) -> None:
-        """Refuse a stroke without a driver, a driver that does not exist, and a travel of another kind."""
+        """Refuse a stroke without a driver, an unknown driver, and a travel that does not suit the driver."""
         run = self.run
         if run.driver is None:
             if run.travel is not None and self.caliper is None:
@@ -163,7 +163,7 @@ CompleteMechanismInput = create_model(
 
 
 def _with_points(data: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables with the names of points replaced by what [points] says of them."""
+    """Replace the names of points in tables by the coordinates in [points]."""
     points = data.get("points")
     known = points if isinstance(points, dict) else {}
 
@@ -186,24 +186,24 @@ def _with_points(data: Mapping[str, Any]) -> dict[str, Any]:
     return made
 
 
-# Descriptions of the inputs of calipers and mechanisms for forms and sweeps; named designs as TOML -------
+# Descriptions of the inputs of calipers and mechanisms for forms and sweeps, and calipers as TOML -------
 
 
-PARTS: dict[str, str] = {}  # by table: the kind of part, and its required and optional keys, as help text
+PARTS: dict[str, str] = {}  # kind of part with its required and optional keys, as help text, by table
 for _part in (*JOINTS, *LOADS):
     _keys: dict[bool, list[str]] = {True: [], False: []}
     for _key, _described in descriptions(_part).items():
-        _otherwise = _described.meaning.partition("; ")[2]  # such as "the ground if not given"
+        _otherwise = _described.meaning.partition("; ")[2]  # a phrase such as "the ground if not given"
         _required = SECTIONS[_part.key()].model_fields[_key].is_required()
         _keys[_required].append(f"{_key} ({_otherwise})" if _otherwise else _key)
     PARTS[_part.key()] = f"{_part.label}: {'; '.join(', '.join(some) for some in _keys.values() if some)}"
 
 
 def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
-    """Inputs of the caliper or mechanism that the tables of a file describe.
+    """Return the inputs of the caliper or mechanism that the tables of a file describe.
 
-    A caliper without dimensions has those that all have; a mechanism has one for each of its points, one for
-    each list of parts, and the rest.
+    A caliper without dimensions has the inputs that all calipers have; a mechanism has an input for each
+    point, for each list of joints or loads, and for all else.
     """
     name, points = tables.get("caliper"), tables.get("points")
     if isinstance(name, str):
@@ -228,12 +228,12 @@ def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
 
 
 def _table(path: str) -> str:
-    """The table of an input's path."""
+    """Name of the table in an input's path."""
     return path.partition(".")[0]
 
 
 def idle_inputs(entries: Mapping[str, str]) -> list[str]:
-    """Paths of inputs of a caliper alone, where the entries of a form, by path, are of a plain mechanism."""
+    """Return paths of inputs that only calipers use, if a form's entries describe another mechanism."""
     if any(text.strip() for path, text in entries.items() if _table(path) == "caliper"):
         return []
     stops = [path for path in entries if _table(path) == "stop"]
@@ -242,7 +242,7 @@ def idle_inputs(entries: Mapping[str, str]) -> list[str]:
 
 
 def named_text(name: str) -> str:
-    """TOML text of a named caliper with all its dimensions, lengths in mm."""
+    """Write a named caliper as TOML text, with all its dimensions, lengths in mm."""
     lines = [f"caliper = {show(named(name).caliper)}", "", "[dimensions]"]
     for entry in inputs_of_tables({"caliper": name}):
         if entry.path.startswith("dimensions."):

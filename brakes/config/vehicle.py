@@ -1,4 +1,4 @@
-"""Vehicles in TOML: [truck] or [vehicle], [road], [braking], [stop]; [lever], [cable] or [line], [brakes]."""
+"""Input files of vehicles on a slope: vehicle, road, shares of braking, stop, and parking brake."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["VehicleInput"]
 
 
 class BrakingInput(Section):
-    """[braking]: which wheels are braked."""
+    """Table [braking] of a file: share of the front wheels, and the wheels that the parking brake holds."""
 
     front_share: Annotated[
         float,
@@ -40,9 +40,9 @@ else:
 
 
 class VehicleInput(Section):
-    """A vehicle on a slope: [truck] or [vehicle], [road], [braking], [stop], and its parking brake.
+    """File of a vehicle on a slope: [truck] or [vehicle], [road], [braking], [stop], and its parking brake.
 
-    [lever], [cable] or [line], and [brakes] go together.
+    The parking brake needs [lever], [cable] or [line], and [brakes].
     """
 
     truck: _TruckInput | None = None
@@ -68,7 +68,7 @@ class VehicleInput(Section):
 
     @property
     def standing(self) -> Vehicle:
-        """The vehicle with its load."""
+        """The vehicle with its load, as two axles and a centre of gravity."""
         if self.truck is not None:
             return self.truck.core.vehicle
         assert self.vehicle is not None

@@ -1,1 +1,1 @@
-"""Pictures of brakes: matplotlib axes in, matplotlib axes out."""
+"""Drawings and charts of brakes, as data and as matplotlib figures."""

@@ -1,4 +1,4 @@
-"""Drawings of disc brakes, plates and cones: the disc from the front, or a section with the force."""
+"""Drawings of disc brakes (from the front), and of multi-plate and cone brakes (cut along the axis)."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ _UP, _LEFT, _BOTH = (0.0, 1.0), (-1.0, 0.0), (1.0, -1.0)
 
 
 def draw_disc(result: MachineResult) -> Drawing:
-    """The disc from the front, with the friction of both pads together on it; of one case."""
+    """Draw the disc from the front, with the friction of both pads together; for a single case."""
     disc = result.brake
     assert isinstance(disc, DiscBrake)
-    r, sense = float(disc.reference_radius), 1.0 if result.reverse else -1.0  # the sense of its rotation
+    # The sense is the direction of the friction at the top of the disc.
+    r, sense = float(disc.reference_radius), 1.0 if result.reverse else -1.0
     drag = float(result.torque) / r
     arrows = ForceArrows(0.8 * r / drag if drag else 0.0)
     _add_disc(arrows.shapes, disc)
@@ -34,7 +35,7 @@ def draw_disc(result: MachineResult) -> Drawing:
 
 
 def draw_plates(result: MachineResult) -> Drawing:
-    """A section through the plates with the force that presses them; of one case."""
+    """Draw a section through the plates, with the force that presses them; for a single case."""
     plates = result.brake
     assert isinstance(plates, Plates)
     arrows = ForceArrows(0.6 * float(plates.outer_radius) / float(result.force))
@@ -43,7 +44,7 @@ def draw_plates(result: MachineResult) -> Drawing:
 
 
 def draw_cone(result: MachineResult) -> Drawing:
-    """A section through the cone with the force that presses it; of one case."""
+    """Draw a section through the cone, with the force that presses it; for a single case."""
     cone = result.brake
     assert isinstance(cone, Cone)
     arrows = ForceArrows(0.6 * float(cone.outer_radius) / float(result.force))
@@ -52,7 +53,7 @@ def draw_cone(result: MachineResult) -> Drawing:
 
 
 def _with_force(arrows: ForceArrows, result: MachineResult, words: str) -> Drawing:
-    """A section with the force along its axis."""
+    """Finish the drawing of a section by the actuating force along its axis, and by title and key."""
     arrows.add((0.0, 0.0), np.array([float(result.force), 0.0]), "P", "load", ends_here=True)
     title = f"Pressed by {float(result.force):.5g} N; torque {float(result.torque):.5g} N m"
     return arrows.drawing(title, words, {"load": "actuating force P"})
@@ -62,7 +63,7 @@ def _with_force(arrows: ForceArrows, result: MachineResult, words: str) -> Drawi
 
 
 def _add_disc(shapes: list[DrawnShape], disc: DiscBrake) -> None:
-    """Add the disc and the pad at its top."""
+    """Add the disc, with a pad at its top, to the shapes."""
     low, high, half = float(disc.inner_radius), float(disc.outer_radius), float(disc.pad_angle) / 2
     ends = np.pi / 2 - half, np.pi / 2 + half
     pad = np.vstack([arc((0, 0), low, *ends), arc((0, 0), high, *ends)[::-1]])
@@ -75,11 +76,11 @@ def _add_disc(shapes: list[DrawnShape], disc: DiscBrake) -> None:
 
 
 def _add_plates(shapes: list[DrawnShape], plates: Plates) -> None:
-    """Add one plate more than there are pairs of faces, above and below the axis."""
+    """Add the plates, one more than there are pairs of faces, above and below the axis."""
     low, high, faces = float(plates.inner_radius), float(plates.outer_radius), int(plates.faces)
     step = min(0.25 * high, 1.2 * high / (faces + 1))
     shapes.append(Outline([(-0.3 * high, 0.0), ((faces + 1) * step + 0.2 * high, 0.0)], "axis", 0.8, (6, 2)))
-    for k in range(faces + 1):  # plates of the shaft reach inward, those of the housing outward
+    for k in range(faces + 1):  # plates on the shaft reach inward, plates in the housing outward
         ends = (0.75 * low, high) if k % 2 else (low, high + 0.25 * low)
         for side in _BOTH:
             box = [(k * step, ends[0]), (k * step, ends[1]), ((k + 0.8) * step, ends[1])]
@@ -88,7 +89,7 @@ def _add_plates(shapes: list[DrawnShape], plates: Plates) -> None:
 
 
 def _add_cone(shapes: list[DrawnShape], cone: Cone) -> None:
-    """Add the cone in its cup; its small end is where the force pushes it."""
+    """Add the cone in its cup to the shapes; the force pushes it towards its narrow end."""
     low, high, width = float(cone.inner_radius), float(cone.outer_radius), float(cone.width)
     body = [(0.0, -high), (0.0, high), (width, low), (width, -low)]
     shapes += [
@@ -104,7 +105,7 @@ def _add_cone(shapes: list[DrawnShape], cone: Cone) -> None:
 
 
 def disc_sketch() -> Rows:
-    """Dimensions of a pad."""
+    """Sketch the dimensions of a pad."""
     s, disc = Sketch(), DiscBrake(0.6, 1.0, np.radians(80.0))
     _add_disc(s.shapes, disc)
     _radii(s, disc.inner_radius, disc.outer_radius)
@@ -115,7 +116,7 @@ def disc_sketch() -> Rows:
 
 
 def _radii(s: Sketch, low: float, high: float) -> None:
-    """Inner and outer radius, from the centre."""
+    """Add inner and outer radius to a sketch, from the centre."""
     for symbol, radius, angle in (("r_i", low, -0.5), ("r_o", high, -2.4)):
         tip = radius * np.array([np.cos(angle), np.sin(angle)])
         s.add(Disc((0, 0), radius, "axis", 0.8, (4.0, 2.5)))
@@ -123,7 +124,7 @@ def _radii(s: Sketch, low: float, high: float) -> None:
 
 
 def plates_sketch() -> Rows:
-    """Dimensions of a set of plates."""
+    """Sketch the dimensions of a set of plates."""
     s = Sketch()
     _add_plates(s.shapes, Plates(0.6, 1.0, faces=4))
     s.length("r_o", (1.5, 0.0), (1.5, 1.0), (1.0, 0.0))
@@ -135,7 +136,7 @@ def plates_sketch() -> Rows:
 
 
 def cone_sketch() -> Rows:
-    """Dimensions of a cone."""
+    """Sketch the dimensions of a cone."""
     s = Sketch()
     _add_cone(s.shapes, Cone(0.7, 1.0, width=0.9))
     s.length("r_o", (-0.25, 0.0), (-0.25, 1.0), _LEFT)

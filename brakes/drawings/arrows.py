@@ -1,4 +1,4 @@
-"""Arrows of forces to one scale, for free-body diagrams."""
+"""Arrows of forces, drawn to one scale, for free-body diagrams."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ import numpy as np
 
 from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, arc
 
-_FORCES = 3  # priority of their labels
-_HEAD = 12  # points of an arc of 41 that its arrow's head takes
+_FORCES = 3  # priority of the labels of forces
+_HEAD = 12  # points of an arc of 41 that its arrow's head covers
 
 
 @dataclass(eq=False)
 class ForceArrows:
-    """A drawing to which arrows of forces are added, to one scale.
+    """A drawing under construction, to which forces are added as arrows to one scale.
 
     Parameters
     ----------
     scale : float
-        Length of an arrow per force [m/N].
+        Length of an arrow per newton [m/N].
     least : float
-        Length [m] below which an arrow is drawn ten or a hundred times as long, and its label says so.
+        Length [m] below which an arrow is drawn ten or a hundred times as long; its label then says so.
     shapes, labels : list
-        Shapes and labels so far, in m.
+        Shapes and labels added so far; lengths in m.
     """
 
     scale: float
@@ -34,20 +34,20 @@ class ForceArrows:
     labels: list[Label] = field(default_factory=list)
 
     def add(self, at: Any, vector: np.ndarray, symbol: str, role: str, *, ends_here: bool = False) -> None:
-        """Add a force, its symbol and size at the free end of the arrow.
+        """Add the arrow of a force, with its symbol and magnitude at the free end.
 
         Parameters
         ----------
         at : array of two floats
-            Where the force acts [m].
+            Point of application [m].
         vector : ndarray, shape (2,)
             The force [N].
         symbol : str
-            Its symbol, such as "N_1".
+            Symbol of the force, such as "N_1".
         role : str
             Role that gives its colour: a name in `beamdyn.common.drawing.strokes`.
         ends_here : bool
-            Whether the arrow ends at `at`, as for a force that pushes, and does not start there.
+            Whether the arrow ends at `at`, as for a force that pushes, instead of starting there.
         """
         start = np.asarray(at, dtype=float)
         length = self.scale * float(np.hypot(*vector))
@@ -62,28 +62,28 @@ class ForceArrows:
         self.labels.append(Label(said, places, role, (along[0], along[1]), symbol, priority=_FORCES))
 
     def drawing(self, title: str, words: str, key: Mapping[str, str]) -> Drawing:
-        """The drawing, with a title, what it shows in words, and the meaning of its colours."""
+        """Make the drawing with a title, a description in words, and the meaning of its colours."""
         shapes, labels = tuple(self.shapes), tuple(self.labels)
         return Drawing(shapes, labels, title, words, newton=self.scale, key=key)
 
 
 def force_size(vector: np.ndarray) -> str:
-    """Size of a force, such as "3.44 kN"."""
+    """Format the magnitude of a force, such as "3.44 kN"."""
     size = float(np.hypot(*vector))
     return f"{size / 1e3:.3g} kN" if size >= 1e3 else f"{size:.3g} N"
 
 
 def rotation(radius: float, half: float, sense: float) -> list[DrawnShape]:
-    """Arrow of the rotation of what is centred at the origin: above it, clockwise for a sense of 1.
+    """Make the arrow of a rotation about the origin, above it; it points clockwise for a sense of 1.
 
     Parameters
     ----------
     radius : float
-        Of its arc [m].
+        Radius of the arc [m].
     half : float
-        Half of the arc's angle [rad].
+        Half of the angle of the arc [rad].
     sense : float
-        1 if it turns clockwise, -1 if anticlockwise.
+        1 for a clockwise rotation, -1 for an anticlockwise one.
     """
     points = arc((0, 0), radius, np.pi / 2 + half * sense, np.pi / 2 - half * sense)
     shaft = Outline(points[: 2 - _HEAD], "neutral", 1.5)

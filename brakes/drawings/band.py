@@ -12,10 +12,10 @@ from brakes.machines import Band, MachineResult
 
 
 def draw_band(result: MachineResult) -> Drawing:
-    """The drum, its band and the lever, with the forces on the lever to one scale; of one case.
+    """Draw the drum, its band and the lever, with the forces on the lever to one scale; for a single case.
 
-    The arms of the lever are to scale; its distance from the drum, and so the direction of the band's free
-    ends, is not given: it is drawn near to the drum.
+    The arms of the lever are to scale. Its distance from the drum, and so the direction of the band's free
+    ends, is not given: the lever is drawn near the drum.
     """
     band = result.brake
     assert isinstance(band, Band)
@@ -40,16 +40,16 @@ def draw_band(result: MachineResult) -> Drawing:
 
 
 def _places(band: Band) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """Points of the band from its second end over the top to its first, and of the lever."""
+    """Return points of the band, from its second end over the top to its first, and of the lever."""
     r, half = float(band.drum_radius), float(band.wrap) / 2
     a, s, far = (float(arm) for arm in (band.first_arm, band.second_arm, band.force_arm))
     rim = arc((0, 0), r, np.pi / 2 + half, np.pi / 2 - half, 121)
-    middle = np.array([(s - a) / 2, -1.45 * r])  # the fulcrum, with the two ends on both sides of the drum
+    middle = np.array([(s - a) / 2, -1.45 * r])  # the fulcrum; the two ends are on both sides of the drum
     return rim, tuple(middle + np.array([x, 0.0]) for x in (a, -s, 0.0, far))
 
 
 def _add_body(shapes: list[DrawnShape], band: Band) -> None:
-    """Add drum, band, lever and fulcrum."""
+    """Add drum, band, lever and fulcrum to the shapes."""
     rim, (first, second, fulcrum, end) = _places(band)
     left = min(second[0], fulcrum[0])
     shapes += [
@@ -64,7 +64,7 @@ def _add_body(shapes: list[DrawnShape], band: Band) -> None:
 
 
 def band_sketch() -> Rows:
-    """Dimensions of a differential band brake."""
+    """Sketch the dimensions of a differential band brake."""
     s = Sketch()
     band = Band(1.0, 0.2, np.radians(230.0), force_arm=2.0, first_arm=0.7, second_arm=0.45)
     rim, (first, second, fulcrum, end) = _places(band)

@@ -10,11 +10,12 @@ from beamdyn.common.drawing.sketch import Sketch
 from brakes.drawings.arrows import ForceArrows, rotation
 from brakes.machines import Block, LiningResult, MachineResult
 
-_SIDES = (np.eye(2), np.diag((1.0, -1.0)))  # from the axes of a block to the drawing: on top, and below
+# Matrices from the axes of a block to the drawing, for a block on top and for one below.
+_SIDES = (np.eye(2), np.diag((1.0, -1.0)))
 
 
 def draw_block(result: MachineResult) -> Drawing:
-    """The drum, its blocks and levers, with the forces on the levers to one scale; of one case."""
+    """Draw the drum, its blocks and levers, with the forces on the levers to one scale; for a single case."""
     block = result.brake
     assert isinstance(block, Block)
     r, force = float(block.drum_radius), float(result.force)
@@ -44,7 +45,7 @@ def draw_block(result: MachineResult) -> Drawing:
 def _add_forces(
     arrows: ForceArrows, block: Block, lining: LiningResult, placed: np.ndarray, index: str, leads: bool
 ) -> None:
-    """Add the resultants of pressure and friction where their lines cross, and the fulcrum's force."""
+    """Add the resultants of pressure and friction where their lines cross, and the force of the fulcrum."""
     c, s, q = (float(each) for each in block.integrals())
     way = np.array([s, c]) / np.hypot(s, c)
     at = float(block.drum_radius) * q / np.hypot(s, c) * way
@@ -56,7 +57,7 @@ def _add_forces(
 
 
 def _places(block: Block) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The block's face (k, 2), the fulcrum, and where the force acts; the block is on top of the drum."""
+    """Return points of the block's face (k, 2), the fulcrum and the force, for a block above the drum."""
     half, r = float(block.block_angle) / 2, float(block.drum_radius)
     face = arc((0, 0), r, np.pi / 2 + half, np.pi / 2 - half)
     fulcrum = np.array([-float(block.block_arm), float(block.height)])
@@ -65,13 +66,13 @@ def _places(block: Block) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _add_drum(shapes: list[DrawnShape], r: float, *, reverse: bool) -> None:
-    """Add the drum and its rotation; forward its top moves to the left, where the fulcrum is."""
+    """Add the drum and its rotation; forward, its top moves to the left, where the fulcrum is."""
     shapes += [Disc((0, 0), r, "neutral", 1.4), Symbol("cross", (0, 0), "axis", 9.0)]
     shapes += rotation(0.6 * r, 0.35, 1.0 if reverse else -1.0)
 
 
 def _add_lever(shapes: list[DrawnShape], block: Block, placed: np.ndarray) -> None:
-    """Add a block on its lever by the matrix from its own axes."""
+    """Add a block with its lever; the matrix `placed` transforms its own axes to the drawing."""
     face, fulcrum, end = _places(block)
     r = float(block.drum_radius)
     back = face * (1.0, 0.0) + (0.0, 1.3 * r)
@@ -84,7 +85,7 @@ def _add_lever(shapes: list[DrawnShape], block: Block, placed: np.ndarray) -> No
 
 
 def block_sketch() -> Rows:
-    """Dimensions of a block and its lever."""
+    """Sketch the dimensions of a block and its lever."""
     s, block = Sketch(), Block(1.0, 0.3, np.radians(50.0), force_arm=3.2, block_arm=1.7, offset=0.3)
     _add_drum(s.shapes, 1.0, reverse=False)
     _add_lever(s.shapes, block, _SIDES[0])

@@ -1,9 +1,8 @@
-"""A caliper with its curves in one figure, and sketches explaining inputs of calipers and mechanisms."""
+"""Drawings and figures of bicycle calipers, and sketches that explain inputs of calipers and mechanisms."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,28 +12,25 @@ from beamdyn.common.drawing.on_axes import draw_in
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch
+from beamdyn.common.results.pictures import Figure, new_figure
 from brakes.calipers import NAMED, Caliper, CaliperStroke
 from brakes.drawings.mechanism import merged, named_curves, open_and_closed, travel_axis
 from brakes.planar import Equilibrium, Position, solve
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 
 _HEIGHTS = (1.0, 1.0, 1.6, 0.8)  # heights of the charts over the stroke, relative to one another
 
 
 def caliper_drawing(caliper: Caliper, closed: Equilibrium, title: str = "") -> Drawing:
-    """A caliper open (outlined in grey) and closed on the rim, with its forces; in mm.
+    """Draw a caliper open (outlined in grey) and closed on the rim, with its forces; in mm.
 
     Parameters
     ----------
     caliper : Caliper
         The caliper.
     closed : Equilibrium
-        From `Caliper.equilibrium`.
+        Equilibrium of the closed caliper, from `Caliper.equilibrium`.
     title : str
-        Title; the caliper's name if not given.
+        Title of the drawing; by default the caliper's name.
     """
     place = closed.position
     shapes = [shape for name in caliper.pads for shape in caliper.mechanism.load(name).shapes()]
@@ -45,7 +41,7 @@ def caliper_drawing(caliper: Caliper, closed: Equilibrium, title: str = "") -> D
 
 
 def title_of(caliper: Caliper, run: CaliperStroke, cable: float) -> str:
-    """Title of a drawing at a travel of the cable [m]."""
+    """Compose the title of a drawing at a travel of the cable [m]."""
     return f"{caliper.name}: {1e3 * cable:.3g} mm of cable, {run.finger_force:g} N on the lever; grey: open"
 
 
@@ -59,18 +55,16 @@ def caliper_figure(
     caliper : Caliper
         The caliper.
     run : CaliperStroke
-        Its stroke.
+        The caliper over its stroke.
     closed : Equilibrium
-        From `Caliper.equilibrium`.
+        Equilibrium of the closed caliper, from `Caliper.equilibrium`.
     cable : float, optional
-        Travel of the cable at which it is closed [m], marked in the curves; the end of the stroke if not
-        given.
+        Travel of the cable in the closed position [m], marked in the curves; by default that at the end of
+        the stroke.
     caption : str
-        A line under the title.
+        A further line under the title.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(11.5, 7.6))  # laid out by hand: a layout engine takes twice as long
+    figure = new_figure(11.5, 7.6, None)  # laid out by hand: a layout engine takes twice as long
     place = float(run.cable[-1] if cable is None else cable)
     title = "\n".join(filter(None, (title_of(caliper, run, place), caption)))
     draw_in(figure, (0.005, 0.01, 0.545, 0.985), caliper_drawing(caliper, closed, title))
@@ -80,16 +74,16 @@ def caliper_figure(
 
 
 def stroke_charts(caliper: Caliper, run: CaliperStroke, cable: float) -> list[Chart]:
-    """Advantage, velocity of the pads and reactions over the stroke, marked at a travel of the cable [m].
+    """Make charts of advantage, pad velocities and reactions over the stroke, with a mark at a cable travel.
 
     Parameters
     ----------
     caliper : Caliper
         The caliper.
     run : CaliperStroke
-        Its stroke.
+        The caliper over its stroke.
     cable : float
-        Where the cursor is [m].
+        Travel of the cable to mark [m].
     """
     joints = caliper.mechanism.joints
     forces, couples = (
@@ -123,12 +117,12 @@ _LETTERS = 9.0
 
 
 def caliper_sketch(name: str) -> Rows:
-    """A named caliper with the names of its dimensions, and the vehicle; for an unknown name the latter."""
+    """Sketch a named caliper with the names of its dimensions, and the vehicle; only that for other names."""
     return [[_dimensions(name)], [_bicycle()]] if name in NAMED else [[_bicycle()]]
 
 
 def _bicycle() -> Drawing:
-    """Dimensions of the vehicle that a caliper stops."""
+    """Sketch the dimensions of the vehicle that a caliper stops."""
     s = Sketch()
     R, L = 0.7, 2.1
     cg = np.array([1.15, 2.0])
@@ -172,12 +166,12 @@ def _dimensions(name: str) -> Drawing:
 
 
 def mechanism_sketch(stops: bool) -> Rows:
-    """The symbols of joints and loads, and the angles of directions; with a vehicle if it stops one."""
+    """Sketch the symbols of joints and loads, the angles of directions and, if `stops`, the vehicle."""
     return [[_symbols()], [_directions()], *([[_bicycle()]] if stops else [])]
 
 
 def _symbols() -> Drawing:
-    """How joints are drawn."""
+    """Sketch the symbols of the joints."""
     s = Sketch()
     line = np.array([(-0.35, 0.0), (0.35, 0.0)])
     symbols: dict[str, tuple[Callable[[np.ndarray], DrawnShape], ...]] = {
@@ -195,12 +189,12 @@ def _symbols() -> Drawing:
         at = np.array([2.6 * (i % 2), -0.8 * (i // 2)])
         s.add(*(shape(at) for shape in shapes))
         s.labels.append(Label(words, at + np.array((0.4, 0.0)), "text", (1.0, 0.0), size=_LETTERS))
-    s.room = [(5.0, 0.0)]  # room for the words on the right
+    s.room = [(5.0, 0.0)]  # leaves room for the words on the right
     return s.drawing("Signs of joints", "How pins, bars, cables, springs, slots and contacts are drawn")
 
 
 def _directions() -> Drawing:
-    """Directions of some angles."""
+    """Sketch the directions of some angles."""
     s = Sketch()
     for words, way in {"0 deg": (1.0, 0.0), "90 deg": (0.0, 1.0), "-30 deg": (0.87, -0.5)}.items():
         s.add(Arrow((0.0, 0.0), way, "load", words, 1.6))

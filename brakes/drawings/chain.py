@@ -1,4 +1,4 @@
-"""Sketches that explain the symbols of pedal, line and brakes."""
+"""Sketches that explain the symbols of line, cylinders and wheels."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ _DOWN, _LEFT = (0.0, -1.0), (-1.0, 0.0)
 
 
 def line_sketch() -> Rows:
-    """Bores and travels of a hydraulic line."""
+    """Sketch bores and travels of a hydraulic line's cylinders."""
     return [[_cylinder("Master cylinder", "d_m", "s_0"), _cylinder("Wheel cylinder", "d_w", "s_w")]]
 
 
 def _cylinder(title: str, bore: str, travel: str) -> Drawing:
-    """A cylinder with its piston, its bore and the travel of the piston."""
+    """Sketch a cylinder with its piston, its bore and the travel of the piston."""
     s, half = Sketch(), 0.3
     s.add(
         Outline([(0, half), (1.2, half), (1.2, -half), (0, -half)], "body", 1.4, closed=True, filled=True),
@@ -32,7 +32,7 @@ def _cylinder(title: str, bore: str, travel: str) -> Drawing:
 
 
 def wheel_sketch() -> Drawing:
-    """Radii of a braked wheel and of its drum."""
+    """Sketch the radii of a braked wheel and of its drum."""
     s = Sketch()
     s.add(Disc((0.0, 0.0), 1.0, "wheel", 1.4, filled=True), Disc((0.0, 0.0), 0.5, "neutral", 1.4))
     s.add(Symbol("cross", (0.0, 0.0), "axis", 9.0))

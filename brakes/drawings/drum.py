@@ -8,50 +8,42 @@ from matplotlib.figure import Figure
 
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark
 from beamdyn.common.drawing.chart_on_axes import plot_chart
-from beamdyn.common.drawing.on_axes import draw_in
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol, arc
 from brakes.drawings.arrows import ForceArrows
+from brakes.drawings.machine import FRICTION_SHOWN, LIMIT_SHOWN, beside_charts, over_friction
 from brakes.drum import BrakeResult, DrumBrake, ShoeResult, brake_torque
 
-_FRICTION_SHOWN, _LIMIT_SHOWN = 0.8, 1.6
-_ANGLES, _FRICTIONS = 61, 121  # points of the curves
+_ANGLES, _FRICTIONS = 61, 121  # numbers of points of the curves over the angle, and over the friction
 
 
 def brake_figure(result: BrakeResult) -> Figure:
-    """Draw the brake with its forces, pressure and shoe factors; of a locked brake no pressure.
+    """Draw a drum brake with forces, pressure and shoe factors; a locked brake without pressure.
 
     Parameters
     ----------
     result : BrakeResult
-        A result of one case.
+        Result for a single case.
     """
-    figure = Figure(figsize=(11.5, 7.0))
-    draw_in(figure, (0.005, 0.01, 0.55, 0.98), drawing_of(result))
-    charts = charts_of(result)
-    rows = len(charts)
-    cells = figure.add_gridspec(rows, 1, left=0.62, right=0.985, bottom=0.15 / rows, top=0.955, hspace=0.3)
-    for row, chart in enumerate(charts):
-        plot_chart(figure.add_subplot(cells[row, 0]), chart)
-    return figure
+    return beside_charts(drawing_of(result), charts_of(result))
 
 
 def charts_of(result: BrakeResult) -> list[Chart]:
-    """Pressure, if there is any, and shoe factors of a result of one case."""
+    """Make the charts of pressure, unless the brake locks, and of shoe factors; for a single case."""
     factors_over_friction = factor_chart(result.brake, float(result.friction), result.reverse)
     return [factors_over_friction] if result.locked else [pressure_chart(result), factors_over_friction]
 
 
 def drawing_of(result: BrakeResult) -> Drawing:
-    """The shoes in the drum with their forces to one scale, or a mark on each that locks; of one case, in m.
+    """Draw the shoes in the drum with their forces to one scale, or a mark on each that locks; in m.
 
-    The resultants N of the pressure and T of the friction act where their lines of action cross, which is
-    outside the drum, at the effective arm from its centre.
+    The result is for a single case. The resultants N of pressure and T of friction act where their lines of
+    action cross: outside the drum, at the effective arm from its centre.
     """
     r = float(result.shoes[0].shoe.drum_radius)
     vectors = (v for s in result.shoes for v in (s.normal, s.tangential, s.pin_reaction))
     largest = 0.0 if result.locked else max(float(result.force), *(float(np.hypot(*v)) for v in vectors))
     arrows = ForceArrows(0.0 if result.locked else 0.75 * r / largest)
-    # The drum's sense of rotation at the top is clockwise when it turns forward.
+    # When the drum turns forward, its top moves clockwise.
     start, end = np.radians((70.0, 110.0) if result.reverse else (110.0, 70.0))
     way = arc((0, 0), 1.08 * r, start, end)
     arrows.shapes += [
@@ -62,7 +54,7 @@ def drawing_of(result: BrakeResult) -> Drawing:
         Symbol("dot", (0.0, r), "neutral", 3.0),
     ]
     arrows.labels.append(Label("drum", (0.0, 1.08 * r), "neutral", (0.0, 1.0)))
-    for i, shoe in enumerate(result.shoes):  # the first on the right, the second on the left
+    for i, shoe in enumerate(result.shoes):  # the first shoe is on the right, the second on the left
         same = result.brake.leading[0] == result.brake.leading[i]
         placed = np.eye(2) if i == 0 else np.diag((-1.0, -1.0 if same else 1.0))
         _draw_shoe(arrows, shoe, placed, f"{i + 1}", bool(result.locked))
@@ -75,13 +67,11 @@ def drawing_of(result: BrakeResult) -> Drawing:
 
 
 def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str, bare: bool) -> None:
-    """Add a shoe with lining and pin by the matrix from its own axes, and its forces unless it is bare."""
+    """Add a shoe with lining and pin, and its forces unless it is bare; `placed` transforms its own axes."""
     r, shoe = float(s.shoe.drum_radius), s.shoe
     rim = _on_rim(r, np.linspace(*shoe.lining, 80)) @ placed
-    pin, lever = (
-        np.array(shoe.pivot, dtype=float) @ placed,
-        np.array([0.55 * r, float(shoe.force_arm)]) @ placed,
-    )
+    pin = np.array(shoe.pivot, dtype=float) @ placed
+    lever = np.array([0.55 * r, float(shoe.force_arm)]) @ placed
     middle = r * np.array([0.36, 0.3]) @ placed
     arrows.shapes += [
         Outline(np.vstack([pin, 0.86 * rim, lever]), "body", 5.0),
@@ -107,17 +97,17 @@ def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str
 
 
 def _on_rim(r: float, alpha: np.ndarray) -> np.ndarray:
-    """Points (k, 2) on the drum at angles from straight down [rad]."""
+    """Compute points (k, 2) on the drum at angles from straight down [rad]."""
     return r * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1)
 
 
 def pressures(ax: Axes, result: BrakeResult) -> Axes:
-    """Draw the pressure over the linings; of one case."""
+    """Draw the pressure over the linings in matplotlib axes; for a single case."""
     return plot_chart(ax, pressure_chart(result))
 
 
 def pressure_chart(result: BrakeResult) -> Chart:
-    """The pressure over the linings, of one case, down to zero at their ends."""
+    """Make the chart of the pressure over the linings, down to zero at their ends; for a single case."""
     curves = []
     for i, shoe in enumerate(result.shoes):
         a1, a2 = (float(a) for a in shoe.shoe.lining)
@@ -129,39 +119,39 @@ def pressure_chart(result: BrakeResult) -> Chart:
 
 
 def _name(i: int, shoe: ShoeResult) -> str:
-    """Name of a shoe's curve."""
+    """Name the curve of a shoe by its number and whether it leads."""
     return f"{i + 1}: {'leading' if shoe.leading else 'trailing'}"
 
 
 def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: bool = False) -> Axes:
-    """Draw the chart of `factor_chart`.
+    """Draw the chart of `factor_chart` in matplotlib axes.
 
     Parameters
     ----------
     ax : Axes
-        Where to draw.
+        Axes in which the chart is drawn.
     brake, friction, reverse
-        See `factor_chart`.
+        Arguments of `factor_chart`.
     """
     return plot_chart(ax, factor_chart(brake, friction, reverse))
 
 
 def factor_chart(brake: DrumBrake, friction: float | None = None, reverse: bool = False) -> Chart:
-    """C* of each shoe and of the brake over friction, with the friction at which it locks.
+    """Make the chart of C* of brake and shoes over friction, with a mark where the brake locks.
 
     Parameters
     ----------
     brake : DrumBrake
         The brake.
     friction : float, optional
-        Friction to mark.
+        Friction coefficient to mark.
     reverse : bool
         Whether the drum turns backward.
     """
     shoes = brake_torque(brake, friction=0.1, force=1.0, reverse=reverse).shoes
     limits = [float(np.min(shoe.locking_friction)) for shoe in shoes]
     limit, first = min(limits), int(np.argmin(limits))
-    top = 0.995 * limit if limit < _LIMIT_SHOWN else max(_FRICTION_SHOWN, 1.3 * (friction or 0))
+    top = 0.995 * limit if limit < LIMIT_SHOWN else max(FRICTION_SHOWN, 1.3 * (friction or 0))
     mu = np.linspace(1e-3, top, _FRICTIONS)
     result = brake_torque(brake, friction=mu, force=1.0, reverse=reverse)
     of_shoes = [
@@ -169,14 +159,8 @@ def factor_chart(brake: DrumBrake, friction: float | None = None, reverse: bool 
     ]
     whole = [ChartCurve("brake", mu, result.c_star)] if len(of_shoes) > 1 else []
     marks = [ChartMark(friction, f"{friction:g}", at_foot=True)] if friction else []
-    if limit < _LIMIT_SHOWN:
+    if limit < LIMIT_SHOWN:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=of_shoes[first].name))
-    # C* grows without bound towards locking.
+    # C* grows without bound as friction approaches locking.
     near = float(np.interp(min(friction or 0.35, 0.6 * mu[-1]), mu, result.c_star))
-    return Chart(
-        "Shoe factors",
-        ChartAxis("friction of the linings", low=0.0),
-        ChartAxis("C* = torque / (force radius)", low=0.0, high=max(2.5 * near, 1.0)),
-        [*of_shoes, *whole],
-        marks=marks,
-    )
+    return over_friction("Shoe factors", [*of_shoes, *whole], marks, near)

@@ -1,4 +1,4 @@
-"""Drawings of a duo-servo brake: its parts at any point of both stages, and its shoes as free bodies."""
+"""Drawings of a duo-servo brake: its parts at any position of their motion, and its shoes as free bodies."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _KEY = {
 
 
 def positions(followed: Kinematics) -> list[Drawing]:
-    """The brake at rest, with the linings on the drum, and with the piston at its bottom."""
+    """Draw the brake at rest, with the linings on the drum, and with the piston at its bottom."""
     titles = (
         f"at rest, clearance {1e3 * float(followed.clearance):.3g} mm",
         f"linings on the drum, shoes turned {np.degrees(followed.right.turn[-1]):.3g} deg",
@@ -32,24 +32,24 @@ def positions(followed: Kinematics) -> list[Drawing]:
 
 
 def duo_servo(geometry: DuoServo, motion: ShoeMotion, progress: float, title: str = "") -> Drawing:
-    """The brake at a point of its motion; in m.
+    """Draw a duo-servo brake at a position of its motion; in m.
 
     Parameters
     ----------
     geometry : DuoServo
-        One brake.
+        The brake; a single one, without arrays.
     motion : ShoeMotion
-        Its motion at a clearance.
+        Motion of its shoes for a clearance.
     progress : float
-        0 at rest, 1 with the linings on the drum, 2 with the piston at its bottom; in between, the fraction
-        of the stage's turn.
+        0 at rest, 1 with the linings on the drum, 2 with the piston at its bottom; between these, the
+        fraction of the stage's turn is added.
     title : str
-        Title.
+        Title of the drawing.
 
     Notes
     -----
-    The lining drawn is concentric at rest and reaches from pin to pin. Where it is outside the drum, it would
-    touch first: there it is drawn thick and red.
+    The drawn lining is concentric at rest and reaches from pin to pin. Where it is outside the drum, it would
+    touch first: this part is drawn thick and red.
     """
     r, tilt = float(geometry.drum_radius), float(geometry.face_tilt)
     pin, middle = np.array([geometry.adjuster], dtype=float), float(geometry.contact_angle)
@@ -66,7 +66,8 @@ def duo_servo(geometry: DuoServo, motion: ShoeMotion, progress: float, title: st
         shapes += [
             Outline(np.vstack([ends[0], 0.97 * rim, tip]), "body", 4.0),
             Outline(np.array([tip, (sign * 0.12 * r, tip[1])]), "support", 5.0),  # the piston's rod, along x
-            Outline(np.array([tip - along, tip + along]), "contact", 2.5),  # its face, through the tip
+            # The piston's face goes through the tip.
+            Outline(np.array([tip - along, tip + along]), "contact", 2.5),
             Outline(rim, role, 3.0),
             *([Outline(np.where(out[:, None], rim, np.nan), "inside", 5.0)] if out.any() else []),
             Symbol("diamond", moved(contact, *place)[0], "mark", 8.0),
@@ -79,21 +80,21 @@ def duo_servo(geometry: DuoServo, motion: ShoeMotion, progress: float, title: st
 def moved(
     points: np.ndarray, geometry: DuoServo, motion: ShoeMotion, progress: float, side: str
 ) -> np.ndarray:
-    """Move points of the right shoe at rest to where they are on a side at a point of the motion.
+    """Compute where points of the right shoe at rest are, on either side, at a position of the motion.
 
     Parameters
     ----------
     points : ndarray, shape (n, 2)
         Points of the right shoe at rest [m].
     geometry, motion, progress
-        As for `duo_servo`.
+        Arguments of `duo_servo`.
     side : {"right", "left"}
-        The side.
+        Side on which the points are wanted; the left one is the mirror image at rest.
 
     Returns
     -------
     ndarray, shape (n, 2)
-        [m]
+        Moved points [m].
     """
     first, second = min(progress, 1.0), max(progress - 1.0, 0.0)
     pin = np.array(geometry.adjuster, dtype=float)
@@ -104,7 +105,7 @@ def moved(
 
 
 def lining(geometry: DuoServo, motion: ShoeMotion) -> np.ndarray:
-    """Points [m] of the right lining at rest, concentric and reaching from pin to pin, shape (121, 2)."""
+    """Return points [m] of the right lining at rest, concentric with the drum, pin to pin: (121, 2)."""
     (x, y), (ax, ay) = geometry.tip, geometry.adjuster
     angle = np.linspace(np.arctan2(float(ay), float(ax)), np.arctan2(float(y), float(x)), 121)
     radius = float(geometry.drum_radius) - float(motion.clearance)
@@ -112,7 +113,7 @@ def lining(geometry: DuoServo, motion: ShoeMotion) -> np.ndarray:
 
 
 def _turned(points: np.ndarray, angle: float) -> np.ndarray:
-    """Points (n, 2) turned anticlockwise by an angle [rad]."""
+    """Rotate points (n, 2) anticlockwise by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return np.asarray(points) @ np.array([[c, s], [-s, c]])
 
@@ -121,16 +122,16 @@ def _turned(points: np.ndarray, angle: float) -> np.ndarray:
 
 
 def free_bodies(forces: InternalForces, followed: Kinematics | None = None) -> list[Drawing]:
-    """Both shoes as free bodies, with the forces on them to one scale; of one case, in m.
+    """Draw both shoes as free bodies, with the forces on them to one scale; for a single case, in m.
 
-    Where there is no equilibrium, the shoes are bare.
+    Without equilibrium, the shoes are drawn without forces.
 
     Parameters
     ----------
     forces : InternalForces
-        The forces.
+        Forces in the brake.
     followed : Kinematics, optional
-        The brake's motion, for the outlines of the shoes; without it only the forces are drawn.
+        Motion of the brake, for the outlines of the shoes; without it only the forces are drawn.
     """
     if forces.status == "equilibrium":
         largest = float(max(forces.A, forces.P_L, forces.C))
@@ -141,7 +142,7 @@ def free_bodies(forces: InternalForces, followed: Kinematics | None = None) -> l
 
 
 def _free_body(arrows: ForceArrows, f: InternalForces, followed: Kinematics | None, side: str) -> Drawing:
-    """A shoe with its outline, if that is known, and the forces on it, or why there are none."""
+    """Draw a shoe with its outline, if it is known, and the forces on it, or why there are none."""
     levers, leads, name = f.levers, side == "right", f"{_SIDES[side]} shoe"
     r, sense, gamma = float(levers.drum_radius), 1 if leads else -1, float(levers.gamma)
     a, alpha = map(float, (levers.a1, levers.alpha1) if leads else (levers.a2, levers.alpha2))

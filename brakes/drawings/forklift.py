@@ -1,4 +1,4 @@
-"""Drawings of a forklift on its slope, of its stopping distance, and of the forces in its brakes."""
+"""Drawings of a forklift on its slope and of its brakes, and charts of distances and forces."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from brakes.forklift import InternalForces, Kinematics, Stop, Truck
 
 
 def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: InternalForces | None) -> Figure:
-    """Draw the truck, the brake's two stages and the free bodies of its shoes, if these are given."""
+    """Draw truck, both stages of the brake's motion, and its free bodies, as far as they are given."""
     rows = answer_drawings(stop, followed, forces, followed)
     return figure_of(rows) if rows else Figure(figsize=(10.0, 4.0))
 
@@ -28,18 +28,18 @@ def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: Intern
 def answer_drawings(
     stop: Stop | None, followed: Kinematics | None, forces: InternalForces | None, outlines: Kinematics | None
 ) -> list[list[Drawing]]:
-    """Rows of drawings, as far as they are given.
+    """Make rows of drawings of truck, brake and free bodies, as far as they are given.
 
     Parameters
     ----------
     stop : Stop, optional
-        The truck.
+        Stop of the truck, which is drawn on its slope.
     followed : Kinematics, optional
-        The brake's two stages.
+        Motion of the shoes, drawn at the ends of both stages.
     forces : InternalForces, optional
-        Free bodies of its shoes; where they have no equilibrium the shoes alone.
+        Forces on the shoes, drawn as free bodies; without equilibrium the shoes only.
     outlines : Kinematics, optional
-        Motion by which the shoes have their outlines.
+        Motion of the shoes, for their outlines as free bodies.
     """
     rows = [] if stop is None else [[truck(stop)]]
     if followed is not None:
@@ -50,11 +50,14 @@ def answer_drawings(
 
 
 def truck(stop: Stop) -> Drawing:
-    """The truck on its slope with weight, axle loads and tyre friction to one scale; of one case, in m."""
+    """Draw the truck on its slope, with weight, axle loads and tyre friction to one scale; in m.
+
+    The stop is a single case.
+    """
     t, sense = stop.truck, stop.conditions.sense
     beta = sense * float(stop.conditions.slope)
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
-    # Of row vectors; downhill is to +x, of a truck that drives forwards to -x.
+    # The matrix rotates row vectors; downhill is to +x, or to -x if the truck drives forwards.
     turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])
     weight = (float(stop.front_load) + float(stop.rear_load)) / np.cos(beta)
     friction = float(stop.brake_force)
@@ -86,14 +89,14 @@ def truck(stop: Stop) -> Drawing:
 
 
 def outcome(stop: Stop) -> str:
-    """Stopping distance, or why the truck does not stop, and the torque of a brake; of one case."""
-    how = f"stops within {float(stop.distance):.4g} m" if stop.stops else str(stop.status)
+    """State stopping distance, or why the truck does not stop, and brake torque; for a single case."""
+    how = f"stops within {float(stop.distance):.5g} m" if stop.stops else str(stop.status)
     limit = ", which limits" if str(stop.limited_by) == "brake" else ""
     return f"{how}, torque of one brake {float(stop.torque_per_brake):.5g} N m{limit}"
 
 
 def draw_chassis(shapes: list[DrawnShape], t: Truck, turn: np.ndarray) -> None:
-    """Add ground, wheels, body, mast and load; x towards the rear axle, y up from the ground."""
+    """Add ground, wheels, body, mast and load, rotated by a matrix; x is towards the rear axle, y up."""
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
     r2 = 0.75 * r1
     ground = np.array([(-1.3 * L, 0.0), (1.9 * L, 0.0)]) @ turn
@@ -120,23 +123,23 @@ def draw_chassis(shapes: list[DrawnShape], t: Truck, turn: np.ndarray) -> None:
 
 
 def has_load(t: Truck) -> bool:
-    """Whether there is a load on the fork."""
+    """Tell whether there is a load on the fork."""
     return bool(float(t.load_mass)) and float(t.load_cg[0]) < 0
 
 
 def distances(ax: Axes, speeds: Numbers, slopes: Numbers, distance: np.ndarray) -> Axes:
-    """Draw the stopping distance over speed, a curve per slope, and name the slopes without a stop.
+    """Draw the stopping distance over speed, a curve for each slope, and name the slopes without a stop.
 
     Parameters
     ----------
     ax : Axes
-        Where to draw.
+        Axes in which the curves are drawn.
     speeds : ndarray, shape (n,)
-        [m/s].
+        Speeds before the stop [m/s].
     slopes : ndarray, shape (m,)
-        [rad].
+        Slopes [rad].
     distance : ndarray, shape (m, n)
-        [m]; inf where the truck does not stop.
+        Stopping distances [m]; inf where the truck does not stop.
     """
     stops = np.isfinite(distance).any(axis=1)
     names = np.array([f"{np.degrees(b):.3g} deg" for b in np.asarray(slopes)])
@@ -153,20 +156,20 @@ def distances(ax: Axes, speeds: Numbers, slopes: Numbers, distance: np.ndarray) 
 def forces_over(
     ax: Axes, x: np.ndarray, forces: InternalForces, label: str, marks: Sequence[Any] = ()
 ) -> Axes:
-    """Draw the forces in a brake over one of its inputs.
+    """Draw the forces in a duo-servo brake over one of its inputs.
 
     Parameters
     ----------
     ax : Axes
-        Where to draw.
+        Axes in which the curves are drawn.
     x : ndarray, shape (n,)
-        Places.
+        Values of the input, in the unit of `label`.
     forces : InternalForces
-        Of n cases.
+        Forces of n cases.
     label : str
-        What x is.
+        Name and unit of the input, for the axis.
     marks : sequence of (name, x, y)
-        Published values, drawn as circles [N].
+        Published values of forces [N], drawn as circles.
     """
     names = ("A", "P_L", "C", "B", "Q", "D")
     values = 1e-3 * np.array([np.broadcast_to(getattr(forces, name), x.shape) for name in names])

@@ -1,6 +1,8 @@
-"""Figures of brakes whose linings are pressed by one force: pressure over the lining, C* over friction."""
+"""Figures and charts of brakes whose linings are pressed by one force: pressure, and C* over friction."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -8,18 +10,18 @@ from matplotlib.figure import Figure
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark
 from beamdyn.common.drawing.chart_on_axes import plot_chart
 from beamdyn.common.drawing.on_axes import draw_in
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.shapes import Drawing
 from brakes.machines import MachineResult, solve_brake
 
-_POINTS = 101  # of the curves
-_FRICTION_SHOWN, _LIMIT_SHOWN = 0.8, 1.6
+_POINTS = 101  # number of points of each curve
+FRICTION_SHOWN, LIMIT_SHOWN = 0.8, 1.6  # largest frictions of charts: without self-locking, and with it
 _SCALES = {"deg": 180 / np.pi, "mm": 1e3}
 
 
-def machine_figure(drawings: Rows, result: MachineResult) -> Figure:
-    """Draw a brake of one case beside its charts."""
-    figure, charts = Figure(figsize=(11.5, 7.0)), charts_of(result)
-    draw_in(figure, (0.005, 0.01, 0.55, 0.98), drawings[0][0])
+def beside_charts(drawing: Drawing, charts: Sequence[Chart]) -> Figure:
+    """Draw a brake, with its charts below each other beside it."""
+    figure = Figure(figsize=(11.5, 7.0))
+    draw_in(figure, (0.005, 0.01, 0.55, 0.98), drawing)
     rows = len(charts)
     cells = figure.add_gridspec(rows, 1, left=0.62, right=0.985, bottom=0.15 / rows, top=0.955, hspace=0.3)
     for row, chart in enumerate(charts):
@@ -28,12 +30,12 @@ def machine_figure(drawings: Rows, result: MachineResult) -> Figure:
 
 
 def charts_of(result: MachineResult) -> list[Chart]:
-    """Pressure, if there is any, and brake factor of a result of one case."""
+    """Make the charts of pressure, unless the brake locks, and of the brake factor; for a single case."""
     return [factor_chart(result)] if result.locked else [pressure_chart(result), factor_chart(result)]
 
 
 def pressure_chart(result: MachineResult) -> Chart:
-    """The pressure on each lining, down to zero at its ends."""
+    """Make the chart of the pressure along each lining, down to zero at its ends."""
     brake = result.brake
     low, high = (float(end) for end in brake.reach())
     at, scale = np.linspace(low, high, _POINTS), _SCALES[brake.place.shown]
@@ -51,14 +53,14 @@ def pressure_chart(result: MachineResult) -> Chart:
 
 
 def _shape(result: MachineResult, index: int, at: np.ndarray) -> np.ndarray:
-    """Pressure on a lining over its largest value."""
+    """Compute the pressure on a lining at coordinates along it, divided by its largest value."""
     return result.brake.pressure_on(index, at, float(result.friction), result.reverse)
 
 
 def factor_chart(result: MachineResult) -> Chart:
-    """C* over friction, forward and in reverse, with the friction at which the brake locks."""
+    """Make the chart of C* over friction, forward and in reverse, with a mark where the brake locks."""
     mu, limit = float(result.friction), float(result.locking_friction)
-    top = 0.995 * limit if 0 < limit < _LIMIT_SHOWN else max(_FRICTION_SHOWN, 1.3 * mu)
+    top = 0.995 * limit if 0 < limit < LIMIT_SHOWN else max(FRICTION_SHOWN, 1.3 * mu)
     at = np.linspace(1e-3 * top, top, _POINTS)
     ways = [solve_brake(result.brake, friction=at, force=1.0, reverse=way) for way in (False, True)]
     curves = [
@@ -67,14 +69,18 @@ def factor_chart(result: MachineResult) -> Chart:
     ]
     own = curves[result.reverse]
     marks = [ChartMark(mu, f"{mu:g}", at_foot=True)]
-    if 0 < limit < _LIMIT_SHOWN:
+    if 0 < limit < LIMIT_SHOWN:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=own.name))
-    near = float(np.interp(min(mu, 0.6 * top), at, own.y))  # C* grows without bound towards locking
+    # C* grows without bound as friction approaches locking
+    near = float(np.interp(min(mu, 0.6 * top), at, own.y))
     grows = any(np.isfinite(way.locking_friction).any() for way in ways)
-    return Chart(
-        "Brake factor",
-        ChartAxis("friction of the linings", low=0.0),
-        ChartAxis("C* = torque / (force radius)", low=0.0, high=max(2.5 * near, 1.0) if grows else None),
-        curves,
-        marks=marks,
-    )
+    return over_friction("Brake factor", curves, marks, near if grows else None)
+
+
+def over_friction(
+    title: str, curves: Sequence[ChartCurve], marks: Sequence[ChartMark], near: float | None
+) -> Chart:
+    """Make a chart of C* over friction; of one without bound, up to a multiple of a usual value."""
+    high = None if near is None else max(2.5 * near, 1.0)
+    factor = ChartAxis("C* = torque / (force radius)", low=0.0, high=high)
+    return Chart(title, ChartAxis("friction of the linings", low=0.0), factor, curves, marks=marks)

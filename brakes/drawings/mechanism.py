@@ -1,4 +1,4 @@
-"""Mechanisms drawn with their forces: open and closed, body by body, in motion, with curves of a stroke."""
+"""Drawings of mechanisms: open and closed with forces, free bodies, animations, and charts of a stroke."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,30 +16,27 @@ from beamdyn.common.drawing.layout import Fit
 from beamdyn.common.drawing.on_axes import draw_in, draw_on, figure_of, frame_of
 from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, points_of_shape
 from beamdyn.common.drawing.sheet import Paper
-from beamdyn.common.results.pictures import save_animation
+from beamdyn.common.results.pictures import Figure, new_figure, save_animation
 from brakes.drawings import mechanism_parts as parts
 from brakes.planar import GROUND, Equilibrium, Load, Position, free_body
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-
 _KEY = {"tension": "tension", "compression": "compression", "load": "load", "reaction": "reaction"}
 _MM = 1e3
-_LONGEST = 0.28  # longest arrow, over the size of the mechanism
-_SHORTEST = 1e-6  # shorter arrows are not drawn [mm]
-_ASIDE = 0.17  # distance from the middle, over the size, past which arrows may point inwards
+_LONGEST = 0.28  # length of the longest arrow, over the size of the mechanism
+_SHORTEST = 1e-6  # arrows shorter than this are not drawn [mm]
+_ASIDE = 0.17  # distance from the middle, over the size, beyond which arrows may point inwards
 _ALONG = np.array([0.55, 0.4, 0.7, 0.25, 0.85])  # fractions of a member's length at which its label may stand
 _CABLE = (5.0, 3.0)
 _SPRING = (1.5, 2.0)
-_BODIES, _MEMBERS, _FORCES = 1, 2, 3  # priorities of labels
-_ROOM = 45.0  # around a mechanism that moves [pt]
-_COUPLE = 1e-12  # couples below are rounding [N m]
+# Priorities of the labels of bodies, members and forces, the highest number first.
+_BODIES, _MEMBERS, _FORCES = 1, 2, 3
+_ROOM = 45.0  # margin around a mechanism that moves [pt]
+_COUPLE = 1e-12  # size of a couple below which it counts as rounding [N m]
 
 
 @dataclass(eq=False)
 class _Sketch:
-    """A drawing to which shapes and labels are added."""
+    """A drawing under construction, to which shapes and labels are added."""
 
     shapes: list[DrawnShape] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
@@ -52,16 +49,16 @@ class _Sketch:
 
 
 def mechanism_drawing(position: Position, equilibrium: Equilibrium | None = None, title: str = "") -> Drawing:
-    """A mechanism at one position: bodies, pins, members, cables, faces; in mm.
+    """Draw a mechanism at one position: bodies, pins, members, cables, faces; in mm.
 
     Parameters
     ----------
     position : Position
-        One position.
+        The position of the bodies.
     equilibrium : Equilibrium, optional
-        Its forces: members in tension are blue, in compression vermilion.
+        Equilibrium that gives the forces: members in tension are blue, in compression vermilion.
     title : str
-        Title.
+        Title of the drawing.
     """
     sketch = _Sketch()
     _add_mechanism(sketch, position, equilibrium)
@@ -69,11 +66,11 @@ def mechanism_drawing(position: Position, equilibrium: Equilibrium | None = None
 
 
 def _add_mechanism(sketch: _Sketch, position: Position, equilibrium: Equilibrium | None) -> None:
-    """Add bodies, members, cables, springs, pins and faces."""
+    """Add bodies, members, cables, springs, pins and faces to a sketch."""
     straight = parts.two_force_bodies(position.mechanism)
     outlines = {body: parts.outline(position, body) for body in position.mechanism.bodies}
     for body, corners in outlines.items():
-        if body not in straight and len(corners):  # otherwise nothing acts on it yet
+        if body not in straight and len(corners):  # a body without corners has no joints or loads yet
             sketch.shapes.append(_body(corners))
             places = np.vstack([parts.label_place(outlines, body), corners.mean(axis=0)]) * _MM
             sketch.labels.append(Label(body, places, priority=_BODIES))
@@ -90,12 +87,12 @@ def _add_mechanism(sketch: _Sketch, position: Position, equilibrium: Equilibrium
 
 
 def _body(corners: np.ndarray) -> Outline:
-    """A body by its corners [m]."""
+    """Make the outline of a body from its corners [m]."""
     return Outline(corners * _MM, "body", 2.0, closed=True, filled=len(corners) > 2)
 
 
 def _add_member(sketch: _Sketch, member: parts.Member, width: float, dash: tuple[float, ...] = ()) -> None:
-    """Add a bar or cable, its name and force beside its last segment."""
+    """Add a bar or cable to a sketch, with its name and force beside its last segment."""
     role = "neutral" if not np.isfinite(member.force) else "tension" if member.force >= 0 else "compression"
     sketch.shapes.append(Outline(member.ends * _MM, role, width, dash))
     size = f" {abs(member.force):.4g} N" if np.isfinite(member.force) else ""
@@ -107,7 +104,7 @@ def _add_member(sketch: _Sketch, member: parts.Member, width: float, dash: tuple
 
 
 def _faces(position: Position) -> Iterator[np.ndarray]:
-    """Short lines (k, 2) along slots and contact faces."""
+    """Yield short lines (k, 2) along slots and contact faces [mm]."""
     half = 0.06 * _size(position) * _MM
     for _, shape, points in parts.shapes(position, "face"):
         if len(points) > 1:
@@ -122,7 +119,7 @@ def _faces(position: Position) -> Iterator[np.ndarray]:
 
 
 def _size(position: Position) -> float:
-    """Distance of opposite corners around all points [m]."""
+    """Compute the diagonal of the rectangle around all points of a mechanism [m]."""
     low, high = parts.extent(position)
     return float(np.linalg.norm(high - low))
 
@@ -131,14 +128,14 @@ def _size(position: Position) -> float:
 
 
 def force_scale(forces: Sequence[parts.OuterForce], size: float) -> float:
-    """Arrow length per newton [m/N] that makes the longest of some arrows a fixed part of a size [m]."""
+    """Scale of arrows [m/N] that makes the longest one a fixed fraction of a size [m]."""
     known = np.array([np.linalg.norm(outer.force) for outer in forces])
     largest = float(known[np.isfinite(known)].max(initial=0.0))
     return _LONGEST * size / largest if largest else 0.0
 
 
 def open_and_closed(open_: Position, closed: Equilibrium, title: str = "", rim: Any = None) -> Drawing:
-    """The open mechanism, outlined in grey, under the closed one with its forces.
+    """Draw the open mechanism, outlined in grey, and over it the closed one with its forces.
 
     Loads (black) and reactions of the ground (green) are arrows to one scale.
 
@@ -147,11 +144,11 @@ def open_and_closed(open_: Position, closed: Equilibrium, title: str = "", rim: 
     open_ : Position
         Position of the open mechanism.
     closed : Equilibrium
-        At one position.
+        Equilibrium of the closed mechanism, at one position.
     title : str
-        Title.
+        Title of the drawing.
     rim : ndarray, shape (2, 2), optional
-        Faces of two pads that touch a rim [m].
+        Points at which two pads touch a rim [m]; the rim is then drawn.
     """
     sketch, forces = _Sketch(), parts.outer_forces(closed)
     low, high = parts.extent(closed.position)
@@ -175,7 +172,8 @@ def open_and_closed(open_: Position, closed: Equilibrium, title: str = "", rim: 
             *(Symbol("dot", at * _MM, "ghost", 4.0) for at in pins),
         ]
     _add_mechanism(sketch, closed.position, closed)
-    said = {label.text for label in sketch.labels}  # of a bar or cable to the ground along its line
+    # labels so far: a bar or cable to the ground may already show the same force
+    said = {label.text for label in sketch.labels}
     centre = (low + high) / 2
     for outer in forces:
         aside = outer.at[0] - centre[0]  # arrows that would cross the middle come from outside
@@ -187,7 +185,7 @@ def open_and_closed(open_: Position, closed: Equilibrium, title: str = "", rim: 
 
 
 def with_points(drawing: Drawing, points: Mapping[str, tuple[float, float]]) -> Drawing:
-    """A drawing of a mechanism with the names of points [m] as drawn; a cross where nothing acts at one."""
+    """Add names of points [m] to a mechanism's drawing; a cross marks points where nothing acts."""
     there = np.vstack([np.empty((0, 2)), *map(points_of_shape, drawing.shapes)])
     places = {name: np.multiply(_MM, at) for name, at in points.items()}
     free = [at for at in places.values() if not np.isclose(there, at, rtol=0, atol=1e-6).all(axis=1).any()]
@@ -199,16 +197,16 @@ def with_points(drawing: Drawing, points: Mapping[str, tuple[float, float]]) -> 
 
 
 def with_lock(drawing: Drawing, locked: Equilibrium, load: str) -> Drawing:
-    """A drawing of a mechanism that locks itself, with a mark at the point of the load that should move it.
+    """Add a mark to the drawing of a mechanism that locks, at the point of the load that should move it.
 
     Parameters
     ----------
     drawing : Drawing
-        The drawing.
+        Drawing of the mechanism.
     locked : Equilibrium
-        One that locks, at one position.
+        Equilibrium of a mechanism that locks, at one position.
     load : str
-        The load that should move it.
+        Name of the load that should move the mechanism.
     """
     acting = locked.position.mechanism.load(load)
     ends = [locked.position.point(*end) for shape in acting.shapes() for end in shape.ends]
@@ -225,9 +223,9 @@ def with_lock(drawing: Drawing, locked: Equilibrium, load: str) -> Drawing:
 def _add_arrow(
     sketch: _Sketch, outer: parts.OuterForce, scale: float, inwards: bool, said: Container[str] = ()
 ) -> None:
-    """Add an arrow from its point, or to it if `inwards`; none for a force of nearly 0 or nan.
+    """Add an arrow to a sketch, from its point, or to it if `inwards`; none for a force of nearly 0 or nan.
 
-    Its label is left out if it is among those said already.
+    Its label is omitted if `said` contains it.
     """
     size, reach = float(np.linalg.norm(outer.force)), outer.force * scale * _MM
     if not np.linalg.norm(reach) > _SHORTEST:
@@ -248,19 +246,19 @@ def _add_arrow(
 
 
 def free_body_diagrams(equilibria: Mapping[str, Equilibrium]) -> Figure:
-    """Draw the free-body diagram of every body in one figure, all forces of an equilibrium at one scale.
+    """Draw the free-body diagram of every body in one figure; the forces of an equilibrium have one scale.
 
     Parameters
     ----------
     equilibria : mapping
-        Equilibria at one position by their headings, such as without and with friction; one may be "".
+        Equilibria at one position by heading, such as without and with friction; the heading may be "".
     """
     rows = free_body_drawings(equilibria)
     return figure_of(rows, Paper.of_squares(rows))
 
 
 def free_body_drawings(equilibria: Mapping[str, Equilibrium]) -> list[list[Drawing]]:
-    """Drawings of every body with all that acts on it, three in a row; see `free_body_diagrams`."""
+    """Make the free-body diagrams of all bodies, three in a row; see `free_body_diagrams`."""
     rows = []
     for heading, equilibrium in equilibria.items():
         bodies = equilibrium.position.mechanism.bodies
@@ -273,7 +271,7 @@ def free_body_drawings(equilibria: Mapping[str, Equilibrium]) -> list[list[Drawi
 
 
 def free_body_drawing(equilibrium: Equilibrium, body: str, scale: float, heading: str = "") -> Drawing:
-    """The free-body diagram of a body: loads black, joints green; `scale` the length of 1 N [m/N]."""
+    """Draw the free-body diagram of a body: loads black, joints green; `scale` is the length of 1 N [m/N]."""
     sketch, corners = _Sketch(), parts.outline(equilibrium.position, body)
     sketch.shapes.append(_body(corners))
     loads = {load.name for load in equilibrium.position.mechanism.loads}
@@ -285,7 +283,8 @@ def free_body_drawing(equilibrium: Equilibrium, body: str, scale: float, heading
                 couples.append(f"{action.name}: couple {action.couple:.4g} N m")
             continue
         towards = bool(action.force @ (corners.mean(axis=0) - action.at) > 0)
-        inwards = towards and action.name not in pulling  # a push comes from outside, a cable pulls away
+        # a push comes from outside; a cable pulls away from the body
+        inwards = towards and action.name not in pulling
         outer = parts.OuterForce(action.name, action.at, action.force, action.name not in loads)
         _add_arrow(sketch, outer, scale, inwards)
         points.append(Symbol("pin", action.at * _MM, "pin", 5.0))
@@ -304,24 +303,22 @@ def animate(
     force: bool = False,
     rate: float = 20.0,
 ) -> None:
-    """Write an animation of a mechanism that moves to the last position and back.
+    """Write an animation of a mechanism that moves to its last position and back.
 
     Parameters
     ----------
     positions : Position
-        Its positions.
+        Positions of the bodies, one for each frame.
     path : str or Path
-        File to write, .gif.
+        The GIF file to write.
     caption : callable
-        Title of position k.
+        ``caption(k)``: title of the frame of position k.
     force : bool
-        Overwrite a file that exists.
+        Whether to overwrite an existing file.
     rate : float
-        Pictures a second.
+        Frames per second.
     """
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(5.6, 5.2))
+    figure = new_figure(5.6, 5.2, None)
     low, high = (_MM * corner for corner in parts.extent(positions))
     count = len(positions.batch)
 
@@ -346,7 +343,7 @@ def loads_over_stroke(
     place: float,
     locked: Mapping[str, np.ndarray],
 ) -> list[Chart]:
-    """Charts of forces and of moments over a stroke, as far as there are any.
+    """Make charts of forces and of moments over a stroke, as far as there are such loads.
 
     Parameters
     ----------
@@ -355,11 +352,11 @@ def loads_over_stroke(
     travel : ndarray, shape (S,)
         Travel of the driver, in the axis's unit.
     curves : sequence of (Load, str, ndarray)
-        Loads, names of the curves, and sizes (S,) [N, N m].
+        Load, name of its curve, and its sizes (S,) [N, N m].
     place : float
-        Travel to mark.
+        Travel of the driver to mark, in the axis's unit.
     locked : mapping of str to ndarray of bool, shape (S,)
-        Where the mechanism locks, by the name of the curve: points on the axis of zero force.
+        Positions at which the mechanism locks, by the name of the curve; marked on the axis of zero force.
     """
     charts = []
     for what, unit in (("force", "N"), ("moment", "N m")):
@@ -382,14 +379,12 @@ def mechanism_figure(drawing: Drawing, charts: Sequence[Chart]) -> Figure:
     Parameters
     ----------
     drawing : Drawing
-        From `brakes.drawings.mechanism.open_and_closed`.
+        Drawing of the mechanism, from `brakes.drawings.mechanism.open_and_closed`.
     charts : sequence of Chart
-        From `loads_over_stroke`; none if there is no stroke.
+        Charts from `loads_over_stroke`; empty if there is no stroke.
     """
-    from matplotlib.figure import Figure
-
     width = 12.0 if charts else 7.5
-    figure = Figure(figsize=(width, 6))  # laid out by hand: a layout engine takes twice as long
+    figure = new_figure(width, 6, None)  # laid out by hand: a layout engine takes twice as long
     draw_in(figure, (0.005, 0.01, (6.2 if charts else width) / width - 0.01, 0.98), drawing)
     if charts:
         plot_charts_of_one_x(figure, charts, 7.0 / width, [1.0] * len(charts))
@@ -397,12 +392,12 @@ def mechanism_figure(drawing: Drawing, charts: Sequence[Chart]) -> Figure:
 
 
 def travel_axis(name: str, unit: str, travel: np.ndarray) -> ChartAxis:
-    """The axis of the travel, as long as the stroke."""
+    """Make the axis of the driver's travel, which is as long as the stroke."""
     return ChartAxis(name, unit, low=float(travel.min()), high=float(travel.max()))
 
 
 def named_curves(x: np.ndarray, curves: Mapping[str, np.ndarray]) -> list[ChartCurve]:
-    """Curves by their names; every other one is dashed, so that equal ones are seen."""
+    """Make curves by name; every other one is dashed, so that coinciding ones can be told apart."""
     return [ChartCurve(name, x, y, dashed=bool(k % 2)) for k, (name, y) in enumerate(curves.items())]
 
 

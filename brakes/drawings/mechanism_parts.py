@@ -1,4 +1,4 @@
-"""Geometry of the drawings of a mechanism: outlines of bodies, members, external forces."""
+"""Geometry for drawings of a mechanism: outlines of bodies, members, external forces."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 
 from brakes.planar import GROUND, Equilibrium, Mechanism, Position, Shape, free_body
 
-_FLAT = 1e-12  # area over the square of the size below which three points lie on a line
+_FLAT = 1e-12  # area over the square of the size, below which three points count as being in line
 
 
 class Member(NamedTuple):
-    """A bar or cable: its name, points (k, 2) [m], and force [N], tension positive, nan if not known."""
+    """A bar or cable: name, points (k, 2) [m], and force [N], positive in tension, nan if unknown."""
 
     name: str
     ends: np.ndarray
@@ -21,7 +21,7 @@ class Member(NamedTuple):
 
 
 class OuterForce(NamedTuple):
-    """An external force: name, point (2,) [m], components (2,) [N]; if it is a reaction, or along a bar."""
+    """External force: name, point (2,) [m], components (2,) [N], whether a reaction, whether along a bar."""
 
     name: str
     at: np.ndarray
@@ -31,24 +31,24 @@ class OuterForce(NamedTuple):
 
 
 def shapes(position: Position, style: str) -> Iterator[tuple[str, Shape, np.ndarray]]:
-    """Shapes of a style: the name of the joint or load, the shape, and its points (k, 2) [m]."""
+    """Yield the shapes of a style: name of the joint or load, the shape, and its points (k, 2) [m]."""
     for name, shape in position.mechanism.shapes:
         if shape.style == style:
             yield name, shape, np.array([position.point(*end) for end in shape.ends])
 
 
 def outline(position: Position, body: str) -> np.ndarray:
-    """Corners of the convex hull of a body's points at a position, anticlockwise, (k, 2) [m]."""
+    """Return corners of the convex hull of a body's points at a position, anticlockwise, (k, 2) [m]."""
     drawn = position.mechanism.points[body]
     now = np.array([position.point(body, at) for at in drawn]).reshape(-1, 2)
     return now if len(now) < 3 else _hull(now)
 
 
 def _hull(points: np.ndarray) -> np.ndarray:
-    """The convex hull, or the points themselves where they lie on a line.
+    """Find the convex hull of points (k, 2), or return the sorted points if they are in line.
 
-    By the monotone chain of Andrew (Inf. Process. Lett. 9, 1979): of few points, so that a drawing does not
-    wait for a library of geometry to be loaded.
+    The method is Andrew's monotone chain (Inf. Process. Lett. 9, 1979). It is written out here so that a
+    drawing of a few points does not wait for a geometry library to be loaded.
     """
     ordered = points[np.lexsort(points.T)]
     flat = _FLAT * float(np.ptp(points, axis=0).max()) ** 2
@@ -57,7 +57,7 @@ def _hull(points: np.ndarray) -> np.ndarray:
 
 
 def _chain(points: np.ndarray, flat: float) -> list[np.ndarray]:
-    """Corners on the side of sorted points where one turns left all along, without the last."""
+    """Find the corners of sorted points at which the hull turns left on one side, without the last corner."""
     kept: list[np.ndarray] = []
     for point in points:
         while len(kept) > 1:
@@ -70,7 +70,7 @@ def _chain(points: np.ndarray, flat: float) -> list[np.ndarray]:
 
 
 def two_force_bodies(mechanism: Mechanism) -> tuple[str, ...]:
-    """Bodies on which two pins act, at two places, and nothing else."""
+    """Return the bodies on which two pins act, at different points, and nothing else."""
     found = []
     for body in mechanism.bodies:
         joints = [joint for joint in mechanism.joints if body in joint.acts_on]
@@ -82,7 +82,10 @@ def two_force_bodies(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def label_place(outlines: Mapping[str, np.ndarray], body: str) -> np.ndarray:
-    """A place within a body for its name, away from the other bodies, by the outlines of all (2,) [m]."""
+    """Find a place (2,) [m] for a body's name, toward its corner farthest from the centres of other bodies.
+
+    The place is within the body if its outline is convex.
+    """
     mine = outlines[body]
     others = [corners for other, corners in outlines.items() if other != body and len(corners)]
     centre = mine.mean(axis=0)
@@ -94,7 +97,7 @@ def label_place(outlines: Mapping[str, np.ndarray], body: str) -> np.ndarray:
 
 
 def members(position: Position, equilibrium: Equilibrium | None = None) -> Iterator[Member]:
-    """Bars and bodies with two pins."""
+    """Yield the bars, and the bodies with only two pins."""
     yield from _members("bar", position, equilibrium)
     for body in two_force_bodies(position.mechanism):
         ends = np.array([position.point(body, at) for at in position.mechanism.points[body]])
@@ -107,21 +110,21 @@ def members(position: Position, equilibrium: Equilibrium | None = None) -> Itera
 
 
 def cables(position: Position, equilibrium: Equilibrium | None = None) -> Iterator[Member]:
-    """Cables and cable pairs."""
+    """Return the cables and cable pairs."""
     return _members("cable", position, equilibrium)
 
 
 def _members(style: str, position: Position, equilibrium: Equilibrium | None) -> Iterator[Member]:
-    """Joints and loads drawn in a style, with the size of their force."""
+    """Yield the joints and loads drawn in a style, with the sizes of their forces."""
     sizes = {} if equilibrium is None else equilibrium.magnitudes | equilibrium.amplitudes
     for name, _, points in shapes(position, style):
         yield Member(name, points, float(np.ravel(sizes.get(name, np.nan))[0]))
 
 
 def outer_forces(equilibrium: Equilibrium) -> list[OuterForce]:
-    """External forces on the mechanism: loads, and reactions and friction of the ground.
+    """List the external forces on a mechanism: loads, and reactions and friction of the ground.
 
-    The reaction on a bar is drawn at its end on the ground, where the arrow does not cover the bar.
+    The reaction on a bar is drawn at its end on the ground, where the arrow does not hide the bar.
     """
     mechanism = equilibrium.position.mechanism
     on_ground = {
@@ -142,7 +145,7 @@ def outer_forces(equilibrium: Equilibrium) -> list[OuterForce]:
 
 
 def extent(*positions: Position) -> tuple[np.ndarray, np.ndarray]:
-    """Least and greatest coordinates (2,) of all points at some positions [m]."""
+    """Find the least and the greatest coordinates (2,) [m] of all points at some positions."""
     points = [
         np.asarray(position.point(body, at)).reshape(-1, 2)
         for position in positions

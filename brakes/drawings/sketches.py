@@ -1,4 +1,4 @@
-"""Sketches that explain the symbols of the forms: truck, duo-servo brake, drum brake."""
+"""Sketches that explain the symbols in forms: truck, duo-servo brake, drum brake, cylinder."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _DOWN, _UP = (0.0, -1.0), (0.0, 1.0)
 
 
 def truck_sketch() -> Rows:
-    """Dimensions of a truck with its load, and the slope."""
+    """Sketch the dimensions of a truck with its load, and the slope."""
     r1, L = 0.5, 1.9
     t = Truck(5000.0, (1.1, 0.62), 2000.0, (-1.1, 0.85), front_wheel_radius=r1, wheelbase=L)
     return [[_dimensions_of(t, r1, L)], [_slope()]]
@@ -64,7 +64,7 @@ def _slope() -> Drawing:
 
 
 def duo_servo_sketch() -> Rows:
-    """Dimensions of a duo-servo brake at rest."""
+    """Sketch the dimensions of a duo-servo brake at rest."""
     motion = BENDIX_12_5.move_shoes(0.0106)
     s, drawn = Sketch(), duo_servo(BENDIX_12_5, motion, 0.0)
     s.shapes += drawn.shapes
@@ -91,12 +91,12 @@ def duo_servo_sketch() -> Rows:
 
 
 def levers_sketch() -> Rows:
-    """Arms and angles of the forces on both shoes."""
+    """Sketch lever arms and angles of the forces on both shoes of a duo-servo brake."""
     return [[_shoe_with_arms(1)], [_shoe_with_arms(-1)]]
 
 
 def _shoe_with_arms(side: int) -> Drawing:
-    """The leading shoe on the right (1), or the trailing one on the left (-1)."""
+    """Sketch the forces on the leading shoe, on the right (1), or on the trailing shoe, on the left (-1)."""
     s, words = Sketch(), "Leading shoe" if side > 0 else "Trailing shoe"
     alpha, gamma = np.radians((20.0, 16.0)).tolist()
     s.add(Disc((0.0, 0.0), 1.0, "axis", 1.2, (4.0, 2.0)))
@@ -120,7 +120,7 @@ def _shoe_with_arms(side: int) -> Drawing:
 
 
 def _force_with_arm(s: Sketch, names: tuple[str, str], along: np.ndarray, arm: np.ndarray, role: str) -> None:
-    """A force on its line, and the arm of that line about the centre."""
+    """Add a force on its line of action, and its lever arm about the centre."""
     s.dashed(arm - 0.5 * along, arm + 0.9 * along)
     s.arrow(names[0], arm - 0.45 * along, arm + 0.25 * along, role)
     s.length(names[1], (0.0, 0.0), arm, (-along[0], -along[1]))
@@ -130,7 +130,7 @@ def _force_with_arm(s: Sketch, names: tuple[str, str], along: np.ndarray, arm: n
 
 
 def drum_sketch() -> Rows:
-    """Dimensions of one shoe in its drum, and what may be given as its load."""
+    """Sketch the dimensions of a shoe in its drum, the width of the lining, and a wheel cylinder."""
     return [[_shoe()], [_width(), cylinder_sketch()]]
 
 
@@ -170,7 +170,7 @@ def _width() -> Drawing:
 
 
 def cylinder_sketch() -> Drawing:
-    """Bore and pressure of a cylinder."""
+    """Sketch bore and pressure of a wheel cylinder."""
     s = Sketch()
     s.add(Outline([(0, 0.25), (1.0, 0.25), (1.0, -0.25), (0, -0.25)], "body", 1.4, closed=True, filled=True))
     s.add(

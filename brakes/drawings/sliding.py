@@ -1,4 +1,4 @@
-"""Drawings of drum brakes with sliding shoes: the linings where they touch, and the forces on the shoes."""
+"""Drawings of drum brakes with sliding shoes: contact of the linings, and forces on the shoes."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _SIDES = (np.array([1.0, 1.0]), np.array([-1.0, 1.0]))
 
 
 def draw_sliding(result: MachineResult) -> Drawing:
-    """The drum and its shoes, with the forces on each to one scale; of one case.
+    """Draw the drum and its shoes, with the forces on each to one scale; for a single case.
 
-    A simplex brake has its leading shoe on the right, in a drum that turns clockwise; the second shoe of a
-    duplex brake, whose abutment is at the other end, is drawn as if it lay like the first.
+    The leading shoe of a simplex brake is on the right, in a drum that turns clockwise. The second shoe of a
+    duplex brake, whose abutment is at the opposite end, is drawn as if it lay like the first.
     """
     brake = result.brake
     assert isinstance(brake, Sliding)
@@ -49,12 +49,12 @@ def _along(brake: Sliding) -> np.ndarray:
 
 
 def _points(radius: float, alpha: np.ndarray) -> np.ndarray:
-    """Points at angles from straight down, on the right."""
+    """Compute points on a circle at angles from straight down [rad], on the right side."""
     return radius * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1)
 
 
 def _add_shoe(shapes: list[DrawnShape], brake: Sliding, side: np.ndarray) -> None:
-    """Add a shoe with its lining and its abutment, on its side."""
+    """Add a shoe with its lining and its abutment to the shapes, on a side of the drum."""
     r, alpha = float(brake.drum_radius), _along(brake)
     foot = np.array([float(brake.abutment_offset), -float(brake.abutment_depth)])
     head = np.array([foot[0], float(brake.force_arm)])
@@ -74,7 +74,7 @@ def _add_forces(
     side: np.ndarray,
     i: str,
 ) -> None:
-    """Add the resultants at the place where their lines cross, the force, and the abutment's."""
+    """Add a shoe's forces: pressure and friction where their lines cross, actuating force, abutment."""
     nx, ny, tx, ty, abutment = (float(each) for each in reactions.values())
     normal, psi = np.array([nx, ny]), float(brake.abutment_angle)
     at = -float(brake.drum_radius) * normal / np.hypot(*normal)
@@ -88,7 +88,7 @@ def _add_forces(
 
 
 def sliding_sketch() -> Rows:
-    """Dimensions of a sliding shoe."""
+    """Sketch the dimensions of a sliding shoe."""
     s, brake = Sketch(), Sliding(1.0, 0.3, np.radians(35.0), np.radians(135.0), 0.15, 0.75, 0.8, 0.3)
     s.add(Disc((0, 0), 1.0, "neutral", 1.4), Symbol("cross", (0, 0), "axis", 9.0))
     _add_shoe(s.shapes, brake, _SIDES[0])

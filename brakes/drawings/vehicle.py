@@ -1,4 +1,4 @@
-"""Drawings of a vehicle of two axles on a slope, with weight, axle loads and friction."""
+"""Drawings of a vehicle with two axles on a slope, with weight, axle loads and friction."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from brakes.drawings.chain import line_sketch, wheel_sketch
 from brakes.drawings.sketches import truck_sketch
 from brakes.vehicle import Holding, Vehicle
 
-_WHEEL = 0.16  # radius of the drawn wheels over the wheelbase
+_WHEEL = 0.16  # radius of the drawn wheels, over the wheelbase
 
 
 def standing(found: Holding) -> Drawing:
-    """The vehicle on its slope with the forces that hold it, to one scale; of one case, in m."""
+    """Draw the vehicle on its slope, with the forces that hold it to one scale; for a single case, in m."""
     v, beta = found.vehicle, float(found.road.slope) * (1 if found.downhill == "rear" else -1)
     L, h, a = float(v.wheelbase), float(v.cg_height), float(v.cg_behind_front)
-    turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # turns row vectors
+    turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # rotates row vectors
     weight = float(v.mass) * float(found.road.gravity)
     arrows = ForceArrows(0.8 * max(L, h) / weight, 0.12 * L)
     _draw_body(arrows.shapes, v, turn)
@@ -45,7 +45,7 @@ def standing(found: Holding) -> Drawing:
 
 
 def _draw_body(shapes: list[DrawnShape], v: Vehicle, turn: np.ndarray) -> None:
-    """Add ground, wheels, and a frame from hub to hub with a post up to the centre of gravity."""
+    """Add ground, wheels, and a triangular frame from hub to hub over the centre of gravity."""
     L, h, a = float(v.wheelbase), float(v.cg_height), float(v.cg_behind_front)
     r = _WHEEL * L
     shapes.append(Outline(np.array([(-0.7 * L, 0.0), (1.7 * L, 0.0)]) @ turn, "ground", 2.0))
@@ -56,7 +56,7 @@ def _draw_body(shapes: list[DrawnShape], v: Vehicle, turn: np.ndarray) -> None:
 
 
 def vehicle_sketch() -> Rows:
-    """Dimensions of a vehicle and of a truck, of the line of its brakes, and of a braked wheel."""
+    """Sketch the dimensions of a vehicle, a truck, the brake line's cylinders, and a braked wheel."""
     return [[_dimensions()], [truck_sketch()[0][0]], *line_sketch(), [wheel_sketch()]]
 
 

@@ -1,4 +1,4 @@
-"""Drum brakes of several shoes: simplex (one leads, one trails), duplex (all lead), or any other set."""
+"""Drum brakes of several shoes: simplex (one leading, one trailing), duplex (two leading), or any others."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from brakes.drum.shoe import Shoe, ShoeResult, integrals, solve_shoe
 
 @dataclass(frozen=True)
 class DrumBrake:
-    """Shoes of one drum, each pressed by the same force.
+    """The shoes of one drum, each pressed by the same force.
 
     Parameters
     ----------
     shoes : tuple of Shoe
         The shoes, each described as if it lay on the +x side.
     leading : tuple of bool
-        Which of them lead when the drum turns forward.
+        Whether each shoe leads when the drum turns forward.
 
     Raises
     ------
@@ -66,21 +66,21 @@ class DrumBrake:
 
     @property
     def law(self) -> str:
-        """Name of the law of the pressure."""
+        """Name of the pressure law, the same for all shoes."""
         return self.shoes[0].pressure_law
 
     @property
     def rubbing_radius(self) -> Numbers:
-        """Radius at which the linings rub [m]."""
+        """Radius of the drum, at which the linings rub [m]."""
         return self.shoes[0].drum_radius
 
     def with_law(self, law: Literal["wear", "pressure"]) -> DrumBrake:
-        """Copy the brake with another law of the pressure."""
+        """Copy the brake with another pressure law."""
         return replace(self, shoes=tuple(replace(shoe, pressure_law=law) for shoe in self.shoes))
 
 
 def simplex(leading: Shoe, trailing: Shoe | None = None) -> DrumBrake:
-    """Assemble a leading and a trailing shoe; the same shoe twice unless a second is given.
+    """Assemble a simplex brake of a leading and a trailing shoe; the same shoe twice unless both are given.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def simplex(leading: Shoe, trailing: Shoe | None = None) -> DrumBrake:
 
 
 def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
-    """Assemble two shoes that lead forward and trail in reverse; the same twice unless a second is given.
+    """Assemble a duplex brake of two shoes that lead forward; the same shoe twice unless both are given.
 
     Examples
     --------
@@ -111,7 +111,7 @@ def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
 
 @dataclass(frozen=True)
 class BrakeResult(SlidesOrLocks):
-    """Forces in a brake.
+    """Forces in a drum brake.
 
     Attributes
     ----------
@@ -120,15 +120,15 @@ class BrakeResult(SlidesOrLocks):
     reverse : bool
         Whether the drum turns backward.
     shoes : tuple of ShoeResult
-        The shoes, in the brake's order.
+        Results of the shoes, in the brake's order.
     force, torque : ndarray
-        Actuating force on each shoe [N], torque of the brake [N m]; nan where it locks.
+        Actuating force on each shoe [N], torque of the brake [N m]; nan where the brake locks.
     peak_pressure : ndarray
         Largest pressure on any lining [Pa].
     c_star, c_star_slope : ndarray
         Sum of the shoe factors, torque / (force radius), and its derivative with respect to the friction.
     locking_friction, margin, locked : ndarray
-        Values of the shoe that locks first.
+        Locking friction, margin to it, and whether it is passed, of the shoe that locks first.
 
     Examples
     --------
@@ -155,7 +155,7 @@ class BrakeResult(SlidesOrLocks):
     locked: Numbers
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{len(self.shoes)} shoes, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
         yield error_at_most(self.error)
@@ -163,7 +163,7 @@ class BrakeResult(SlidesOrLocks):
 
     @property
     def error(self) -> Numbers:
-        """Bound of the relative error of torque, force, pressure and C*: the sum of those of the shoes."""
+        """Bound of the relative error of torque, force, pressure and C*: the sum of the shoes' bounds."""
         return sum(shoe.error for shoe in self.shoes)
 
 
@@ -176,7 +176,7 @@ def brake_torque(
     torque: Numbers | None = None,
     reverse: bool = False,
 ) -> BrakeResult:
-    """Compute the forces in a brake whose shoes are pressed by the same force.
+    """Compute the forces in a drum brake whose shoes are pressed by the same force.
 
     Parameters
     ----------
@@ -225,7 +225,7 @@ def brake_torque(
         locked = _over(np.logical_or, [shoe.locked for shoe in at_unit_force])
         refuse(locked, "friction", mu, "", bound, "give a force to see which one, or less friction")
         value = value / sum(shoe.torque for shoe in at_unit_force)
-    elif name == "peak_pressure":  # the shoe with the largest pressure at a force limits the force
+    elif name == "peak_pressure":  # the shoe with the largest pressure limits the common force
         value = value / _over(np.maximum, [shoe.peak_pressure for shoe in at_unit_force])
     shoes = tuple(solve_shoe(shoe, mu, leads, value) for shoe, leads in sides)
     limit = _over(np.minimum, [shoe.locking_friction for shoe in shoes])
@@ -303,5 +303,5 @@ def shoe_torque(
 
 
 def _over(function: np.ufunc, values: Sequence[Numbers]) -> Numbers:
-    """The least, the largest, or whether any, of the shoes' values in each case."""
+    """Reduce the values of the shoes, in each case, to their minimum, maximum or logical or."""
     return function.reduce(np.broadcast_arrays(*values))[()]

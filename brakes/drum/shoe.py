@@ -1,10 +1,10 @@
 """Forces on a pivoted long shoe, from its actuating force, its peak pressure or its torque.
 
 The pressure is proportional to the radial displacement of the lining, p = p0 sin(alpha - delta). On a
-rigid shoe that turns about its pin it vanishes on the line from the centre to the pin, delta = atan(b/c),
-as in textbooks (Shigley, whose theta is alpha - delta). Vardanyan et al. (2019) let it vanish on the -y axis
-instead (delta = 0), which is right for b = 0 only. In axes turned by delta the same formulas hold for both.
-A lining that is not worn in, or that bends, is nearer to the same pressure everywhere: `Shoe.pressure_law`.
+rigid shoe that turns about its pin the pressure is zero on the line from the centre to the pin: delta =
+atan(b/c), as in textbooks (Shigley, whose theta is alpha - delta). Vardanyan et al. (2019) place the zero on
+the -y axis instead (delta = 0), which is right for b = 0 only. In axes turned by delta the same formulas hold
+for both. The pressure of a new or flexible lining is more uniform: see `Shoe.pressure_law`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import one_of, refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
@@ -32,7 +32,7 @@ _PRESSURE_ZERO = (
     "(axis) is an assumption of Vardanyan et al. (2019), for comparison with them"
 )
 _LAW = "wear: rigid shoe, pressure as the sine of the angle; pressure: the same pressure everywhere"
-_ROUNDING = 1e-9  # [rad] rounding of an arc that starts exactly on the line to the pin
+_ROUNDING = 1e-9  # rounding error of the start of an arc that lies exactly on the line to the pin [rad]
 _EPS = np.finfo(float).eps
 
 
@@ -57,7 +57,7 @@ class Shoe:
         Line on which the pressure vanishes: from the centre to the pin, about which a rigid shoe turns, or
         the -y axis, the assumption of Vardanyan et al. (2019): for comparison with them.
     pressure_law : {"wear", "pressure"}
-        Pressure as the sine of the angle from that line, or uniform pressure.
+        Pressure as the sine of the angle from that line (wear), or uniform pressure.
 
     Raises
     ------
@@ -84,7 +84,7 @@ class Shoe:
         Annotated[Numbers, Described("rad", "alpha1", _START, key="lining_start")],
         Annotated[Numbers, Described("rad", "alpha2", _END, key="lining_end")],
     ]
-    pivot: tuple[  # files give b and c, the pin is at (b, -c)
+    pivot: tuple[  # files give b and c for the pin at (b, -c)
         Annotated[Numbers, Described("m", "b", _OFFSET, key="pivot_offset")],
         Annotated[Numbers, Described("m", "c", _DEPTH, above=0, key="pivot_depth")],
     ]
@@ -97,8 +97,6 @@ class Shoe:
         one_of("pressure_zero", self.pressure_zero, ("pivot", "axis"))
         keep_checked(self)
         (a1, a2), (b, y) = self.lining, self.pivot
-        together(drum_radius=self.drum_radius, face_width=self.face_width, force_arm=self.force_arm,
-                 lining_start=a1, lining_end=a2, pivot_x=b, pivot_y=y)  # fmt: skip
         y, least = np.asarray(y), LEAST_MARGIN * np.asarray(self.drum_radius)
         bound, remedy = "the pin lies below the centre", "give (b, -c), c > 0"
         refuse(y >= -least, "pivot[1]", self.pivot[1], "m", bound, remedy)
@@ -122,7 +120,7 @@ class Shoe:
 
     @property
     def pin_angle(self) -> Numbers:
-        """Angle of the pin from -y [rad]: positive for b > 0."""
+        """Angle of the pin from -y [rad], positive for b > 0."""
         b, y = self.pivot
         return np.arctan2(b, -np.asarray(y))
 
@@ -132,23 +130,23 @@ class Shoe:
         return self.pin_angle if self.pressure_zero == "pivot" else 0.0 * np.asarray(self.pin_angle)
 
     def shape(self, alpha: np.ndarray) -> np.ndarray:
-        """Pressure at angles alpha [rad], over a constant."""
+        """Shape of the pressure at angles alpha [rad]: sin(alpha - delta), or 1 if it is uniform."""
         return np.sin(alpha - self.phase) if self.pressure_law == "wear" else np.ones_like(alpha)
 
     @property
     def moment_arm(self) -> Numbers:
-        """Arm a + c of the actuating force about the pin [m]."""
+        """Lever arm a + c of the actuating force about the pin [m]."""
         return self.force_arm - np.asarray(self.pivot[1])
 
 
 @dataclass(frozen=True)
 class _Integrals:
-    """Integrals over the arc, in axes turned by delta.
+    """Integrals of the pressure over a shoe's lining, in axes turned by the angle delta of zero pressure.
 
-    K, S, C are those of q, q sin, q cos, where q is the sine, or 1 under uniform pressure; n and d the
-    arms [m] of the normal and, for friction 1, of the friction forces about the pin: P (a + c) = A p0 (n
-    + s mu d). Rounding of K, and of S and C over both, is bounded by `K_error` and `SC_error`, that of
-    the arms by `n_error` and `d_error` [m].
+    K, S, C are the integrals of q, q sin, q cos, where the pressure shape q is the sine, or 1 if uniform; n
+    and d are the arms [m] about the pin of the normal force and, for friction 1, of the friction force: P (a
+    + c) = A p0 (n + s mu d). `K_error` bounds the rounding of K, `SC_error` that of S and C over both, and
+    `n_error` and `d_error` that of the arms [m].
     """
 
     K: Numbers
@@ -156,7 +154,7 @@ class _Integrals:
     C: Numbers
     n: Numbers
     d: Numbers
-    peak: Numbers  # largest value of q
+    peak: Numbers  # largest value of the pressure shape q
     K_error: Numbers
     SC_error: Numbers
     n_error: Numbers
@@ -164,7 +162,7 @@ class _Integrals:
 
 
 def integrals(shoe: Shoe) -> _Integrals:
-    """Integrals over the lining of a shoe, and the bounds of their rounding."""
+    """Integrate the pressure over the lining of a shoe, with bounds of the rounding errors."""
     uniform = shoe.pressure_law == "pressure"
     a1, a2 = (np.asarray(end) - shoe.phase for end in shoe.lining)
     m, h = (a1 + a2) / 2, (a2 - a1) / 2
@@ -173,10 +171,11 @@ def integrals(shoe: Shoe) -> _Integrals:
     S = sine if uniform else h - np.cos(2 * m) * np.sin(2 * h) / 2
     C = cosine if uniform else np.sin(2 * m) * np.sin(2 * h) / 2
     (b, y), far = shoe.pivot, np.hypot(*shoe.pivot)
-    b, c = (0.0 * far, far) if shoe.pressure_zero == "pivot" else (b, -np.asarray(y))  # in turned axes
+    # (b, -c) is the pin in axes turned by delta.
+    b, c = (0.0 * far, far) if shoe.pressure_zero == "pivot" else (b, -np.asarray(y))
     inside = (a1 <= np.pi / 2) & (a2 >= np.pi / 2)
     peak = np.where(inside | uniform, 1.0, np.maximum(np.sin(a1), np.sin(a2)))
-    # Errors of K, S and C over an arc of half width h: of the angles, and of the terms that are summed.
+    # Errors of K, S and C over an arc of half width h come from the angles and from the terms of the sums.
     ends = np.stack(np.broadcast_arrays(a1, a2))
     angle = _EPS * (np.abs(ends + shoe.phase).max(axis=0) + np.abs(shoe.phase))
     sines, cosines = np.abs(np.sin(ends)), np.abs(np.cos(ends))
@@ -191,7 +190,7 @@ def integrals(shoe: Shoe) -> _Integrals:
 
 @dataclass(frozen=True)
 class ShoeResult(SlidesOrLocks):
-    """Forces on a shoe; vectors are in its own axes, their components last.
+    """Forces on a shoe; vectors are in the shoe's own axes, with the components (x, y) as last axis.
 
     Past self-locking the formulas do not hold: forces, torque and factors are then nan, `locked` is
     true, and `message` says so.
@@ -203,22 +202,22 @@ class ShoeResult(SlidesOrLocks):
     friction : ndarray
         Coefficient of friction.
     normal, tangential, pin_reaction : ndarray, shape (..., 2)
-        Resultants of pressure and friction on the shoe, and the pin's force on it [N].
+        Resultants of pressure and of friction on the shoe, and the force of the pin on the shoe [N].
     effective_arm : ndarray
-        Torque over the size of the friction's resultant, rho [m]; never less than the drum's radius.
+        Arm rho of the friction resultant: torque over its magnitude [m]; at least the drum's radius.
     closure : ndarray
-        Residual moment about the drum's centre, relative to P (a + c): rounding only.
+        Residual moment about the drum's centre, relative to P (a + c), which should be rounding only.
     error : ndarray
         Bound of the relative error of torque, pressure, factors and the actuating force, and of the other
-        forces over the largest: rounding of inputs and of sums, which grows as 1 / margin.
+        forces relative to the largest: rounding of inputs and sums, which grows as 1 / margin.
     c_star, c_star_slope : ndarray
         Shoe factor C* = torque / (force radius), and its derivative with respect to the friction.
     locking_friction : ndarray
         Friction at which the shoe locks; inf if it never does.
     margin : ndarray
-        1 - friction / locking_friction: 0 at locking, negative past it.
+        1 - friction / locking_friction: 0 at self-locking, negative past it.
     locked : ndarray of bool
-        Whether the friction is past self-locking, or at it up to a margin of 5e-13 or rounding.
+        Whether the friction is at or past self-locking, up to a relative margin of 5e-13 or to rounding.
 
     Examples
     --------
@@ -251,14 +250,14 @@ class ShoeResult(SlidesOrLocks):
     locked: Numbers
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{'leading' if self.leading else 'trailing'}, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
         yield error_at_most(self.error)
         yield "locked" if np.any(self.locked) else "slides"
 
     def pressure(self, alpha: Numbers) -> np.ndarray:
-        """Pressure [Pa] at angles alpha [rad], 0 off the lining; of one case."""
+        """Compute the pressure [Pa] at angles alpha [rad], 0 off the lining; for a single case only."""
         alpha = np.asarray(alpha, dtype=float)
         a1, a2 = self.shoe.lining
         on = (alpha >= a1) & (alpha <= a2)
@@ -267,7 +266,7 @@ class ShoeResult(SlidesOrLocks):
 
 
 def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeResult:
-    """Compute the forces as `shoe_torque` does, from checked inputs; a force of nan gives forces of nan."""
+    """Compute the forces on a shoe as `shoe_torque` does, without checks; a force of nan gives nan."""
     i, s, r = integrals(shoe), -1.0 if leading else 1.0, shoe.drum_radius
     arm, area = shoe.moment_arm, shoe.face_width * np.asarray(r)
     mu, force, n, d = np.broadcast_arrays(mu, force, i.n, i.d)
@@ -282,10 +281,10 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeRe
     pin = -(normal + tangential)
     pin[..., 0] -= force
     torque = mu * load * r * i.K
-    # The sum of the moments about the centre, which the solution does not use, relative to P (a + c).
+    # The sum of the moments about the centre, relative to P (a + c), checks the solution.
     b, y = shoe.pivot
     left = s * torque - shoe.force_arm * force + b * pin[..., 1] - y * pin[..., 0]
-    # The largest relative error, from that of n + s mu d: of dC*/dmu, or of vectors.
+    # The largest relative error is that of dC*/dmu or of the vectors; both follow from that of n + s mu d.
     arms = (np.abs(shoe.force_arm) + np.abs(shoe.pivot[1])) / shoe.moment_arm
     from_bracket = bracket_error / bracket
     slope_error = i.K_error + i.n_error / np.abs(i.n) + from_bracket
@@ -312,11 +311,11 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeRe
 
 
 def _vector(x: Numbers, y: Numbers) -> np.ndarray:
-    """Vectors (..., 2) of these components."""
+    """Stack two components as vectors of shape (..., 2)."""
     return np.stack(np.broadcast_arrays(x, y), axis=-1)
 
 
 def _turn(v: np.ndarray, angle: Numbers) -> np.ndarray:
-    """Vectors (..., 2) turned anticlockwise by an angle [rad]."""
+    """Rotate vectors (..., 2) anticlockwise by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return _vector(c * v[..., 0] - s * v[..., 1], s * v[..., 0] + c * v[..., 1])

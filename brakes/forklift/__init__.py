@@ -1,6 +1,6 @@
 """A forklift's brakes: how it stops, how its duo-servo shoes move, and the force on every part.
 
-After Yoo et al. 1997, with the mechanics corrected; `brakes.reproduce` has the paper's own.
+After Yoo et al. 1997, with the mechanics corrected; `brakes.reproduce` has the paper's own version.
 """
 
 from brakes.forklift.duo_servo import BENDIX_12_5, DuoServo, ShoeMotion

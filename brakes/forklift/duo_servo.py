@@ -1,9 +1,10 @@
 """Geometry of a duo-servo brake and the motion of its shoes in closed form (Yoo et al. 1997, section 3).
 
-Axes: x to the right, y up, the drum's centre at the origin; the drum turns counter-clockwise, the right
-shoe leads; the left side mirrors the right one at rest. In stage 1 each shoe turns about its adjuster
-pin until the contact point of its lining reaches the drum. In stage 2 everything turns with the drum by
-psi, until the right piston reaches its bottom. A piston's position is where its face cuts the x axis.
+Axes: x to the right, y up, the drum's centre at the origin. The drum turns counter-clockwise, the right
+shoe leads, and the left side is the mirror image of the right one at rest. In stage 1 each shoe turns about
+its adjuster pin until the contact point of its lining reaches the drum. In stage 2 shoes and adjuster turn
+with the drum by psi, until the right piston reaches its bottom. A piston's position is where its face cuts
+the x axis.
 """
 
 from __future__ import annotations
@@ -27,20 +28,20 @@ from brakes.vehicle.axles import ACUTE, ROUNDING
 
 @dataclass(frozen=True)
 class DuoServo(HasLevers):
-    """The right side of a duo-servo brake at rest; any value may be an array, one entry per design.
+    """Geometry of the right side of a duo-servo brake at rest; values may be arrays, one entry per design.
 
     Parameters
     ----------
     drum_radius : float or ndarray
-        r [m].
+        Inner radius r of the drum [m].
     tip : tuple
-        Pin between shoe and piston, (x, y) [m]: to the right of the centre and above it.
+        Pin between shoe and piston, (x, y) [m], right of the drum's centre and above it.
     adjuster : tuple
-        Pin between shoe and adjuster, (x, y) [m]: to the right of the centre and below it.
+        Pin between shoe and adjuster, (x, y) [m], right of the drum's centre and below it.
     face_tilt : float or ndarray
-        Tilt of the piston's face [rad]: its normal is (cos, -sin) of the tilt; alpha1 = alpha2.
+        Tilt alpha1 = alpha2 of the piston's face [rad]: its normal is (cos, -sin) of the tilt.
     contact_angle : float or ndarray
-        Angle of the lining's contact point, from +x upward [rad]; its radius at rest is r - clearance.
+        Angle of the lining's contact point, from +x upward [rad]; at rest its radius is r - clearance.
     piston_bottom : float or ndarray
         Travel of the piston from rest to its bottom, inward [m].
     piston_stroke : float or ndarray, optional
@@ -87,8 +88,6 @@ class DuoServo(HasLevers):
     def __post_init__(self) -> None:
         keep_checked(self)
         (x, y), (ax, ay) = self.tip, self.adjuster
-        together(tip_x=x, tip_y=y, adjuster_x=ax, adjuster_y=ay, drum_radius=self.drum_radius,
-                 face_tilt=self.face_tilt, contact_angle=self.contact_angle)  # fmt: skip
         for name, u, v, sense in (("tip", x, y, 1), ("adjuster", ax, ay, -1)):
             side = "above" if sense > 0 else "below"
             refuse(np.asarray(u) <= 0, f"{name}[0]", u, "m", "the right side is described: give x > 0")
@@ -105,12 +104,12 @@ class DuoServo(HasLevers):
         Parameters
         ----------
         clearance : float or ndarray
-            Between lining and drum at rest, c_L [m].
+            Clearance c_L between lining and drum at rest [m].
 
         Returns
         -------
         ShoeMotion
-            Turns, travels, interference, and the lever arms at the end.
+            Turns, travels and interference, and the lever arms at the end of stage 2.
 
         Raises
         ------
@@ -129,7 +128,7 @@ class DuoServo(HasLevers):
         outside = np.hypot(*tip) >= self.drum_radius * (1 - LEAST_MARGIN)
         bound = "larger than the drum allows: the shoe's tip would leave it before the lining touches"
         refuse(outside, "clearance", c, "m", bound, advice)
-        # The turn psi pushes the right piston to its bottom.
+        # The turn psi of stage 2 pushes the right piston to its bottom.
         lowest = (self.piston_position(*self.tip) - self.piston_bottom) * np.cos(self.face_tilt)
         psi = _arccos(lowest / np.hypot(*tip)) - self.face_tilt - np.arctan2(tip[1], tip[0])
         bound = "larger than the drum allows: the piston does not reach its bottom"
@@ -137,25 +136,25 @@ class DuoServo(HasLevers):
         return self._assemble_motion(c, turn, psi, tip)
 
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
-        """The lever arms, and the bound of their error over their size, and of their angles [rad]."""
+        """Compute the lever arms, with bounds of their relative errors and of the errors of angles [rad]."""
         if clearance is None:
             raise ValueError("clearance is missing: the lever arms depend on it; give it in m")
         return self.move_shoes(clearance).levers_and_error()
 
     def piston_position(self, x: Numbers, y: Numbers) -> Numbers:
-        """Position [m] of a piston whose face passes through a point of the right side."""
+        """Compute the position on the x axis [m] of a piston whose face passes a point of the right side."""
         return x - y * np.tan(self.face_tilt)
 
     def _seating_turn(self, c: Numbers) -> np.ndarray:
-        """Clockwise turn [rad] about the adjuster pin that brings the contact point to the drum, or nan."""
+        """Find the clockwise turn [rad] of a shoe about its adjuster pin until contact; nan if none."""
         r, (hx, hy) = self.drum_radius, self.adjuster
         vx, vy = (r - c) * np.cos(self.contact_angle) - hx, (r - c) * np.sin(self.contact_angle) - hy
         along, across = hx * vx + hy * vy, hx * vy - hy * vx
-        target = (r**2 - hx**2 - hy**2 - vx**2 - vy**2) / 2  # = along cos(turn) + across sin(turn)
+        target = (r**2 - hx**2 - hy**2 - vx**2 - vy**2) / 2  # equals along cos(turn) + across sin(turn)
         return np.arctan2(across, along) - _arccos(target / np.hypot(along, across))
 
     def _after_seating(self, turn: np.ndarray, x: Numbers, y: Numbers) -> tuple[np.ndarray, np.ndarray]:
-        """Where a point of the right shoe at rest is after stage 1 [m]."""
+        """Compute the position after stage 1 [m] of a point that belongs to the right shoe at rest."""
         hx, hy = self.adjuster
         dx, dy = _turned(x - hx, y - hy, -turn)
         return hx + dx, hy + dy
@@ -163,10 +162,10 @@ class DuoServo(HasLevers):
     def _assemble_motion(
         self, c: Numbers, turn: np.ndarray, psi: np.ndarray, tip: tuple[np.ndarray, np.ndarray]
     ) -> ShoeMotion:
-        """The motion from the turns of its two stages and the tip's place after the first."""
+        """Make the result from the turns of both stages and the position of the right tip after stage 1."""
         (x, y), rest = tip, self.piston_position(*self.tip)
         right, left = _turned(x, y, psi), _turned(-x, y, psi)
-        # The depth by which a lining that is concentric at rest enters the drum, and the angle there.
+        # A lining that is concentric at rest may enter the drum: find the largest depth and its angle.
         ox, oy = self._after_seating(turn, 0.0, 0.0)  # centre of the lining's circle
         ends = np.arctan2(self.adjuster[1], self.adjuster[0]), np.arctan2(self.tip[1], self.tip[0])
         where = np.clip(np.arctan2(oy, ox) + turn, *ends)
@@ -176,7 +175,7 @@ class DuoServo(HasLevers):
             drum_radius=self.drum_radius,
             a1=right[0] * sine + right[1] * cosine,
             a2=-left[0] * sine + left[1] * cosine,
-            b1=-np.asarray(self.adjuster[1]),  # the adjuster turns with the drum: gamma = psi
+            b1=-np.asarray(self.adjuster[1]),  # the adjuster turns with the drum, so gamma = psi
             b2=-np.asarray(self.adjuster[1]),
             alpha1=self.face_tilt,
             alpha2=self.face_tilt,
@@ -201,31 +200,31 @@ class DuoServo(HasLevers):
 
 @dataclass(frozen=True)
 class ShoeMotion(HasLevers, Result):
-    """Motion of the shoes from rest to the end of stage 2; arrays have one entry per case.
+    """Motion of a duo-servo brake's shoes from rest to the end of stage 2; arrays by case.
 
     Attributes
     ----------
     geometry : DuoServo
         The brake.
     clearance : ndarray
-        Between lining and drum at rest [m].
+        Clearance between lining and drum at rest [m].
     seating_turn : ndarray
-        Stage 1: turn of each shoe about its adjuster pin [rad].
+        Turn of each shoe about its adjuster pin in stage 1 [rad].
     drum_turn : ndarray
-        Stage 2: turn psi of the drum and the shoes [rad].
+        Turn psi of the drum and the shoes in stage 2 [rad].
     seating_travel : ndarray
-        Travel of each piston in stage 1, outward [m].
+        Outward travel of each piston in stage 1 [m].
     right_travel, left_travel : ndarray
-        Travel of the pistons from rest to the end, outward [m].
+        Outward travel of each piston from rest to the end of stage 2 [m].
     right_tip, left_tip : ndarray, shape (..., 2)
-        Tip pins at the end [m].
+        Pins of the tips at the end of stage 2 [m].
     tip_gap : ndarray
         Smallest gap between the tips and the drum during the motion [m].
     lining_penetration, penetration_angle : ndarray
         Largest depth by which a lining that is concentric at rest and reaches from pin to pin enters the
         drum [m] (negative: a gap), and its angle on the lining at rest, from +x [rad].
     levers : Levers
-        Lever arms and directions at the end.
+        Lever arms and directions of the forces at the end of stage 2.
 
     Examples
     --------
@@ -251,7 +250,7 @@ class ShoeMotion(HasLevers, Result):
     levers: Levers
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"drum turns {spanned(np.degrees(self.drum_turn), 'deg')}"
         travels = (spanned(np.multiply(1e3, each), "mm") for each in (self.right_travel, self.left_travel))
         yield f"pistons travel {' and '.join(travels)}"
@@ -260,10 +259,11 @@ class ShoeMotion(HasLevers, Result):
 
     @property
     def error(self) -> Numbers:
-        """Bound of the error of turns [rad] and of positions over r, by the rounding of inputs and sums.
+        """Bound of the rounding error of the turns [rad], and of positions relative to r.
 
-        Each turn is an arc cosine, which rounding changes the more the nearer the shoe is to the end of its
-        reach: contact point, pin and centre in line in stage 1; the tip's path along the face in stage 2.
+        Each turn is an arc cosine, which amplifies rounding near the end of the shoe's reach:
+        when contact point, pin and centre are in line in stage 1, or the tip's path is along the face in
+        stage 2.
         """
         brake, r = self.geometry, self.geometry.drum_radius
         pin, tip = np.hypot(*brake.adjuster), np.hypot(self.right_tip[..., 0], self.right_tip[..., 1])
@@ -279,13 +279,13 @@ class ShoeMotion(HasLevers, Result):
         return (seating + moved + _error_of_arccos(face + moved, np.sin(height)))[()]
 
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
-        """The lever arms, and the bound of their error over their size, and of their angles [rad]."""
+        """Return the lever arms, with bounds of their relative errors and of the errors of angles [rad]."""
         least = np.minimum(self.levers.a1, self.levers.a2)
         return self.levers, self.error * self.geometry.drum_radius / least
 
     @property
     def residual(self) -> Numbers:
-        """Distance at the end of the contact point from the drum, or the piston from its bottom, over r."""
+        """Residual at the end: distance of contact point from drum, or of piston from its bottom, over r."""
         brake, r = self.geometry, self.geometry.drum_radius
         x, y = _turned(r - self.clearance, 0.0, brake.contact_angle)
         seated = np.hypot(*brake._after_seating(np.asarray(self.seating_turn), x, y)) - r
@@ -295,7 +295,7 @@ class ShoeMotion(HasLevers, Result):
 
     @property
     def interference(self) -> tuple[str, ...]:
-        """Parts that collide, a sentence each; of many cases the worst."""
+        """One sentence for each pair of parts that collide; of many cases, for the worst."""
         sentences = []
         depth, angle = np.asarray(self.lining_penetration), np.asarray(self.penetration_angle)
         if (depth > 1e-9).any():
@@ -321,21 +321,21 @@ BENDIX_12_5 = DuoServo(
     contact_angle=float(np.radians(56.5)),
     piston_bottom=0.00153,
 )
-"""Bendix duo-servo, 12.5 in. The paper prints no coordinates; these are a fit to its Tables 5-7."""
+"""Bendix duo-servo brake, 12.5 in. The paper prints no coordinates; these are fitted to its Tables 5-7."""
 
 
 def _turned(x: Numbers, y: Numbers, angle: Numbers) -> tuple[np.ndarray, np.ndarray]:
-    """Components turned anticlockwise by an angle [rad]."""
+    """Rotate vectors with components x and y anticlockwise by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return c * x - s * y, s * x + c * y
 
 
 def _error_of_arccos(error: np.ndarray, sine: np.ndarray) -> np.ndarray:
-    """Error of an arc cosine [rad] from that of the cosine, and the sine; the root of it in line."""
+    """Compute the error of an arc cosine [rad] from the cosine's error and the sine; its root at sine 0."""
     return error / np.sqrt(sine**2 + error)
 
 
 def _arccos(value: Numbers) -> np.ndarray:
-    """Arc cosine; nan where there is none, or rounding decides whether there is."""
+    """Compute the arc cosine [rad]; nan where it does not exist, as far as rounding can tell."""
     value = np.asarray(value)
     return np.arccos(np.where(np.abs(value) <= 1 - LEAST_MARGIN, value, np.nan))

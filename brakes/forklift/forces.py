@@ -34,48 +34,50 @@ from brakes.common.locking import LEAST_MARGIN
 from brakes.forklift.levers import HasLevers, Levers
 from brakes.vehicle.axles import ROUNDING
 
-_STEPS = 200  # steps of the iteration for the trailing share; bisection alone needs about 60
-_ARMS_DIFFER = 1e-9  # relative difference of b1 and b2 that is warned of
-_FRICTION_DIFFERS = 0.01  # relative difference of needed and given friction that is warned of
+_STEPS = 200  # largest number of iterations for the trailing shoe's share; bisection alone needs about 60
+_ARMS_DIFFER = 1e-9  # relative difference of b1 and b2 above which there is a warning
+_FRICTION_DIFFERS = 0.01  # relative difference of needed and given friction above which there is a warning
 
 
 @dataclass(frozen=True)
 class InternalForces(Result):
-    """Forces in a duo-servo brake; arrays have one entry per case, vectors their components last.
+    """Forces in a duo-servo brake; arrays have one entry per case, vectors have their components last.
 
     Attributes
     ----------
     levers : Levers
-        Arms and directions of the forces.
+        Lever arms and directions of the forces.
     torque, piston_force : ndarray
-        T of the brake [N m] and P_T on the trailing shoe [N].
+        Torque T of the brake [N m], and force P_T of the piston on the trailing shoe [N].
     A, B, C, D : ndarray
-        Sizes of the drum's normal and friction forces on the leading (A, B) and the trailing shoe [N].
+        Magnitudes of the drum's normal and friction forces on the leading (A, B) and on the trailing (C, D)
+        shoe [N].
     Q, P_L : ndarray
-        Force of the adjuster, and of the piston that the leading shoe pushes back [N].
+        Force Q of the adjuster, and force P_L of the piston that the leading shoe pushes back [N].
     A_vector, B_vector, C_vector, D_vector : ndarray, shape (..., 2)
-        The drum's forces on the shoes [N].
+        The same forces of the drum on the shoes, as vectors [N].
     bolt_force : ndarray, shape (..., 2)
-        Resultant of both pistons on the cylinder, which its bolts carry [N].
+        Resultant force of both pistons on the cylinder, which its bolts carry [N].
     lining_friction : ndarray
-        mu = B / A = D / C. Given the torque, it is a result: the friction that the lining must have.
+        Friction mu = B / A = D / C. If the torque is given, it is a result: the friction that the lining must
+        have.
     locking_friction, margin : ndarray
         Friction at which the brake locks, and 1 - lining_friction / locking_friction.
     c_star, c_star_slope : ndarray
         Brake factor C* = T / (P_T r), and its derivative with respect to the lining's friction.
     leading_share, trailing_share : ndarray
-        Shares of the shoes in the torque, B / (B + D) and D / (B + D).
+        Fractions of the torque from each shoe, B / (B + D) and D / (B + D).
     residual : ndarray
-        Largest of the `equilibrium_equations`, nondimensional: with the larger of T / r and P_T as the unit
-        of force and r as that of length.
+        Largest residual of `equilibrium_equations`, nondimensional: with the larger of T / r and P_T as the
+        unit of force and r as the unit of length.
     error : ndarray
-        Bound of the relative error of forces, torque, friction and factors (of vectors over their size): the
-        rounding of arms and sums.  Given the friction it grows as 1 / margin; given the torque, as the square
-        of a large friction, and `c_star_slope` is left out; nan where there are no forces.
+        Bound of the relative error of forces, torque, friction and factors (of vectors over their magnitude)
+        by the rounding of arms and sums.  If friction is given it grows as 1 / margin; if torque is given, as
+        the square of a large friction, and `c_star_slope` is not covered; nan where there are no forces.
     status : str or ndarray of str
         ``"equilibrium"``, ``"locked"`` or ``"no solution"``; the forces are nan for the last two.
     warnings : tuple of str
-        Reasons to doubt the result, a sentence each.
+        Reasons to doubt the result, one sentence each.
 
     Examples
     --------
@@ -114,7 +116,7 @@ class InternalForces(Result):
     warnings: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"torque {spanned(self.torque, 'N m')}, C* {spanned(self.c_star)}"
         yield error_at_most(self.error)
         yield f"{self.status}" if np.ndim(self.status) == 0 else self.message
@@ -122,14 +124,14 @@ class InternalForces(Result):
 
     @property
     def message(self) -> str:
-        """Meaning of the status, in one sentence; of many cases, how many of each."""
+        """One sentence that explains the status; of many cases, how many have each status."""
         if np.ndim(self.status):
             names, counts = np.unique(self.status, return_counts=True)
             return ", ".join(f"{name}: {count} cases" for name, count in zip(names, counts, strict=True))
         return _SENTENCES[str(self.status)]
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """The message of each case that is not in equilibrium, of as many cases, by its row."""
+        """Return the message of each case without equilibrium, by its index; `count` is their number."""
         each = np.broadcast_to(self.status, (count,)).tolist()
         return {i: _SENTENCES[status] for i, status in enumerate(each) if status != "equilibrium"}
 
@@ -158,14 +160,14 @@ def internal_forces(
     geometry : DuoServo, ShoeMotion or Levers
         The brake; a `DuoServo` needs the clearance.
     piston_force : float or ndarray
-        P_T [N].
+        Force P_T of the piston on the trailing shoe [N].
     torque : float or ndarray, optional
-        T of one brake [N m]. The friction is then a result.
+        Torque T of one brake [N m]. The friction is then a result.
     friction : float or ndarray, optional
-        Friction of the lining. Without a torque, the torque follows from it; with one, it is compared
+        Friction of the lining. Without a torque, it determines the torque; with one, it is compared
         with the friction that the torque needs.
     clearance : float or ndarray, optional
-        Between lining and drum at rest [m].
+        Clearance between lining and drum at rest [m].
 
     Returns
     -------
@@ -209,9 +211,9 @@ def internal_forces(
 
 
 def _locks(levers: Levers, mu: Numbers, rounding: Numbers) -> np.ndarray:
-    """Whether friction is at self-locking, as far as rounding tells, or past it."""
+    """Tell whether the friction is past self-locking, or at it within rounding."""
     s = levers.drum_radius * np.asarray(mu) / np.hypot(1.0, mu)
-    margin = 1 - s / np.minimum(levers.a1, levers.b2)  # the smaller one of the two shoes
+    margin = 1 - s / np.minimum(levers.a1, levers.b2)  # the margin of the shoe that locks first
     return margin <= np.maximum(LEAST_MARGIN / (1 + np.square(mu)), rounding)
 
 
@@ -223,7 +225,7 @@ def _solve_from_torque(
     Q, P_L, R_L, R_T = _forces_at_share(levers, P_T, T, u)
     r = levers.drum_radius
     B, D = T * (1 - u) / r, T * u / r
-    most = 1 - LEAST_MARGIN  # ratio of the resultants at which friction grows beyond all bounds
+    most = 1 - LEAST_MARGIN  # ratio of friction to resultant at which the lining friction becomes infinite
     balanced = (most * R_L > B) & (most * R_T > D)
     status = np.where(balanced, "equilibrium", "no solution")
     with np.errstate(invalid="ignore"):
@@ -235,19 +237,19 @@ def _solve_from_torque(
 
 
 def _forces_at_share(levers: Levers, P_T: Numbers, T: Numbers, u: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Q, P_L, R_L and R_T [N] at a share u of the trailing shoe in the torque."""
+    """Compute Q, P_L, R_L and R_T [N] of this module from the trailing shoe's share u of the torque."""
     Q = (P_T * levers.a2 + T * u) / levers.b2
     P_L = (T * (1 - u) + Q * levers.b1) / levers.a1
     return Q, P_L, _resultant(P_L, Q, levers.phi1), _resultant(P_T, Q, levers.phi2)
 
 
 def _resultant(P: Numbers, Q: Numbers, phi: Numbers) -> np.ndarray:
-    """Size [N] of the sum of two forces at an angle phi [rad]."""
+    """Compute the magnitude [N] of the sum of two forces with the angle phi [rad] between them."""
     return np.hypot(P + Q * np.cos(phi), Q * np.sin(phi))
 
 
 def _solve_trailing_share(levers: Levers, P_T: np.ndarray, T: np.ndarray) -> np.ndarray:
-    """Solve f(u) = 0 by Newton's method, with bisection where that leaves the bracket."""
+    """Solve f(u) = 0 for the trailing shoe's share of the torque by Newton's method, or else bisection."""
     low, high = np.zeros(T.shape), np.ones(T.shape)
     u = np.full(T.shape, 0.4)
     for _ in range(_STEPS):
@@ -265,7 +267,7 @@ def _solve_trailing_share(levers: Levers, P_T: np.ndarray, T: np.ndarray) -> np.
 def _share_equation(
     levers: Levers, P_T: np.ndarray, T: np.ndarray, u: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """f(u) of the module's docstring and its derivative [N]."""
+    """Compute f(u) of the module's docstring [N], and its derivative by u [N]."""
     Q, P_L, R_L, R_T = _forces_at_share(levers, P_T, T, u)
     dQ = T / levers.b2
     dP = (dQ * levers.b1 - T) / levers.a1
@@ -285,13 +287,13 @@ def _solve_from_friction(levers: Levers, P_T: Numbers, mu: Numbers, rounding: Nu
     cosine = 1 / np.hypot(1.0, mu)
     forces = (cosine * R_L, sigma * R_L, cosine * R_T, sigma * R_T, Q, P_L)
     status = np.broadcast_to(np.where(locked, "locked", "equilibrium"), np.shape(R_L))
-    # The relative error is that of dC*/dmu, twice that of the shoes' forces.
+    # The relative error of dC*/dmu is the largest: twice the error of the shoes' forces.
     error = rounding * (1 + 2 * (levers.b2 / (levers.b2 - s) + levers.a1 / (levers.a1 - s)))
     return _assemble_result(levers, P_T, r * sigma * (R_L + R_T), forces, status, None, error)
 
 
 def _force_across_shoe(P: Numbers, a: Numbers, b: Numbers, phi: Numbers, s: Numbers) -> np.ndarray:
-    """Force X [N] at a shoe's other end from X b - P a = s |P + X|; phi is the angle between P and X."""
+    """Solve X b - P a = s |P + X| for the force X [N] at a shoe's other end, at an angle phi to P."""
     half = a * b + s**2 * np.cos(phi)
     root = s * np.sqrt(a**2 + b**2 + 2 * a * b * np.cos(phi) - (s * np.sin(phi)) ** 2)
     return P * (half + root) / (b**2 - s**2)
@@ -355,17 +357,17 @@ def equilibrium_equations(
     Parameters
     ----------
     levers : Levers
-        Arms and directions; with `Levers.in_radii` the unit of length is the drum's radius.
+        Lever arms and directions; `Levers.in_radii` makes the drum's radius the unit of length.
     torque, piston_force : float or ndarray
-        T [N m] and P_T [N]; or both in units consistent with other ones of the levers and the unknowns.
+        Torque T [N m] and piston force P_T [N]; or both in other units that agree with levers and unknowns.
     unknowns : ndarray, shape (10, ...)
-        Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L [N].
+        The unknown forces Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L [N].
 
     Returns
     -------
     ndarray, shape (10, ...)
-        In the paper's order: forces and moment of the leading, then of the trailing shoe; A normal to B,
-        C to D; equal friction A D = B C; torque of the drum. Zero at a solution.
+        Residuals in the paper's order: forces and moment of the leading, then of the trailing shoe; A normal
+        to B, C to D; equal friction A D = B C; torque of the drum. They are zero at a solution.
 
     References
     ----------
@@ -401,23 +403,26 @@ def equilibrium_equations(
 
 
 def _c_star_slope(levers: Levers, P_T: Numbers, mu: np.ndarray, P_L: np.ndarray, Q: np.ndarray) -> np.ndarray:
-    """dC*/dmu, by differentiating Q b2 - P_T a2 = s R_T and P_L a1 - Q b1 = s R_L with respect to s."""
+    """Compute the derivative of the brake factor C* by the friction.
+
+    It differentiates Q b2 - P_T a2 = s R_T and P_L a1 - Q b1 = s R_L by s, symbols as in this module.
+    """
     r, root = levers.drum_radius, np.hypot(1.0, mu)
     s, cos1, cos2 = r * mu / root, np.cos(levers.phi1), np.cos(levers.phi2)
     R_L, R_T = _resultant(P_L, Q, levers.phi1), _resultant(P_T, Q, levers.phi2)
     dQ = R_T / (levers.b2 - s * (Q + P_T * cos2) / R_T)
     dP_L = (R_L + (levers.b1 + s * (Q + P_L * cos1) / R_L) * dQ) / (levers.a1 - s * (P_L + Q * cos1) / R_L)
     dT = levers.a1 * dP_L + (levers.b2 - levers.b1) * dQ
-    return dT / (P_T * root**3)  # ds/dmu = r / root^3, C* = T / (P_T r)
+    return dT / (P_T * root**3)  # uses ds/dmu = r / root^3 and C* = T / (P_T r)
 
 
 def _vector(angle: Numbers, sign: int, size: np.ndarray) -> np.ndarray:
-    """Vectors of a size at an angle [rad] above (sign +1) or below (-1) the horizontal."""
+    """Make vectors of a magnitude at an angle [rad] above (sign +1) or below (sign -1) the horizontal."""
     return np.stack(np.broadcast_arrays(size * np.cos(angle), sign * size * np.sin(angle)), axis=-1)
 
 
 def _split(total: np.ndarray, normal: np.ndarray, friction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Split a sum into normal and friction vectors of given sizes, for a drum turning counter-clockwise."""
+    """Split a force into normal and friction vectors of given magnitudes; the drum turns anticlockwise."""
     across = np.stack([-total[..., 1], total[..., 0]], axis=-1)
     n, f, square = normal[..., None], friction[..., None], np.sum(total**2, axis=-1)[..., None]
     return (n**2 * total + n * f * across) / square, (f**2 * total - n * f * across) / square

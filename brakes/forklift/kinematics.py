@@ -1,14 +1,14 @@
 """The two stages of a duo-servo brake's motion as planar mechanisms, followed position by position.
 
-Stage 1, each side: shoe, dummy, piston (9 unknowns). The shoe is pinned at the adjuster (2) and to the
-dummy at its tip (2), the dummy slides on the piston's face (2), the piston in the cylinder (2): one
-degree of freedom, followed until the contact point reaches the drum.
+Stage 1, on each side: shoe, dummy, piston (9 unknowns). The shoe is pinned at the adjuster (2 equations) and
+to the dummy at its tip (2), the dummy slides on the piston's face (2), the piston in the cylinder (2): one
+degree of freedom is left, and is followed until the contact point reaches the drum.
 
 Stage 2: drum, two shoes, adjuster, two dummies, two pistons (24 unknowns). The drum is pinned (2), the
-right shoe welded to it (3), the left one pinned at the drum's centre with its lining seated (2); the
-adjuster's pins (4), 6 a side as above: 23 independent rows, followed until the right piston reaches its
-bottom. Welding both shoes would make a row redundant; pinning them at their contact points alone would
-leave mobility 2.
+right shoe welded to it (3), the left one pinned at the drum's centre with its lining seated (2); the adjuster
+has two pins (4), and each side has 6 equations as above: 23 independent ones, followed until the right piston
+reaches its bottom. Welding both shoes would make an equation redundant; pinning them at their contact points
+only would leave two degrees of freedom.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from brakes.planar import (
 )
 from brakes.planar.kinematics import MOST_POSITIONS
 
-_RANK_TOLERANCE = 1e-9  # singular values below this fraction of the largest count as zero
+_RANK_TOLERANCE = 1e-9  # ratio of a singular value to the largest, below which it counts as zero
 _ORIGIN = (0.0, 0.0)
 
 Point = tuple[float, float]
@@ -46,22 +46,22 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class Stage:
-    """One stage of the motion, at S positions.
+    """One stage of the motion of a duo-servo brake, at S positions.
 
     Attributes
     ----------
     mechanism : Mechanism
-        The mechanism, described at the start of the stage.
+        The mechanism, described in its position at the start of the stage.
     position : Position
-        The S positions of its bodies.
+        Positions of the bodies.
     travel : dict of ndarray, shape (S,)
         Piston travels ``"right"``, ``"left"`` from the start of the stage, outward [m].
     turn : ndarray, shape (S,)
-        Turn of the shoe clockwise (stage 1), or of the drum counter-clockwise (stage 2) [rad].
+        Turn of the shoe, clockwise (stage 1), or of the drum, counter-clockwise (stage 2) [rad].
     rank : ndarray of int, shape (S,)
-        Rank of the constraints.
+        Rank of the matrix of constraints.
     least_singular_value : ndarray, shape (S,)
-        Smallest singular value of the constraints over the largest: near 0 a constraint is nearly redundant.
+        Smallest over largest singular value of the constraints: near 0, a constraint is nearly redundant.
 
     Examples
     --------
@@ -81,13 +81,13 @@ class Stage:
 
     @property
     def constraints(self) -> int:
-        """Number of constraint rows; the rank where none is redundant."""
+        """Number of constraint equations; it equals the rank if none is redundant."""
         return self.mechanism.system.constraints
 
 
 @dataclass(frozen=True)
 class Event:
-    """An event of the motion: its stage, the turn [rad] at which it happens, and a sentence.
+    """An event of the shoes' motion: its stage, the turn [rad] at which it happens, and a sentence.
 
     Examples
     --------
@@ -104,22 +104,22 @@ class Event:
 
 @dataclass(frozen=True)
 class Kinematics(Result):
-    """Both stages of a brake's motion.
+    """Motion of a duo-servo brake in both stages, with its events.
 
     Attributes
     ----------
     geometry : DuoServo
         The brake.
     clearance : float
-        Between lining and drum at rest [m].
+        Clearance between lining and drum at rest [m].
     right, left : Stage
-        Stage 1 of the sides.
+        Stage 1 on the right and on the left side.
     drum : Stage
-        Stage 2.
+        Stage 2, in which the shoes turn with the drum.
     events : tuple of Event
-        Each lining reaches the drum; the right piston reaches its bottom.
+        Events: each lining reaches the drum; the right piston reaches its bottom.
     interference : tuple of str
-        Parts that collide, a sentence each.
+        One sentence for each pair of parts that collide.
 
     Examples
     --------
@@ -139,13 +139,13 @@ class Kinematics(Result):
     interference: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"clearance {number(1e3 * self.clearance, 'mm')}"
         yield from (f"{each.name} at {number(np.degrees(each.turn), 'deg')}" for each in self.events)
         yield warned(self.interference)
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings."""
+        """Convert the result to plain numbers, lists and strings."""
         made = super().to_dict()
         for name in ("right", "left", "drum"):
             stage = getattr(self, name)
@@ -155,21 +155,21 @@ class Kinematics(Result):
 
 
 def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> Kinematics:
-    """Follow the brake's parts through both stages.
+    """Follow the parts of a duo-servo brake through both stages of its motion.
 
     Parameters
     ----------
     geometry : DuoServo
-        One brake; no arrays.
+        The brake; a single one, without arrays.
     clearance : float
-        Between lining and drum at rest [m].
+        Clearance between lining and drum at rest [m].
     positions : int
-        Number of positions of each stage.
+        Number of positions in each stage.
 
     Returns
     -------
     Kinematics
-        Positions, rank, events, interference.
+        Positions, rank of the constraints, events and interference.
 
     Raises
     ------
@@ -220,7 +220,7 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
 def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "right") -> Mechanism:
     """Build the mechanism of stage 1 of one side, ``"right"`` or ``"left"``.
 
-    Its loads have no size: they measure the piston's travel and drive the clearance to zero.
+    Its loads have zero magnitude: they measure the piston's travel and drive the clearance to zero.
 
     References
     ----------
@@ -242,7 +242,7 @@ def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "r
 
 
 def build_turning_mechanism(geometry: DuoServo, right_tip: Point, left_tip: Point) -> Mechanism:
-    """Build the mechanism of stage 2, described with the linings seated and the tips at these points [m].
+    """Build the mechanism of stage 2, drawn with seated linings and with the tips at given points [m].
 
     References
     ----------
@@ -273,7 +273,7 @@ def build_turning_mechanism(geometry: DuoServo, right_tip: Point, left_tip: Poin
 
 
 def _piston_side(geometry: DuoServo, side: str, tip: Point) -> tuple[Joint, ...]:
-    """Joints from shoe to cylinder, 6 rows: tip pin, sliding on the tilted face, sliding in the cylinder."""
+    """Make one side's joints from shoe to cylinder: tip pin, slide on the tilted face and in the cylinder."""
     tilt, dummy, piston = geometry.face_tilt, f"{side} dummy", f"{side} piston"
     face = _on_side(side, (np.sin(tilt), np.cos(tilt)))
     return (
@@ -286,17 +286,17 @@ def _piston_side(geometry: DuoServo, side: str, tip: Point) -> tuple[Joint, ...]
 
 
 def _measure(side: str, tip: Point) -> Force:
-    """Load without size that measures the outward travel of a piston."""
+    """Make a load of zero magnitude that measures the outward travel of a side's piston."""
     return Force(side, f"{side} piston", tip, _on_side(side, (1.0, 0.0)), 0.0)
 
 
 def _on_side(side: str, p: Point) -> Point:
-    """A point of the right side at its place on a side."""
+    """Move a point of the right side to a side: mirror it for the left one."""
     return (float(p[0]), float(p[1])) if side == "right" else (-float(p[0]), float(p[1]))
 
 
 def _contact(geometry: DuoServo, c: float) -> Point:
-    """The contact point of the right lining at a clearance c [m]."""
+    """Compute the contact point of the right lining with the drum at a clearance c [m]."""
     radius, angle = geometry.drum_radius - c, geometry.contact_angle
     return radius * np.cos(angle), radius * np.sin(angle)
 
@@ -312,9 +312,9 @@ def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     rank : ndarray of int, shape (S,)
-        Number of independent rows.
+        Number of independent constraint equations.
     least : ndarray, shape (S,)
-        Smallest singular value over the largest.
+        Smallest singular value of the constraints over the largest.
 
     References
     ----------

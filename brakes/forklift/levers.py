@@ -7,14 +7,14 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.inputs.described import Described
 from brakes.common.locking import LEAST_MARGIN
 
 
 class HasLevers:
-    """Base of what has lever arms, some of it at one clearance alone: for `internal_forces`."""
+    """Base of descriptions that give lever arms to `internal_forces`, at a clearance if they need one."""
 
     def find_levers(self, clearance: Numbers | None = None) -> Levers:
         """Find the lever arms at the end of the shoes' motion.
@@ -22,12 +22,12 @@ class HasLevers:
         Parameters
         ----------
         clearance : float or ndarray, optional
-            c_L [m]; a `DuoServo` needs it.
+            Clearance c_L between lining and drum at rest [m]; needed by a `DuoServo`.
 
         Returns
         -------
         Levers
-            For `internal_forces`.
+            Lever arms and directions of the forces.
 
         Raises
         ------
@@ -38,30 +38,30 @@ class HasLevers:
         return self.levers_and_error(clearance)[0]
 
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
-        """The lever arms, and the bound of their error over their size, and of their angles [rad]."""
+        """Find the lever arms, with bounds of their relative errors and of the errors of angles [rad]."""
         raise NotImplementedError
 
 
 @dataclass(frozen=True)
 class Levers(HasLevers):
-    """Lever arms about the drum's centre and directions of the forces, as in the paper's Fig. 6.
+    """Lever arms about the drum's centre and directions of the forces, as in Fig. 6 of Yoo et al. (1997).
 
     Every value may be an array, one entry per case.
 
-    The drum turns counter-clockwise and the right shoe leads. On it act P_L (cos alpha1, -sin alpha1)
-    and Q (cos gamma, sin gamma), on the left one P_T (-cos alpha2, -sin alpha2) and
-    -Q (cos gamma, sin gamma), and the drum's forces: A, C normal and B, D of friction.
+    The drum turns counter-clockwise and the right shoe leads. The right shoe carries P_L (cos alpha1, -sin
+    alpha1) and Q (cos gamma, sin gamma); the left shoe carries P_T (-cos alpha2, -sin alpha2) and
+    -Q (cos gamma, sin gamma). The drum adds normal forces A, C and friction forces B, D.
 
     Parameters
     ----------
     drum_radius : float or ndarray
-        r [m].
+        Inner radius r of the drum [m].
     a1, a2 : float or ndarray
-        Arms of P_L and P_T [m].
+        Lever arms of P_L and P_T [m].
     b1, b2 : float or ndarray
-        Arms of Q on the leading and the trailing shoe [m]; equal, as Q has one line of action.
+        Lever arms of Q on the leading and on the trailing shoe [m]; equal, as Q has one line of action.
     alpha1, alpha2, gamma : float or ndarray
-        Angles of P_L and P_T below, of Q above the horizontal [rad].
+        Angles of P_L and P_T below the horizontal, and of Q above it [rad].
 
     Raises
     ------
@@ -90,7 +90,6 @@ class Levers(HasLevers):
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        together(**vars(self))
         for name, value in (("alpha1 + gamma", self.phi1), ("alpha2 - gamma", self.phi2)):
             bound = "the piston's force and the adjuster's are more than a right angle apart"
             refuse(
@@ -99,7 +98,7 @@ class Levers(HasLevers):
 
     @property
     def in_radii(self) -> Levers:
-        """Levers with all lengths over the drum's radius."""
+        """Copy with all lengths divided by the drum's radius."""
         arms = {name: getattr(self, name) / self.drum_radius for name in ("a1", "a2", "b1", "b2")}
         return replace(self, drum_radius=1.0, **arms)
 
@@ -115,13 +114,13 @@ class Levers(HasLevers):
 
     @property
     def locking_friction(self) -> Numbers:
-        """Friction of the lining at which the brake locks by itself; inf if it never does."""
+        """Friction of the lining at which the brake is self-locking; inf if it never is."""
         sigma = np.minimum(self.a1, self.b2) / self.drum_radius
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(sigma < 1, sigma / np.sqrt((1 - sigma) * (1 + sigma)), np.inf)[()]
 
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
-        """These levers, and the error of their arms and angles: none, as they are given."""
+        """Return these levers, and zero as the error of their arms and angles, which are given."""
         if clearance is not None:
             raise ValueError("clearance: lever arms belong to one position; give it with a DuoServo geometry")
         return self, 0.0

@@ -1,4 +1,4 @@
-"""All three stages in one call: stop of the vehicle, motion of the shoes, internal forces (section 5)."""
+"""Stop, motion of the shoes and internal forces of a forklift's brakes in one call (Yoo et al. 1997)."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from brakes.vehicle import Stop, StopConditions, Truck, stop
 
 @dataclass(frozen=True)
 class Procedure(Result):
-    """Results of the three stages, each carried into the next.
+    """Results of the three stages of a forklift's braking: stop, motion of the shoes, and internal forces.
 
     Attributes
     ----------
     stop : Stop
-        The stop; its torque of one brake goes into the forces.
+        The truck's stop; its torque of one brake is used for the forces.
     motion : ShoeMotion
-        The shoes' motion; its lever arms go into the forces.
+        Motion of the shoes; its lever arms are used for the forces.
     forces : InternalForces
-        The forces.
+        Forces in each front brake.
 
     Examples
     --------
@@ -46,7 +46,7 @@ class Procedure(Result):
     forces: InternalForces
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"stop in {spanned(self.stop.distance, 'm')}"
         yield f"drum turns {spanned(np.degrees(self.motion.drum_turn), 'deg')}"
         yield f"C* {spanned(self.forces.c_star)}"
@@ -54,7 +54,7 @@ class Procedure(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings of all three stages."""
+        """Warnings of all three stages, one sentence each."""
         stops = () if np.all(self.stop.stops) else (self.stop.message,)
         return (*stops, *self.motion.interference, *self.forces.warnings)
 
@@ -67,7 +67,7 @@ def brake_procedure(
     piston_force: Numbers,
     lining_friction: Numbers | None = None,
 ) -> Procedure:
-    """From slope and speed to the force on every part of a brake.
+    """Compute stop, shoe motion and brake forces, from slope and speed to the force on every part.
 
     Parameters
     ----------
@@ -76,11 +76,11 @@ def brake_procedure(
     conditions : StopConditions
         Road, speed and timing of the stop.
     motion : ShoeMotion
-        How the shoes of its front brakes move, from `DuoServo.move_shoes`.
+        Motion of the shoes of the front brakes, from `DuoServo.move_shoes`.
     piston_force : float or ndarray
-        P_T [N].
+        Force P_T of the piston on the trailing shoe [N].
     lining_friction : float or ndarray, optional
-        Friction of the lining, to compare with what the torque needs.
+        Friction of the lining, to compare with the friction that the torque needs.
 
     Returns
     -------

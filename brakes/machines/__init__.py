@@ -1,7 +1,7 @@
 """Brakes whose linings are pressed by one force: bands, discs, plates, cones, blocks and sliding shoes.
 
-Each is a frozen dataclass of its dimensions; `solve_brake` computes its forces, forward or in reverse, from
-the actuating force, the largest pressure or the torque.
+Each brake is a frozen dataclass of its dimensions; `solve_brake` computes its forces, forward or in reverse,
+from the actuating force, the largest pressure or the torque.
 """
 
 from brakes.machines.annulus import Cone, Disc, Plates

@@ -25,14 +25,15 @@ _REMEDY = "leave 1 or more out of 100 parts"
 class Ring(Machine):
     """Base of brakes that rub on a ring; every number may be an array, one entry per case.
 
-    The force of a ring at the largest pressure p, and its moment for a friction of 1, are for each radian
-    p ri (ro - ri) and p ri (ro^2 - ri^2)/2 under uniform wear, p (ro^2 - ri^2)/2 and p (ro^3 - ri^3)/3 under
-    uniform pressure (Budynas and Nisbett, Shigley's Mechanical Engineering Design, sections 16-5 to 16-7).
+    Force and friction moment per radian of a ring, at the largest pressure p and a friction coefficient of 1,
+    are p ri (ro - ri) and p ri (ro^2 - ri^2)/2 under uniform wear, p (ro^2 - ri^2)/2 and p (ro^3 - ri^3)/3
+    under uniform pressure (Budynas and Nisbett, Shigley's Mechanical Engineering Design, sections 16-5 to
+    16-7).
 
     Parameters
     ----------
     inner_radius, outer_radius : float or ndarray
-        Radii of the lining [m].
+        Inner and outer radius of the lining [m].
 
     Raises
     ------
@@ -49,34 +50,34 @@ class Ring(Machine):
     place: ClassVar[Meaning] = Meaning("m", "radius", "mm")
 
     def check(self) -> None:
-        """Refuse an empty ring."""
+        """Check that the outer radius exceeds the inner one."""
         bound = "the lining is empty: it must exceed {other}, {limit}"
         bad, inner = np.asarray(self.outer_radius) <= self.inner_radius, self.inner_radius
         refuse(bad, "outer_radius", self.outer_radius, "m", bound, limit=inner, other="inner_radius")
 
     @property
     def force_per_radian(self) -> Numbers:
-        """Force on a radian of the ring while the largest pressure is 1 Pa [N]."""
+        """Normal force on one radian of the ring at a largest pressure of 1 Pa [N]."""
         inner, width = np.asarray(self.inner_radius), self.outer_radius - np.asarray(self.inner_radius)
         return width * (inner if self.law == "wear" else inner + width / 2)
 
     @property
     def reference_radius(self) -> Numbers:
-        """Effective radius: moment of the friction over the friction [m]."""
+        """Effective radius of the ring: moment of the friction divided by the friction force [m]."""
         i, o = np.asarray(self.inner_radius), np.asarray(self.outer_radius)
         return (o + i) / 2 if self.law == "wear" else 2 * (o * o + o * i + i * i) / (3 * (o + i))
 
     @property
     def rubbing_radius(self) -> Numbers:
-        """Inner radius, as pressure times radius is the same everywhere under wear; else outer one [m]."""
+        """Radius of the largest pressure times radius [m]: the inner one under wear, else the outer one."""
         return self.inner_radius if self.law == "wear" else self.outer_radius
 
     def reach(self) -> tuple[Numbers, Numbers]:
-        """From the inner to the outer radius [m]."""
+        """Return inner and outer radius of the lining [m]."""
         return self.inner_radius, self.outer_radius
 
     def pressure(self, at: Numbers, friction: Numbers) -> Numbers:
-        """Pressure over its largest value, at radii [m]."""
+        """Compute the pressure at radii [m], divided by its largest value."""
         return self.inner_radius / at if self.law == "wear" else np.ones_like(at)
 
 
@@ -89,11 +90,11 @@ class Disc(Ring):
     inner_radius, outer_radius : float or ndarray
         Radii of the pads [m].
     pad_angle : float or ndarray
-        Angle of a pad about the disc's axis [rad]; a whole turn is a ring.
+        Angle of a pad about the disc's axis [rad]; 2 pi for a full ring.
     caliper : {"fixed", "floating"}
-        Whether a piston presses each pad, or one piston the inner pad, and the housing that slides the outer.
+        Whether a piston presses each pad, or one piston the inner pad and the sliding housing the outer pad.
     guide_loss : float or ndarray
-        Share of the piston's force that the slide of a floating caliper keeps from the outer pad.
+        Fraction of the piston's force that friction in a floating caliper's slide keeps from the outer pad.
     pressure_law : {"wear", "pressure"}
         Uniform wear, or uniform pressure.
 
@@ -131,7 +132,7 @@ class Disc(Ring):
     )
 
     def check(self) -> None:
-        """Refuse an empty ring, and a fixed caliper that slides."""
+        """Check that the ring is not empty, and that a fixed caliper has no loss in a slide."""
         super().check()
         one_of("caliper", self.caliper, ("fixed", "floating"))
         bound = 'caliper = "fixed" has no slide'
@@ -139,7 +140,7 @@ class Disc(Ring):
         refuse(bad, "guide_loss", self.guide_loss, "", bound, 'leave it out, or give caliper = "floating"')
 
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
-        """The two pads; see `Machine.linings`."""
+        """Return the linings of the two pads; see `Machine.linings`."""
         drag = friction * self.force_per_radian
         force = self.pad_angle * self.force_per_radian + 0 * friction
         forces = {"normal": force, "abutment": drag * 2 * np.sin(self.pad_angle / 2)}
@@ -158,7 +159,7 @@ class Plates(Ring):
     inner_radius, outer_radius : float or ndarray
         Radii of the linings [m].
     faces : float or ndarray
-        Number of pairs of rubbing faces; all carry the whole force: friction in the splines is left out.
+        Number of pairs of rubbing faces; each carries the whole force: friction in the splines is neglected.
     pressure_law : {"wear", "pressure"}
         Uniform wear, or uniform pressure.
 
@@ -182,7 +183,7 @@ class Plates(Ring):
     pressure_law: Annotated[Literal["wear", "pressure"], Described(meaning=_LAW)] = "wear"
 
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
-        """All plates together; see `Machine.linings`."""
+        """Return all plates as one lining; see `Machine.linings`."""
         force = _TURN * self.force_per_radian + 0 * friction
         return {"plates": Lining(friction * force * self.faces * self.reference_radius, force, force)}
 
@@ -191,12 +192,12 @@ class Plates(Ring):
 class Cone(Ring):
     """A cone brake; every number may be an array, one entry per case.
 
-    The cone is pressed along its axis: friction along the slant while it moves in is left out.
+    The cone is pressed along its axis; friction along the slant while it engages is neglected.
 
     Parameters
     ----------
     inner_radius, outer_radius : float or ndarray
-        Radii of the lining at its small and its large end [m].
+        Radii of the lining at its narrow and its wide end [m].
     width : float or ndarray
         Length of the lining along the axis [m], not along the slant.
     pressure_law : {"wear", "pressure"}
@@ -209,7 +210,7 @@ class Cone(Ring):
 
     Notes
     -----
-    As for a ring, with the torque divided by sin alpha, tan alpha = (ro - ri)/width.
+    Forces as for a flat ring, with the torque divided by sin alpha, where tan alpha = (ro - ri)/width.
 
     References
     ----------
@@ -234,18 +235,18 @@ class Cone(Ring):
 
     @property
     def taper(self) -> Numbers:
-        """Tangent of the angle between lining and axis, and the friction from which the cone sticks."""
+        """Tangent of the angle between lining and axis; from this friction coefficient on the cone sticks."""
         return (self.outer_radius - np.asarray(self.inner_radius)) / self.width
 
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
-        """The cone; see `Machine.linings`."""
+        """Return the lining of the cone; see `Machine.linings`."""
         force = _TURN * self.force_per_radian + 0 * friction
-        normal = force * np.hypot(1.0, 1 / self.taper)  # 1 / sin alpha
+        normal = force * np.hypot(1.0, 1 / self.taper)  # 1 / sin(alpha), the taper being tan(alpha)
         forces = {"normal": normal, "release": force * (friction / self.taper - 1)}
         return {"cone": Lining(friction * normal * self.reference_radius, force, force, reactions=forces)}
 
     def remarks(self, friction: Numbers, reverse: bool) -> Sequence[str]:
-        """Whether it sticks."""
+        """Return a sentence if the cone sticks in its cup when the force is gone."""
         sticks = np.asarray(friction >= self.taper)
         if not sticks.any():
             return ()

@@ -27,8 +27,8 @@ _MOST = 2 * np.pi
 class Band(Machine):
     """A band brake; every number may be an array, one entry per case.
 
-    Forward the drum's surface moves from the second end of the band to the first, so that the second end is
-    tight: the tension, and the pressure with it, falls by exp(-mu wrap) from the tight end to the slack one.
+    Forward, the drum's surface moves from the second end of the band to the first: the second end is
+    tight, and the tension, like the pressure, falls by exp(-mu wrap) from the tight end to the slack one.
 
     Parameters
     ----------
@@ -37,8 +37,8 @@ class Band(Machine):
     wrap : float or ndarray
         Angle phi over which the band touches the drum [rad].
     force_arm, first_arm, second_arm : float or ndarray
-        Arms about the lever's fulcrum of the actuating force, of the first end a, and of the second end s,
-        which lies on the other side [m].
+        Lever arms about the fulcrum [m]: of the actuating force, of the first end a, and of the second end s,
+        which lies on the other side of the fulcrum.
 
     Raises
     ------
@@ -83,7 +83,7 @@ class Band(Machine):
     place: ClassVar[Meaning] = Meaning("rad", "angle from the slack end", "deg")
 
     def check(self) -> None:
-        """Refuse a lever that loosens the band."""
+        """Check that the lever tightens the band."""
         bound = "it must be below {other}, {limit}: the lever would loosen the band"
         bad = np.asarray(self.second_arm) >= self.first_arm
         remedy = "exchange the two ends, or shorten it"
@@ -97,7 +97,7 @@ class Band(Machine):
         return self.drum_radius
 
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
-        """The band; see `Machine.linings`."""
+        """Return the lining of the band; see `Machine.linings`."""
         a, s, angle = self.first_arm, np.asarray(self.second_arm), friction * self.wrap
         tight = self.face_width * np.asarray(self.drum_radius) + 0 * friction
         slack = tight * np.exp(-angle)
@@ -116,7 +116,10 @@ class Band(Machine):
         }
 
     def _held(self, first: Numbers, second: Numbers, force: Numbers) -> dict[str, Numbers]:
-        """Forces on fulcrum and bearing; the ends leave the drum at half of phi - 180 deg to the symmetry."""
+        """Compute the forces on the fulcrum and on the drum's bearing; lever force along the symmetry axis.
+
+        The band's ends leave the drum at an angle of (phi - 180 deg) / 2 to that axis.
+        """
         tilt = (self.wrap - np.pi) / 2
         along, across = (first + second) * np.cos(tilt), (first - second) * np.sin(tilt)
         return {
@@ -125,9 +128,9 @@ class Band(Machine):
         }
 
     def reach(self) -> tuple[Numbers, Numbers]:
-        """From the slack to the tight end [rad]."""
+        """Return the angles of the slack and of the tight end [rad]."""
         return 0.0, self.wrap
 
     def pressure(self, at: Numbers, friction: Numbers) -> Numbers:
-        """Pressure over that at the tight end, at angles from the slack end [rad]."""
+        """Compute the pressure at angles from the slack end [rad], divided by that at the tight end."""
         return np.exp(-friction * (self.wrap - at))

@@ -1,4 +1,4 @@
-"""Block brakes: one or two levers that press a block each on the outside of a drum."""
+"""Block brakes: one or two levers, each of which presses a block on the outside of a drum."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ _BLOCKS = "single: one lever; double: two, each with the force, mirrored so that
 class Block(Machine):
     """A block brake; every number may be an array, one entry per case.
 
-    Forward, the drum's surface moves under the first block towards its fulcrum: with the fulcrum farther
-    from the drum than the friction's line (offset above 0), the friction then helps to press, and the block
-    leads. The second block of a double brake has the surface move away from its fulcrum.
+    Forward means that the drum's surface moves under the first block towards its fulcrum. If the fulcrum is
+    farther from the drum than the friction force (offset above 0), friction then helps to press: the block
+    leads. Under the second block of a double brake the surface moves away from the fulcrum.
 
     Parameters
     ----------
@@ -42,14 +42,14 @@ class Block(Machine):
     block_angle : float or ndarray
         Angle of the block about the drum's axis [rad].
     force_arm : float or ndarray
-        Arm of the actuating force about the fulcrum [m].
+        Lever arm of the actuating force about the fulcrum [m].
     block_arm, offset : float or ndarray
         Distances b and e of the fulcrum from the line through the block's middle and the drum's centre, and
-        from the tangent there, positive away from the drum [m].
+        from the tangent to the drum at the block's middle, positive away from the drum [m].
     blocks : {"single", "double"}
         One lever, or two whose blocks lie on opposite sides of the drum.
     pressure_law : {"wear", "pressure", "short"}
-        Law of the pressure along the block.
+        Pressure distribution along the block.
 
     Raises
     ------
@@ -58,11 +58,11 @@ class Block(Machine):
 
     Notes
     -----
-    Angles x from the block's middle, towards the force; h = r + e; q the pressure over its largest value p.
-    With C, S, Q the integrals of q cos x, q sin x, q over the block and A = w r,
-    force arm = A p (b C + h S - mu (h C - b S - r Q)) where the surface moves towards the fulcrum, with + mu
-    where it moves away; torque = mu A p r Q. Under wear q is as b cos x + h sin x: the lever turns about its
-    fulcrum.
+    Angles x are from the block's middle, towards the force; h = r + e; q is the pressure over its largest
+    value p. With C, S, Q the integrals of q cos x, q sin x, q over the block and A = w r,
+    force arm = A p (b C + h S - mu (h C - b S - r Q)) if the surface moves towards the fulcrum; mu's sign
+    changes where it moves away. torque = mu A p r Q. Under wear q is as b cos x + h sin x: the lever turns
+    about its fulcrum.
 
     References
     ----------
@@ -103,11 +103,11 @@ class Block(Machine):
 
     @property
     def height(self) -> Numbers:
-        """Distance h of the fulcrum from the parallel to the tangent through the drum's centre [m]."""
+        """Distance h = r + e [m] of the fulcrum from the drum's centre, towards the block's middle."""
         return self.drum_radius + np.asarray(self.offset)
 
     def check(self) -> None:
-        """Refuse a block that would lift."""
+        """Check that the whole block presses, under the pressure law of wear."""
         one_of("blocks", self.blocks, ("single", "double"))
         most = np.pi - 2 * np.abs(np.arctan2(self.height, self.block_arm))
         bad = (np.asarray(self.block_angle) >= most) & (self.law == "wear")
@@ -121,13 +121,13 @@ class Block(Machine):
         return self.drum_radius
 
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
-        """The blocks; see `Machine.linings`."""
+        """Return the linings of the one or two blocks; see `Machine.linings`."""
         names = ("block",) if self.blocks == "single" else ("first block", "second block")
         senses = (-1.0, 1.0) if reverse else (1.0, -1.0)
         return {name: self._block(friction, sense) for name, sense in zip(names, senses, strict=False)}
 
     def _block(self, mu: Numbers, sense: float) -> Lining:
-        """A block under which the surface moves towards the fulcrum (sense 1), or away from it (-1)."""
+        """Make the lining of a block; the drum moves towards the fulcrum (sense 1) or away from it (-1)."""
         r, b, h, area = (
             self.drum_radius,
             self.block_arm,
@@ -150,7 +150,7 @@ class Block(Machine):
         return Lining(mu * area * r * Q, force, size, limit, forces)
 
     def integrals(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Integrals C, S, Q of q cos x, q sin x and q over the block."""
+        """Compute the integrals C, S, Q of q cos x, q sin x and q over the block, as in the class's notes."""
         half, b, h = np.asarray(self.block_angle) / 2, self.block_arm, self.height
         chord = 2 * np.sin(half)
         if self.law != "wear":
@@ -160,18 +160,21 @@ class Block(Machine):
         return b * even / peak, h * odd / peak, b * chord / peak
 
     def _peak(self) -> Numbers:
-        """Largest value of b cos x + h sin x on the block [m]."""
-        towards = np.abs(np.arctan2(self.height, self.block_arm))  # angle of its maximum
+        """Compute the largest value of b cos x + h sin x over the block [m], x the angle from its middle.
+
+        Under wear the pressure is in proportion to this.
+        """
+        towards = np.abs(np.arctan2(self.height, self.block_arm))  # angle of the maximum of b cos x + h sin x
         past = np.maximum(towards - np.asarray(self.block_angle) / 2, 0.0)
         return np.hypot(self.block_arm, self.height) * np.cos(past)
 
     def reach(self) -> tuple[Numbers, Numbers]:
-        """From the end at the fulcrum to the other [rad]."""
+        """Return the angles of the block's ends from its middle [rad], first the end at the fulcrum."""
         half = np.asarray(self.block_angle) / 2
         return -half, half
 
     def pressure(self, at: Numbers, friction: Numbers) -> Numbers:
-        """Pressure over its largest value, at angles from the block's middle [rad]."""
+        """Compute the pressure at angles from the block's middle [rad], divided by its largest value."""
         if self.law != "wear":
             return np.ones_like(at)
         return (self.block_arm * np.cos(at) + self.height * np.sin(at)) / self._peak()

@@ -1,7 +1,7 @@
-"""The pattern of a brake whose linings are pressed by one force, and its solution.
+"""Base class of brakes whose linings are pressed by one force, and the solution of their forces.
 
-The pressure on a lining is its largest value times a known shape, so that its torque and the force that
-presses it are proportional to that value. A brake says what they are at 1 Pa: the rest follows here.
+The pressure on a lining is its largest value times a known shape, so that torque and actuating force are
+proportional to that value. A brake computes both at 1 Pa; this module scales them to the given load.
 """
 
 from __future__ import annotations
@@ -17,35 +17,35 @@ import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, not_negative, together
 from beamdyn.common.inputs.checks import flag, kind, one_of, refuse
-from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.meanings import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned
 from brakes.common.loads import take_load
 from brakes.common.locking import LEAST_MARGIN, SlidesOrLocks
 
 _EPS = np.finfo(float).eps
-_STEP = 1e-30  # imaginary part of a friction, of which functions without differences give the derivative
-_ROUNDINGS = 16.0  # operations whose rounding adds up in a lining's force
+# Imaginary part of the friction for complex-step derivatives, which take no difference of values.
+_STEP = 1e-30
+_ROUNDINGS = 16.0  # number of rounding errors that add up in a lining's force
 
 
 @dataclass(frozen=True)
 class Lining:
-    """What a lining needs and gives while its largest pressure is 1 Pa, as functions of the friction.
+    """Torque and forces of a lining at a largest pressure of 1 Pa, for a given friction.
 
     Parameters
     ----------
     torque : float or ndarray
-        Torque [N m].
+        Friction torque of the lining [N m].
     force : float or ndarray
-        Actuating force that it takes [N]: of zero or below, the lining locks.
+        Actuating force that this pressure needs [N]; the lining locks if it is zero or negative.
     size : float or ndarray
-        Sum of the sizes of the terms of `force` [N], for its rounding.
+        Sum of the absolute values of the terms of `force` [N], which bounds its rounding error.
     locks_at : float or ndarray
-        Friction at which it locks; inf if it never does.
+        Friction coefficient at which the lining locks; inf if it never does.
     reactions : mapping of str to float or ndarray
-        Forces by the names in the brake's `reactions` [N].
+        Forces [N] by name, as listed in the brake's `reactions`.
     share : float or ndarray
-        Share of the actuating force that reaches this lining.
+        Fraction of the actuating force that reaches this lining.
     """
 
     torque: Numbers
@@ -59,19 +59,19 @@ class Lining:
 class Machine(ABC):
     """Base of brakes whose linings are pressed by one force: frozen dataclasses of described numbers.
 
-    A brake has a field for each input, says below what is particular to it, and gives its linings. A brake
-    whose pressure may follow several laws has a field `pressure_law`, which names one of its `laws`.
+    A subclass has a field for each input, overrides the class attributes below, and gives its linings. If its
+    pressure may follow several laws, it has a field `pressure_law`, the name of one of its `laws`.
 
     Attributes
     ----------
     grips : str
-        What locks in the words of messages, such as "band".
+        Name in messages of the part that locks, such as "band".
     reactions : mapping of str to Meaning
         Meaning of the forces on a lining's parts.
     laws : mapping of str to str
-        Words for each law of the pressure, by its name; none if there is only one.
+        Description of each pressure law, by its name; empty if there is only one.
     place : Meaning
-        What the pressure is plotted over.
+        Coordinate along the lining over which the pressure is plotted.
 
     Examples
     --------
@@ -89,55 +89,53 @@ class Machine(ABC):
         if self.laws:
             one_of("pressure_law", self.law, tuple(self.laws))
         keep_checked(self)
-        together(**{name: v for name in descriptions(type(self)) if _is_number(v := getattr(self, name))})
         self.check()
 
     @property
     def law(self) -> str:
-        """Name of the law of the pressure; empty if there is only one."""
+        """Name of the chosen pressure law; empty if the brake has only one."""
         return getattr(self, "pressure_law", "")
 
     @abstractmethod
     def check(self) -> None:
-        """Refuse numbers that do not go together; each is within the bounds of its description already."""
+        """Raise ValueError if inputs contradict each other; each one's own bounds are already checked."""
 
     @abstractmethod
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
-        """Linings by name, for a friction that may be complex: formulas without case or absolute value."""
+        """Compute the linings by name.
+
+        The friction may be complex: no branches depend on it, and no absolute value is taken of it.
+        """
 
     @property
     @abstractmethod
     def reference_radius(self) -> Numbers:
-        """Radius that C* refers to [m]."""
+        """Radius of the brake factor C* = torque / (force radius) [m]."""
 
     @property
     def rubbing_radius(self) -> Numbers:
-        """Radius whose product with the largest pressure is the largest of pressure times radius [m]."""
+        """Radius [m] that multiplies the largest pressure in the largest product of pressure and radius."""
         return self.reference_radius
 
     @abstractmethod
     def reach(self) -> tuple[Numbers, Numbers]:
-        """Least and largest place on a lining, in the SI unit of `place`."""
+        """Return the least and the largest coordinate of a lining, in the SI unit of `place`."""
 
     @abstractmethod
     def pressure(self, at: Numbers, friction: Numbers) -> Numbers:
-        """Pressure over its largest value, at places on a lining."""
+        """Compute the pressure at coordinates along a lining, divided by its largest value."""
 
     def pressure_on(self, index: int, at: Numbers, friction: Numbers, reverse: bool) -> Numbers:
-        """As `pressure`, on the lining of that number; the same on all unless a brake says otherwise."""
+        """Compute `pressure` for one of the linings by its index; subclasses may distinguish them."""
         return self.pressure(at, friction)
 
     def remarks(self, friction: Numbers, reverse: bool) -> Sequence[str]:
-        """What else a designer must know at a friction, forward or in reverse: one sentence each."""
+        """Return sentences on what else a designer must know at a friction, forward or in reverse."""
         return ()
 
     def with_law(self, law: str) -> Machine:
-        """Copy the brake with another law of the pressure; raises ValueError where that is impossible."""
+        """Copy the brake with another pressure law; raises ValueError where that is impossible."""
         return replace(self, pressure_law=law)  # type: ignore[type-var]
-
-
-def _is_number(value: object) -> bool:
-    return value is not None and not isinstance(value, str)
 
 
 @dataclass(frozen=True)
@@ -147,11 +145,11 @@ class LiningResult:
     Attributes
     ----------
     name : str
-        Its name.
+        Name of the lining.
     torque, peak_pressure : ndarray
         Torque [N m], largest pressure [Pa].
     reactions : dict of str to ndarray
-        Forces by the names in the brake's `reactions` [N].
+        Forces [N] by name, as listed in the brake's `reactions`.
 
     Examples
     --------
@@ -178,7 +176,7 @@ class MachineResult(SlidesOrLocks):
     brake : Machine
         The brake.
     reverse : bool
-        Whether it turns backward.
+        Whether the brake turns backward.
     friction : ndarray
         Coefficient of friction.
     force, torque, peak_pressure : ndarray
@@ -190,11 +188,11 @@ class MachineResult(SlidesOrLocks):
     locking_friction, margin : ndarray
         Friction at which the brake locks, inf if it never does; 1 - friction / locking friction.
     locked : ndarray of bool
-        Whether the friction is past self-locking, or at it up to a margin of 5e-13 or rounding.
+        Whether the friction is at or past self-locking, up to a relative margin of 5e-13 or to rounding.
     error : ndarray
-        Bound of the relative error of torque, force and pressure: rounding, which grows as 1 / margin.
+        Bound of the relative rounding error of torque, force and pressure, which grows as 1 / margin.
     linings : tuple of LiningResult
-        The linings one by one.
+        Results of each lining.
 
     Examples
     --------
@@ -221,11 +219,11 @@ class MachineResult(SlidesOrLocks):
 
     @property
     def grips(self) -> str:  # type: ignore[override]
-        """Name of the part that locks, as messages have it."""
+        """Name in messages of the part that locks."""
         return self.brake.grips
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{type(self.brake).__name__}, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
         yield error_at_most(self.error)
@@ -252,7 +250,7 @@ def solve_brake(
     force, peak_pressure, torque : float or ndarray, optional
         Exactly one of: actuating force [N], largest pressure on any lining [Pa], torque [N m].
     reverse : bool
-        Whether it turns backward.
+        Whether the brake turns backward.
 
     Returns
     -------
@@ -315,19 +313,20 @@ def solve_brake(
 
 
 def _locks(lining: Lining) -> Numbers:
-    """Whether a lining locks, or is so near to it that rounding would say."""
+    """Tell for each case whether a lining locks, or is so near to it that rounding would decide."""
     return lining.force <= max(LEAST_MARGIN, _ROUNDINGS * _EPS) * lining.size
 
 
 def _torque_per_force(brake: Machine, mu: Numbers, reverse: bool, locked: Numbers) -> tuple[Any, Any]:
-    """Torque at 1 N [m], and its derivative with respect to the friction [m]; nan where it locks."""
+    """Compute torque per actuating force, and its derivative by friction [m]; nan if the brake locks."""
     stepped = brake.linings(np.asarray(mu) + 1j * _STEP, reverse).values()
     gain = sum(each.share * each.torque / np.where(locked, 1.0, each.force) for each in stepped)
-    torque = np.where(np.asarray(mu) == 0, 0.0, gain.real)  # without friction what is left is of the step
+    # Without friction only the rounding of the imaginary step would be left.
+    torque = np.where(np.asarray(mu) == 0, 0.0, gain.real)
     return np.where(locked, np.nan, torque), np.where(locked, np.nan, gain.imag / _STEP)
 
 
 def _pressed(name: str, lining: Lining, pressure: Numbers) -> LiningResult:
-    """A lining at its largest pressure [Pa]."""
+    """Scale a lining's torque and forces to its largest pressure [Pa]."""
     forces = {each: value * pressure for each, value in lining.reactions.items()}
     return LiningResult(name, (lining.torque * pressure)[()], pressure[()], forces)

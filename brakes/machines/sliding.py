@@ -1,17 +1,17 @@
 """Drum brakes whose shoes slide on a flat abutment, with contact on one side only.
 
-Axes and angles as in `brakes.drum`. A rigid shoe that no pin holds presses with p0 max(0, sin(alpha -
-delta)): where the lining would have to pull, it lifts. Its end at (b, -c) slides along the abutment without
-friction: the forces along its face vanish, and the moments about that end. Eliminating p0 leaves one
-equation,
+Axes and angles are those of `brakes.drum`. A rigid shoe that no pin holds presses with p0 max(0, sin(alpha -
+delta)): it lifts where the lining would have to pull. Its end at (b, -c) slides along the abutment without
+friction: the forces along the abutment's face, and the moments about that end, add up to zero. Eliminating p0
+leaves one equation for the angle delta,
 
     R(delta) = int max(0, sin(alpha - delta)) w(alpha) d alpha = 0,   w = w0 + w1 cos(alpha) + w2 sin(alpha).
 
-It has one solution if w has opposite signs at the ends of the lining. For w, a shifted cosine, then
-vanishes once there, at some alpha0. Let delta solve it, and delta' exceed it: the ratio of the sine of
-delta' to that of delta increases with alpha, and with its value q at alpha0, R(delta') = R(delta') - q
-R(delta) is an integral of terms of the sign that w has beyond alpha0. So R vanishes once, and halving finds
-it. Where the signs are equal, the shoe finds no hold: it is said to lock.
+It has one solution if w has opposite signs at the ends of the lining. Then w, a shifted cosine, has
+one zero there, alpha0. Let delta be a solution and delta' be larger. The ratio
+sin(alpha - delta') / sin(alpha - delta) increases with alpha and is q at alpha0, so R(delta') = R(delta') - q
+R(delta) is an integral of terms that have the sign of w beyond alpha0. So R has one zero, and bisection finds
+it. If w has equal signs at both ends, nothing holds the shoe, and it is reported as locked.
 """
 
 from __future__ import annotations
@@ -30,10 +30,12 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.meanings import Meaning
 from brakes.machines.machine import Lining, Machine
 
-_HALVINGS = 56  # of an angle below 2 pi, to its rounding
-_FRICTIONS = np.linspace(0.0, 3.0, 61)  # among which self-locking is looked for
-_LEAST_CONTACT = 1e-3  # [rad] below which a lining touches at its edge alone, and nothing holds the shoe
-_TURN_STEP = 1e-30  # imaginary part of an angle, for derivatives
+_HALVINGS = 56  # number of bisections, which reduce an angle below 2 pi to its rounding
+_FRICTIONS = np.linspace(0.0, 3.0, 61)  # friction coefficients among which self-locking is sought
+# Angle of contact [rad] below which the lining counts as touching at its edge only, where no pressure
+# balances the shoe.
+_LEAST_CONTACT = 1e-3
+_TURN_STEP = 1e-30  # imaginary part of an angle, for complex-step derivatives
 _SHOES = "single: one shoe, which leads forward; simplex: one leads, one trails; duplex: both lead forward"
 _LEADS = MappingProxyType({"single": (True,), "simplex": (True, False), "duplex": (True, True)})
 
@@ -47,15 +49,16 @@ class Sliding(Machine):
     drum_radius, face_width : float or ndarray
         Inner radius of the drum r, width of the lining w [m].
     lining_start, lining_end : float or ndarray
-        Angles of the lining's ends from straight down, where the abutment is [rad].
+        Angles of the lining's ends, measured from straight down, where the abutment is [rad].
     abutment_offset, abutment_depth : float or ndarray
-        Where the shoe rests on its abutment: b beside the line of symmetry, c below the centre [m].
+        Point where the shoe rests on its abutment: distance b from the line of symmetry, depth c below the
+        drum's centre [m].
     force_arm : float or ndarray
         Height a of the actuating force above the drum's centre [m].
     abutment_angle : float or ndarray
-        Angle psi of the abutment's force above the actuating force's direction [rad].
+        Angle psi from the direction of the actuating force up to that of the abutment's force [rad].
     shoes : {"single", "simplex", "duplex"}
-        Which shoes there are, each pressed by the same force.
+        Number of shoes and whether they lead or trail; each is pressed by the same force.
 
     Raises
     ------
@@ -108,7 +111,7 @@ class Sliding(Machine):
     place: ClassVar[Meaning] = Meaning("rad", "angle from straight down", "deg")
 
     def check(self) -> None:
-        """Refuse an empty lining."""
+        """Check that the lining's end is past its start."""
         one_of("shoes", self.shoes, tuple(_LEADS))
         start, end = np.asarray(self.lining_start), np.asarray(self.lining_end)
         bound = "the lining is empty: it must exceed {other}, {limit}"
@@ -121,32 +124,32 @@ class Sliding(Machine):
 
     @property
     def arm(self) -> Numbers:
-        """Arm a + c of the actuating force about the abutment [m]."""
+        """Lever arm a + c of the actuating force about the abutment [m]."""
         return self.force_arm + np.asarray(self.abutment_depth)
 
     def reach(self) -> tuple[Numbers, Numbers]:
-        """Ends of the lining [rad]."""
+        """Return the angles of the lining's ends from straight down [rad]."""
         return self.lining_start, self.lining_end
 
     def leads(self, reverse: bool) -> tuple[bool, ...]:
-        """Whether each shoe leads."""
+        """Tell for each shoe whether it leads, forward or in reverse."""
         return tuple(leads is not reverse for leads in _LEADS[self.shoes])
 
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
-        """The shoes; see `Machine.linings`."""
+        """Return the linings of the shoes; see `Machine.linings`."""
         leads = self.leads(reverse)
         return {f"shoe {i + 1}, {_word(each)}": self._shoe(friction, each) for i, each in enumerate(leads)}
 
     def pressure(self, at: Numbers, friction: Numbers) -> Numbers:
-        """Pressure on a shoe that leads, over its largest value."""
+        """Compute the pressure on a leading shoe at angles from straight down [rad], over its largest."""
         return self._pressure(at, friction, leads=True)
 
     def pressure_on(self, index: int, at: Numbers, friction: Numbers, reverse: bool) -> Numbers:
-        """Pressure on a shoe, over its largest value."""
+        """Compute the pressure on shoe `index` at angles from straight down [rad], over its largest value."""
         return self._pressure(at, friction, self.leads(reverse)[index])
 
     def remarks(self, friction: Numbers, reverse: bool) -> Sequence[str]:
-        """Where a lining lifts, of one case."""
+        """Say where the lining of a shoe touches if a part of it lifts; only for a single case."""
         said = []
         for leads in dict.fromkeys(self.leads(reverse)):
             delta = self.zero(np.asarray(friction), leads)
@@ -159,7 +162,7 @@ class Sliding(Machine):
         return said
 
     def zero(self, friction: Numbers, leads: bool) -> np.ndarray:
-        """Angle delta at which the pressure vanishes [rad]; nan where nothing holds the shoe."""
+        """Find the angle delta at which the pressure is 0 [rad]; nan where no pressure balances the shoe."""
         mu, s = np.real(friction), -1.0 if leads else 1.0
         first, last = self._weight(self.lining_start, mu, s), self._weight(self.lining_end, mu, s)
         low = self.lining_start - np.pi + 0 * first
@@ -174,13 +177,13 @@ class Sliding(Machine):
 
     @cached_property
     def locking(self) -> Mapping[bool, Numbers]:
-        """Friction from which a leading shoe, and a trailing one, locks; inf if none up to 3."""
+        """Locking friction by whether the shoe leads (True) or trails (False); inf if it is above 3."""
         return {leads: self._locking(leads) for leads in (True, False)}
 
     def _locking(self, leads: bool) -> Numbers:
-        """Friction at the first actuating force that is not positive, by halving.
+        """Find by bisection the smallest friction at which the actuating force is not positive.
 
-        Where nothing holds the shoe there is no force; that is no locking.
+        Where no distribution of pressure balances the shoe, the force is nan; that does not count as locking.
         """
 
         def holds(mu: np.ndarray) -> np.ndarray:
@@ -200,12 +203,18 @@ class Sliding(Machine):
         return np.where(free.all(axis=0), np.inf, high)
 
     def _force(self, mu: np.ndarray, leads: bool) -> np.ndarray:
-        """Actuating force while p0 is 1 Pa, over area [-]; nan where nothing holds the shoe."""
+        """Compute the actuating force over w r times the scale p0 of the pressure [-]; nan without balance.
+
+        There is no balance where no distribution of pressure keeps the shoe in equilibrium.
+        """
         s, delta = -1.0 if leads else 1.0, self.zero(mu, leads)
         return self._moment(self._integrals(delta), mu, s) / self.arm
 
     def _shoe(self, mu: Numbers, leads: bool) -> Lining:
-        """A shoe at the zero of its pressure; the derivative of that zero by one step of Newton's method."""
+        """Make the lining of one shoe.
+
+        One Newton step on the zero of the pressure carries its complex-step derivative.
+        """
         s, delta = -1.0 if leads else 1.0, self.zero(mu, leads)
         held = np.isfinite(delta)
         delta = np.where(held, delta, self.lining_start)
@@ -216,12 +225,14 @@ class Sliding(Machine):
         force = area * self._moment(found, mu, s) / self.arm
         b, c, r = self.abutment_offset, self.abutment_depth, self.drum_radius
         far = np.abs(b) + c
-        size = 2 * area / self.arm * (far + np.abs(mu) * (r + far))  # of the terms of the integrals, too
+        # The size also bounds the rounding of the terms of the integrals.
+        size = 2 * area / self.arm * (far + np.abs(mu) * (r + far))
         nx, ny, tx, ty = -area * S, area * C, s * mu * area * C, s * mu * area * S
         psi = self.abutment_angle
         abutment = -(force + nx + tx) * np.cos(psi) - (ny + ty) * np.sin(psi)
         forces = {"normal_x": nx, "normal_y": ny, "friction_x": tx, "friction_y": ty, "abutment": abutment}
-        force = np.where(held, force, -1.0)  # what nothing holds has no numbers, as what locks
+        # A shoe that no pressure balances has no numbers; a negative force marks it as locked.
+        force = np.where(held, force, -1.0)
         torque, size = np.where(held, mu * area * r * K, np.nan), np.where(held, np.real(size), 1.0)
         return Lining(torque, force, size, self.locking[leads] + 0 * np.real(delta), forces)
 
@@ -230,18 +241,18 @@ class Sliding(Machine):
         return np.maximum(np.sin(at - delta), 0.0) / self._peak(delta)
 
     def _contact(self, delta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Ends of the contact [rad]."""
+        """Return the angles between which the lining touches the drum [rad]."""
         at = np.real(delta)
         return np.maximum(self.lining_start, at), np.minimum(self.lining_end, at + np.pi)
 
     def _peak(self, delta: np.ndarray) -> np.ndarray:
-        """Largest value of the sine on the contact."""
+        """Compute the largest value of sin(alpha - delta), the pressure's shape, where the lining touches."""
         first, last = (each - np.real(delta) for each in self._contact(delta))
         inside = (first <= np.pi / 2) & (last >= np.pi / 2)
         return np.where(inside, 1.0, np.maximum(np.sin(first), np.sin(last)))
 
     def _integrals(self, delta: np.ndarray) -> tuple[Any, Any, Any]:
-        """Integrals of sin(x - delta), and of it times sin x and cos x, over the contact."""
+        """Integrate the pressure's shape sin(x - delta), alone and times sin x or cos x, over the contact."""
         e1, e2 = self._contact(delta)
         wide = (np.sin(2 * e2 - delta) - np.sin(2 * e1 - delta)) / 2
         high = (np.cos(2 * e2 - delta) - np.cos(2 * e1 - delta)) / 2
@@ -250,18 +261,21 @@ class Sliding(Machine):
         return np.cos(e1 - delta) - np.cos(e2 - delta), S, C
 
     def _moment(self, integrals: tuple[Any, Any, Any], mu: Numbers, s: float) -> Any:
-        """Moment of pressure and friction about the abutment, over p0 and area [m]."""
+        """Compute the moment [m] of pressure and friction about the abutment over p0 and the area w r.
+
+        The scale p0 of the pressure is that of this module, w the width and r the radius of the drum.
+        """
         (K, S, C), b, c = integrals, self.abutment_offset, self.abutment_depth
         return c * S - b * C + s * mu * (self.drum_radius * K - b * S - c * C)
 
     def _balance(self, integrals: tuple[Any, Any, Any], mu: Numbers, s: float) -> Any:
-        """Residual [m] of the two equations after p0 is eliminated; linear in the integrals."""
+        """Compute the residual [m] of force and moment balance per pressure p0; linear in the integrals."""
         (_, S, C), psi = integrals, self.abutment_angle
         along = np.sin(psi) * (S - s * mu * C) + np.cos(psi) * (C + s * mu * S)
         return along * self.arm - np.sin(psi) * self._moment(integrals, mu, s)
 
     def _weight(self, alpha: Numbers, mu: Numbers, s: float) -> Any:
-        """The weight w at an angle: the balance of a pressure at that angle alone."""
+        """Compute the weight w at an angle: the residual of a pressure that acts at that angle only."""
         return self._balance((1.0, np.sin(alpha), np.cos(alpha)), mu, s)
 
     def _residual(self, delta: np.ndarray, mu: Numbers, s: float) -> Any:

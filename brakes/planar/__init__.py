@@ -1,7 +1,7 @@
-"""Statics of planar mechanisms that names what is loose and what is undetermined.
+"""Statics of planar mechanisms, with a diagnosis of what is loose and of what is statically undetermined.
 
-`JOINTS` and `LOADS` list all kinds: files, forms and drawings take them from there.  `Joint` and `Load` tell
-how to write a new one.
+`JOINTS` and `LOADS` list all kinds; files, forms and drawings are made from these lists.  The docstrings of
+`Joint` and `Load` tell how to write a new one.
 """
 
 from brakes.planar.freebody import Action, free_body

@@ -1,4 +1,4 @@
-"""Free-body diagrams: all that acts on one body."""
+"""Free-body diagrams: all forces and couples that act on one body."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from brakes.planar.statics import Equilibrium
 
 
 class Action(NamedTuple):
-    """Force or couple of a joint or load on a body.
+    """A force or a couple that a joint or load exerts on a body.
 
     name : str
-        The joint or load; "friction of" it for its friction.
+        Name of the joint or load; "friction of" and the name for its friction.
     at : ndarray, shape (2,)
-        The point of the force [m]; nan for a couple.
+        Point of application [m]; nan for a couple.
     force : ndarray, shape (2,)
-        The force [N]; nan where it is not determined.
+        The force [N]; nan if it is not determined.
     couple : float
-        The couple, anticlockwise positive [N m].
+        The couple [N m], positive anticlockwise.
 
     Examples
     --------
@@ -40,21 +40,21 @@ class Action(NamedTuple):
 
 
 def free_body(equilibrium: Equilibrium, body: str, index: int = 0) -> tuple[Action, ...]:
-    """All that acts on a body, or on `GROUND`, at one position of an equilibrium.
+    """List all forces and couples on a body, or on `GROUND`, at one position of an equilibrium.
 
     Parameters
     ----------
     equilibrium : Equilibrium
-        From `solve` or `solve_with_friction`.
+        Result of `solve` or `solve_with_friction`.
     body : str
         The body.
     index : int
-        Which of several positions.
+        Index of the position, if there are several.
 
     Returns
     -------
     tuple of Action
-        Joints, then loads, then friction; forces and moments of all add up to zero.
+        Actions of joints, then of loads, then of friction; all forces and moments add up to zero.
 
     References
     ----------
@@ -94,7 +94,7 @@ def free_body(equilibrium: Equilibrium, body: str, index: int = 0) -> tuple[Acti
 
 
 def _sum(name: str, actions: list[Action]) -> list[Action]:
-    """The two components of a pin as one force; anything else as it is."""
+    """Add the two components of a pin to one force; leave all else as it is."""
     if len(actions) != 2 or not np.array_equal(actions[0].at, actions[1].at):
         return actions
     return [Action(name, actions[0].at, actions[0].force + actions[1].force, 0.0)]

@@ -1,4 +1,4 @@
-"""Equilibrium at the onset of motion, with friction in pivots, slots and contacts."""
+"""Equilibrium at the onset of motion, with Coulomb friction in pivots, slots and contacts."""
 
 from __future__ import annotations
 
@@ -13,27 +13,30 @@ from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.statics import Balance, Equilibrium, balance_at, collect_result, solve, tell_where
 from brakes.planar.system import System, check_moves, decompose, join_names, rank_tolerance, times
 
-_RISE = (0.25, 0.5, 0.75, 1.0)  # load steps: parts of the full coefficients
-_SETTLED = 1e-6  # relative size of Newton's last step, above its rounding where friction nearly jams
-_JAMMED = 1e9  # forces, over those without friction, that count as jammed
+_RISE = (0.25, 0.5, 0.75, 1.0)  # fractions of the friction coefficients, as load steps
+# Relative size of Newton's last step; where friction nearly jams, rounding makes smaller steps impossible.
+_SETTLED = 1e-6
+# Ratio of the forces with friction to those without, above which the mechanism counts as jammed.
+_JAMMED = 1e9
 _TINY = np.finfo(float).tiny
-_UNPRESSED = 1e-7  # force, over the largest, up to which a joint counts as pressing with none
-_NOTHING = 1e-12  # force, over the largest, whose direction is rounding
-_DISTURBANCE = 1e-3  # couple that disturbs a body, over the largest force and the length
+_UNPRESSED = 1e-7  # force relative to the largest, up to which a joint counts as pressing with none
+_NOTHING = 1e-12  # force relative to the largest, below which its direction is rounding
+_DISTURBANCE = 1e-3  # couple that disturbs a body, over the largest force and the length of the mechanism
 
 
 @dataclass(frozen=True)
 class FrictionalEquilibrium:
-    """Equilibrium with friction in either direction of motion, and without.
+    """Equilibrium of a mechanism with friction, for both directions of motion, and without friction.
 
     Parameters
     ----------
     squeeze, release : Equilibrium
-        While the driver's coordinate grows, and while it diminishes.  Where no unknown load of the direction
-        that it has without friction moves the mechanism this way, the status is "self-locking".  The load
-        then acts the other way; where the mechanism jams, so that no load moves it, all forces are nan.
+        Equilibria with friction while the driver's coordinate grows, and while it decreases.  If no unknown
+        load with its direction without friction can move the mechanism this way, the status is
+        "self-locking".  The load then acts in the opposite direction; if the mechanism jams, so that no load
+        moves it, all forces are nan.
     without : Equilibrium
-        Without friction.
+        Equilibrium without friction.
 
     Examples
     --------
@@ -50,27 +53,28 @@ class FrictionalEquilibrium:
 
     @property
     def ways(self) -> dict[str, Equilibrium]:
-        """All three by their names: "without friction", "squeezing", "releasing"."""
+        """The three equilibria by name: "without friction", "squeezing", "releasing"."""
         return {"without friction": self.without, "squeezing": self.squeeze, "releasing": self.release}
 
 
 def solve_with_friction(
     mechanism: Mechanism, driver: str, position: Position | None = None
 ) -> FrictionalEquilibrium:
-    """Reactions and unknown amplitudes while the mechanism begins to move, or moves slowly.
+    """Compute reactions and unknown amplitudes while the mechanism begins to move, or moves slowly.
 
     A pivot of radius r resists with the couple r mu/sqrt(1 + mu^2) |reaction|, a contact or slot with the
-    force mu |reaction|, each against the relative velocity of a motion by the driver.  Newton's method;
-    friction grows from zero, so that a branch which ends in self-locking is seen.
+    force mu |reaction|, each against the relative velocity of the motion that the driver causes.  It is
+    solved by Newton's method with friction that grows from zero, so that a branch which ends in self-locking
+    is noticed.
 
     Parameters
     ----------
     mechanism : Mechanism
-        The mechanism, of mobility 1 and determined without friction.
+        The mechanism, of mobility 1 and statically determined without friction.
     driver : str
-        The load whose growing coordinate is the squeeze.
+        Name of the load whose coordinate grows while squeezing.
     position : Position, optional
-        Where it is, if not at the assembled drawing.
+        Position of the bodies; by default the assembled drawing.
 
     Returns
     -------
@@ -107,11 +111,12 @@ def solve_with_friction(
     balance, system = balance_at(mechanism, position), mechanism.system
     gradient = balance.rows.gradient
     motion = decompose(gradient[:, : system.constraints], system.rounding).vt[:, -1]
-    rate = times(gradient, motion)  # velocities are those per unit motion
+    rate = times(gradient, motion)  # velocities per unit of motion
     driven, slip = rate[:, [system.loads[driver]]], rate[:, list(system.friction.values())]
     check_moves(system, driver, driven)
     still = rank_tolerance(system.rounding)
-    sliding = np.where(np.abs(slip) > still, np.sign(slip * driven), 0.0)  # while the coordinate grows
+    # These are the signs of sliding while the driver's coordinate grows.
+    sliding = np.where(np.abs(slip) > still, np.sign(slip * driven), 0.0)
     squeeze, release = (_branch(mechanism, position, balance, without, s * sliding) for s in (1.0, -1.0))
     return FrictionalEquilibrium(squeeze, release, without)
 
@@ -119,22 +124,22 @@ def solve_with_friction(
 def _branch(
     mechanism: Mechanism, position: Position, balance: Balance, without: Equilibrium, sliding: np.ndarray
 ) -> Equilibrium:
-    """Equilibrium with friction that opposes sliding of the given signs."""
+    """Solve the equilibrium with friction that opposes sliding with the given signs."""
     system = mechanism.system
     start = np.atleast_2d(without.multiplier / system.unit)
-    load = int(balance.unknown[-1])  # mobility 1 and a determined equilibrium leave one unknown load
+    load = int(balance.unknown[-1])  # with mobility 1 and a determined equilibrium, one load is unknown
     law = -sliding * system.coefficient
     unpressed, jams = _jams_when_disturbed(system, balance, start, law)
     law = np.where(unpressed, 0.0, law)
     multiplier, jammed = _newton(system, balance, start, law)
-    # Where a load that is not zero without friction acts the other way with it.
+    # A load that is not zero without friction may act in the opposite direction with friction: it locks.
     zero = rank_tolerance(system.rounding) * np.maximum(*(np.abs(x).max(axis=1) for x in (start, multiplier)))
     reversed_ = (np.abs(start[:, load]) > zero) & (multiplier[:, load] * np.sign(start[:, load]) < -zero)
-    multiplier[jammed] = start[jammed]  # finite placeholders: the result has nan there
+    multiplier[jammed] = start[jammed]  # finite placeholders, replaced by nan in the result
     forces = decompose(balance.matrix, system.rounding)
     regularity = decompose(_friction(system, balance, multiplier, law)[1], system.rounding).s
     kept = regularity[:, -1] / regularity[:, 0]
-    jammed |= kept <= rank_tolerance(system.rounding)  # nearer than this, rounding would decide
+    jammed |= kept <= rank_tolerance(system.rounding)  # nearer to singular than this, rounding would decide
     multiplier[jammed] = start[jammed]
     result = collect_result(position, balance, forces, multiplier, jammed, kept)
     if (jams & ~jammed).any():
@@ -154,7 +159,8 @@ def _branch(
         )
     if not words:
         return result
-    if set(result.open_or_slack) - {name}:  # a cable that would have to push back is what locks
+    # A cable that would have to push back is the locking load itself: it is not reported again.
+    if set(result.open_or_slack) - {name}:
         return replace(result, message=joined("; ", (result.message, *words)))
     return replace(result, status="self-locking", message="; ".join(words))
 
@@ -162,11 +168,11 @@ def _branch(
 def _jams_when_disturbed(
     system: System, balance: Balance, start: np.ndarray, law: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Frictions (S, F) of joints that press with no force, and where (S,) the least disturbance jams them.
+    """Find joints with friction (S, F) that press with no force, and positions (S,) that disturbances jam.
 
-    Where loads act exactly in line, a joint presses with no force, whose direction is rounding.  There may be
-    two equilibria then: without pressure, and jammed.  The latter needs a disturbance, however small, such as
-    an offset of a load: a couple on a body, tried on each body in either sense.
+    If loads act exactly in line, a joint may press with no force, whose direction is then only rounding.
+    There can be two equilibria: without pressure, and jammed.  The jammed one needs a disturbance, however
+    small, such as an offset of a load. It is modelled by a couple on each body in turn, in either sense.
     """
     small = _pressing(system, start) <= _UNPRESSED
     multiplier, jammed = _newton(system, balance, start, np.where(small, 0.0, law))
@@ -182,14 +188,14 @@ def _jams_when_disturbed(
             offset[:, [coordinate]] = sense * size
             without = _newton(system, balance, multiplier, np.where(unpressed, 0.0, law), offset)[0]
             pressed = unpressed & (_pressing(system, without) > _UNPRESSED)
-            if pressed.any():  # what stays unpressed has a direction of rounding
+            if pressed.any():  # the pressing force of all other joints has no direction but rounding
                 rubbing = np.where(unpressed & ~pressed, 0.0, law)
                 jams |= pressed.any(axis=1) & _newton(system, balance, multiplier, rubbing, offset)[1]
     return unpressed & (jams[:, None] | (force <= _rounding(system))), jams
 
 
 def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:
-    """Force that presses where there is friction, over the largest force of all, shape (S, F)."""
+    """Compute the pressing force at each friction, relative to the largest force of all, shape (S, F)."""
     force = np.zeros((len(multiplier), len(system.pressing)))
     for k, rows in enumerate(system.pressing):
         force[:, k] = np.linalg.norm(multiplier[:, rows], axis=1)
@@ -197,12 +203,12 @@ def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:
 
 
 def _rounding(system: System) -> float:
-    """Force, over the largest, that is nothing but rounding."""
+    """Force relative to the largest that counts as rounding."""
     return max(_NOTHING, 100 * system.rounding)
 
 
 def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarray) -> Statement:
-    """Warning of frictions (S, F) that press with no force where (S,) the least offset jams the mechanism."""
+    """Compose a warning of joints (S, F) that press with no force at positions (S,) that offsets jam."""
     names = [name for k, name in enumerate(mechanism.friction) if unpressed[jams, k].any()]
     press = "press" if len(names) > 1 else "presses"
     remedy = "reduce friction, or guide it over a greater length"
@@ -219,9 +225,9 @@ def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarr
 def _newton(
     system: System, balance: Balance, start: np.ndarray, full: np.ndarray, offset: np.ndarray | float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Multipliers (S, R) with friction, and where the mechanism jams, so that there are none (S,).
+    """Solve for the multipliers (S, R) with friction, and mark positions (S,) where the mechanism jams.
 
-    Friction is `full` (S, F) times the force that presses; `offset` (S, 3 n) are further forces on bodies.
+    Friction is `full` (S, F) times the pressing force; `offset` (S, 3 n) are additional forces on the bodies.
     """
     multiplier = start.copy()
     sign = np.linalg.slogdet(balance.matrix).sign
@@ -230,7 +236,8 @@ def _newton(
         size = np.inf
         for _ in range(40):
             residual, slope = _friction(system, balance, multiplier, part * full)
-            jammed |= np.linalg.slogdet(slope).sign != sign  # past a singular matrix: another branch
+            # Beyond a singular matrix the solution is on another branch.
+            jammed |= np.linalg.slogdet(slope).sign != sign
             slope[jammed] = np.eye(slope.shape[1])
             step = np.linalg.solve(slope, (residual + offset)[..., None])[..., 0]
             step[jammed] = 0.0
@@ -247,13 +254,13 @@ def _newton(
 def _friction(
     system: System, balance: Balance, multiplier: np.ndarray, law: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Set the friction rows; residual of equilibrium and its derivative by the unknowns."""
+    """Set the friction rows; return the residual of equilibrium, and its derivative by the unknowns."""
     slope = balance.matrix.copy()
     largest = np.abs(multiplier).max(axis=1, keepdims=True)
     for k, (row, normal) in enumerate(zip(system.friction.values(), system.pressing, strict=True)):
         size = np.linalg.norm(multiplier[:, normal], axis=1, keepdims=True)
         multiplier[:, row] = law[:, k] * size[:, 0]
-        pressed = size > _rounding(system) * largest  # below, the direction is rounding
+        pressed = size > _rounding(system) * largest  # the direction of smaller forces is rounding
         direction = np.where(pressed, law[:, [k]] * multiplier[:, normal] / np.maximum(size, _TINY), 0.0)
         slope[:, :, normal] += balance.rows.gradient[:, row, :, None] * direction[:, None, :]
     return balance.forces_on_bodies(multiplier), slope

@@ -1,7 +1,7 @@
 """Joints between two bodies, or a body and the ground.
 
-Coordinates [m] are those of the drawing.  The force of a joint is the one on the body named first; a bar or
-cable in tension and a contact that pushes are positive.  `Joint` tells how to write a new one.
+Coordinates [m] are those of the drawing.  The force of a joint is its force on the body that is named first;
+tension of a bar or cable and the push of a contact are positive.  `Joint` tells how to write a new one.
 """
 
 from __future__ import annotations
@@ -43,22 +43,23 @@ from brakes.planar.rows import (
 )
 
 _NORMAL = 0.9999  # least cosine of the angle between the normal of a round face and the line to its centre
-_TURNS = 0.1  # turn of a straight face over a stroke that is worth a warning [deg]
+_TURNS = 0.1  # turn of a straight face over a stroke above which there is a warning [deg]
 SLACK = OneWay("cable", "push", "cable slackens", "it is slack; remove it, or reverse the loads")
 
 
 @dataclass(frozen=True)
 class Pin(OnTwoBodies, Joint):
-    """A pin: a point of a body stays on a point of another.
+    """A pin joint: a point of one body stays on a point of another.
 
     Parameters
     ----------
     name, body, other : str
-        Its name; the two bodies, of which `other` may be `GROUND`.
+        Name of the pin, and the two bodies, of which `other` may be `GROUND`.
     at : tuple of 2 floats
-        Where it is on the body in the drawing [m].
+        Place of the pin on the body, in the drawing [m].
     at_other : tuple of 2 floats, optional
-        Where it is on the other body, if not at the same place; `assemble` brings the two together.
+        Place of the pin on the other body, if it differs in the drawing [m]; `assemble` brings the two
+        together.
     radius, friction : float
         Radius of the pivot [m] and coefficient of friction.
 
@@ -93,21 +94,21 @@ class Pin(OnTwoBodies, Joint):
         return (self.body, self.at), (self.other, self.at if self.at_other is None else self.at_other)
 
     def rows(self) -> tuple[Row, ...]:
-        """Two rows, along x and y."""
+        """Return two rows, for the constraints along x and y."""
         end, other = self._ends
         return Line(*end, *other, GROUND, (1.0, 0.0)), Line(*end, *other, GROUND, (0.0, 1.0))
 
     def friction_laws(self) -> tuple[FrictionLaw, ...]:
-        """A couple against the rotation: the force touches the circle of radius r mu/sqrt(1 + mu^2)."""
+        """Return a friction couple against the rotation, whose arm is the radius of the friction circle."""
         arm = self.radius * self.friction / math.hypot(1.0, self.friction)
         return (FrictionLaw(Turn(self.body, self.other), arm),)
 
     def with_pivot(self, radius: float, friction: float) -> Pin:
-        """The pin with a radius [m] and friction where it has none of its own."""
+        """Copy the pin with a radius [m] and a coefficient of friction, unless it has friction of its own."""
         return self if self.friction else replace(self, radius=self.radius or radius, friction=friction)
 
     def shapes(self) -> tuple[Shape, ...]:
-        """A pin."""
+        """Return how the joint is drawn: a pin at its points."""
         return (Shape("pin", self._ends),)
 
 
@@ -118,11 +119,11 @@ class Bar(BetweenPoints, Joint):
     Parameters
     ----------
     name, body, other : str
-        Its name; the two bodies, of which one may be `GROUND`.
+        Name of the bar, and the two bodies, of which one may be `GROUND`.
     at, to : tuple of 2 floats
-        Its end on the body, and on the other, in the drawing [m].
+        Ends of the bar on the body and on the other body, in the drawing [m].
     length : float, optional
-        Its length [m] if not the drawing's.
+        Length of the bar [m], if it differs from the drawing.
 
     Examples
     --------
@@ -139,28 +140,28 @@ class Bar(BetweenPoints, Joint):
     length: Length | None = None
 
     def rows(self) -> tuple[Row, ...]:
-        """One row, positive in tension."""
+        """Return one row, whose multiplier is positive in tension."""
         return (self.path(self.length),)
 
     def shapes(self) -> tuple[Shape, ...]:
-        """A bar with pins at its ends."""
+        """Return the drawing of a bar with pins at its ends."""
         return (*super().shapes(), *(Shape("pin", (end,)) for end in self.path().ends))
 
 
 @dataclass(frozen=True)
 class Slot(OnTwoBodies, Joint):
-    """A point of a body slides along a straight slot of another; it holds both ways.
+    """A point of a body slides along a straight slot of another body, which holds it in both directions.
 
     Parameters
     ----------
     name, body, other : str
-        Its name; the body that has the point, and the one that has the slot.
+        Name of the slot; the body that has the point, and the body that has the slot.
     at : tuple of 2 floats
-        The point [m].
+        The sliding point, in the drawing [m].
     along : tuple of 2 floats
-        Direction of the slot.
+        Direction of the slot, in the drawing.
     on : tuple of 2 floats, optional
-        A point of the slot [m], if it does not pass through `at` in the drawing.
+        A point of the slot [m], if the slot does not pass through `at` in the drawing.
     friction : float
         Coefficient of friction.
 
@@ -183,41 +184,41 @@ class Slot(OnTwoBodies, Joint):
     friction: Coefficient = 0.0
 
     def rows(self) -> tuple[Row, ...]:
-        """One row: the force on the body, positive to the left of `along`."""
+        """Return one row: the force on the body, positive to the left of `along`."""
         x, y = unit_vector("along", self.along)
         return (_line(self, (-y, x)),)
 
     def friction_laws(self) -> tuple[FrictionLaw, ...]:
-        """A force against the sliding."""
+        """Return a friction force against the sliding."""
         return (FrictionLaw(_line(self, unit_vector("along", self.along)), self.friction),)
 
     def shapes(self) -> tuple[Shape, ...]:
-        """A short line along the slot."""
+        """Return the drawing of a short line along the slot."""
         return (Shape("face", ((self.body, self.at),), self.other, self.along),)
 
 
 @dataclass(frozen=True)
 class Contact(OnTwoBodies, Joint):
-    """A point of a body pushes on a straight or round face of another.
+    """A point of a body pushes on a straight or round face of another body.
 
     Parameters
     ----------
     name, body, other : str
-        Its name; the body that has the point, and the one that has the face.
+        Name of the contact; the body that has the point, and the body that has the face.
     at : tuple of 2 floats
-        The point [m].
+        The touching point, in the drawing [m].
     normal : tuple of 2 floats, optional
-        Normal of the face, from the other body towards the body; of a round face away from its centre if not
-        given.
+        Normal of the face, from the other body towards the body; by default, for a round face, away from its
+        centre.
     on : tuple of 2 floats, optional
-        A point of the straight face [m], if it does not pass through `at` in the drawing.
+        A point of the straight face [m], if the face does not pass through `at` in the drawing.
     friction : float
         Coefficient of friction.
     centre : tuple of 2 floats, optional
-        Centre of a round face, such as a drum's [m]; the face is straight if not given, and its normal turns
+        Centre of a round face, such as a drum's [m]; if not given, the face is straight and its normal turns
         with the other body.
     radius : float, optional
-        Radius of the round face [m], if not the drawing's.
+        Radius of the round face [m], if it differs from the drawing.
 
     References
     ----------
@@ -269,14 +270,14 @@ class Contact(OnTwoBodies, Joint):
 
     @property
     def _cosine(self) -> float:
-        """Cosine of the angle between the normal and the line from the centre of the round face."""
+        """Cosine of the angle between the normal and the line from the centre of a round face."""
         if self.normal is None or self.centre is None:
             return 1.0
         out = complex(*self.at) - complex(*self.centre)
         return (out / abs(out) * complex(*unit_vector("normal", self.normal)).conjugate()).real
 
     def _row(self, direction: complex) -> Row:
-        """The row along the normal, turned anticlockwise by a direction."""
+        """Return the row along the normal, turned anticlockwise by a direction (a unit complex number)."""
         if self.centre is None:
             normal = direction * complex(*unit_vector("normal", self.normal or (0.0, 1.0)))
             return _line(self, (normal.real, normal.imag))
@@ -285,15 +286,15 @@ class Contact(OnTwoBodies, Joint):
         return Round(self.body, self.at, self.other, self.centre, radius, outward * direction)
 
     def rows(self) -> tuple[Row, ...]:
-        """One row, positive when it pushes."""
+        """Return one row, whose multiplier is positive if the contact pushes."""
         return (self._row(1.0 + 0.0j),)
 
     def friction_laws(self) -> tuple[FrictionLaw, ...]:
-        """A force against the sliding."""
+        """Return a friction force against the sliding."""
         return (FrictionLaw(self._row(1j), self.friction),)
 
     def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:
-        """A straight face that turns is a flat one, or the tangent of a round one at one position alone."""
+        """Warn of a straight face that turns: it stands for a round face at one position only."""
         turned = np.degrees(np.ptp(angles.get(self.other, 0.0)))
         if self.centre is None and turned > _TURNS:
             yield (
@@ -302,7 +303,7 @@ class Contact(OnTwoBodies, Joint):
             )
 
     def shapes(self) -> tuple[Shape, ...]:
-        """A short line along a straight face, an arc of a round one."""
+        """Return the drawing of a short line along a straight face, or of an arc of a round one."""
         if self.centre is not None:
             return (Shape("face", ((self.body, self.at), (self.other, self.centre))),)
         x, y = unit_vector("normal", self.normal or (0.0, 1.0))
@@ -311,14 +312,14 @@ class Contact(OnTwoBodies, Joint):
 
 @dataclass(frozen=True)
 class RotationLock(OnTwoBodies, Joint):
-    """The angle of a body is `ratio` times that of another (1: no relative rotation; -1: mirrored arms).
+    """A gear: a body turns by `ratio` times the angle of another (1: no relative rotation; -1: mirrored).
 
     Parameters
     ----------
     name, body, other : str
-        Its name and the two bodies.
+        Name of the joint, and the two bodies.
     ratio : float
-        Ratio of the angles; other than 1 it is a gear, whose housing is on the ground.
+        Ratio of the angles; if it is not 1, the joint is a gear whose housing is on the ground.
 
     Examples
     --------
@@ -331,24 +332,24 @@ class RotationLock(OnTwoBodies, Joint):
     ratio: Annotated[float, Described(meaning="ratio of the angles")] = 1.0
 
     def rows(self) -> tuple[Row, ...]:
-        """One row: the couple on the body [N m]."""
+        """Return one row, whose multiplier is the couple on the body [N m]."""
         return (Turn(self.body, self.other, self.ratio),)
 
 
 @dataclass(frozen=True)
 class Cable(Joint):
-    """A taut cable of fixed length over frictionless eyes; one tension, pulling positive.
+    """A taut cable of fixed length over frictionless eyes, with one tension, positive if it pulls.
 
     Parameters
     ----------
     name : str
-        Its name.
+        Name of the cable.
     bodies : tuple of str
         The body of each point.
     points : tuple of points
-        Its points in the drawing [m], from end to end.
+        Points of the cable in the drawing, from end to end [m].
     length : float, optional
-        Its length [m] if not the drawing's.
+        Length of the cable [m], if it differs from the drawing.
 
     Examples
     --------
@@ -374,16 +375,16 @@ class Cable(Joint):
         check_distinct(self.title, self.points, "move one of its points")
 
     def rows(self) -> tuple[Row, ...]:
-        """One row, positive in tension."""
+        """Return one row, whose multiplier is positive in tension."""
         length = path_length(self.points) if self.length is None else self.length
         return (Path(tuple(self.bodies), tuple(self.points), length),)
 
     def shapes(self) -> tuple[Shape, ...]:
-        """A cable through its points."""
+        """Return the drawing of a cable through its points."""
         return (Shape("cable", self.rows()[0].ends),)
 
 
 def _line(joint: Slot | Contact, normal: Point) -> Line:
-    """The row of a joint's point along a normal that turns with the other body."""
+    """Make the row of a joint's point along a normal that turns with the other body."""
     on = joint.at if joint.on is None else joint.on
     return Line(joint.body, joint.at, joint.other, on, joint.other, normal)

@@ -33,7 +33,8 @@ from brakes.planar.system import (
     times,
 )
 
-MOST_POSITIONS = 100_000  # positions of a stroke: some seconds for the smallest mechanisms
+# Largest number of positions of a stroke: they take some seconds for the smallest mechanisms.
+MOST_POSITIONS = 100_000
 _CLOSED = 1e-11  # largest gap of a closed joint, over the length of the mechanism
 
 
@@ -44,16 +45,16 @@ class Toggle:
     Parameters
     ----------
     load : str or None
-        The load whose coordinate has an extreme value: its force there holds any other load.  None: the
-        joints let the mechanism leave its motion for another one (bars in line).
+        The load whose coordinate has an extreme value, so that its force there holds any other load.  None at
+        a branch point, where the mechanism may change to another motion (as with bars in line).
     value : float
-        Value of the driver [m or rad].
+        Value of the driver's coordinate at the toggle position [m or rad].
     position : Position
-        The position.
+        Position of the bodies.
     still : tuple of str
-        Bodies that stand still there while others move.
+        Bodies that stand still at this position while others move.
     message : str
-        Sentence that explains the status.
+        Sentence that describes the toggle position.
 
     Examples
     --------
@@ -78,27 +79,28 @@ class Toggle:
 
 @dataclass(frozen=True)
 class Stroke:
-    """Positions of a mechanism over the values of a driver.
+    """Positions of a mechanism over values of a driver's coordinate.
 
     Parameters
     ----------
     driver : str
-        The load whose coordinate drives.
+        Name of the load whose coordinate drives the mechanism.
     values : ndarray, shape (S,)
-        Its coordinate from the assembled position [m or rad].
+        Coordinate of the driver from the assembled position [m or rad].
     position : Position
-        The S positions.
+        The S positions of the bodies.
     travel : dict of ndarray, shape (S,)
-        Coordinate of each load from the assembled position [m or rad]; nan for a force that follows.
+        Coordinate of each load from the assembled position [m or rad]; nan for a force that turns with its
+        body.
     ratio : dict of ndarray, shape (S,)
-        Its velocity over that of the driver, from the null space of the constraints; nan where the driver
-        stands still or motions branch.
+        Velocity of each load's coordinate over that of the driver, from the null space of the constraints;
+        nan where the driver stands still or motions branch.
     mobility : ndarray of int, shape (S,)
-        Independent motions at each position; above 1 at a branch point.
+        Number of independent motions at each position; above 1 at a branch point.
     toggles : tuple of Toggle
         Toggle positions passed between the least and the greatest value.
     closure : float
-        Largest gap that is left in a joint, over the length of the mechanism.
+        Largest remaining gap of a joint, over the length of the mechanism.
 
     Examples
     --------
@@ -120,7 +122,7 @@ class Stroke:
 
 
 def assemble(mechanism: Mechanism) -> Position:
-    """Bring the joints together, by the smallest motion from the drawing (damped Newton method).
+    """Assemble the joints by the smallest motion from the drawing (damped Newton method).
 
     Raises
     ------
@@ -168,23 +170,24 @@ def assemble(mechanism: Mechanism) -> Position:
 
 
 def _rounding(system: System) -> float:
-    """Gap of a joint, over the length of the mechanism, and passing of a toggle position that is rounding."""
+    """Return the gap of a joint, or distance past a toggle, that is rounding, over the mechanism's length."""
     return max(_CLOSED, 100 * system.rounding)
 
 
 def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarray) -> Stroke:
-    """Positions at which a driver has given values.
+    """Find the positions at which a driver's coordinate has given values.
 
-    The curve of positions is followed from the assembled one by arc length (tangent predictor, Newton, step
-    halving); the positions of all values are then solved at once, to rounding.
+    The curve of positions is followed by arc length from the assembled position (tangent predictor, Newton,
+    step halving); then the positions of all values are solved at once, to rounding.
 
     Parameters
     ----------
     mechanism : Mechanism
         The mechanism, of mobility 1.
     driver : str
-        The load whose coordinate drives: a cable pair shortens, a moment turns its body, a force shifts its
-        point along its direction.  A load of magnitude 0 will do.
+        Name of the driving load. The coordinate of a cable pair is its shortening, of a moment the rotation
+        of its body, of a force the travel of its point along its direction.  A load of magnitude 0 may drive,
+        too.
     values : sequence of S floats
         Coordinates of the driver from the assembled position [m or rad], in any order.
 
@@ -223,32 +226,33 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     try:
         ends = (min(0.0, target.min()), max(0.0, target.max()))
         wanted = start.value[k] + np.append(target, ends)
-        within = nodes[0].value[k], nodes[-1].value[k]  # a toggle position may be passed by rounding
+        # Rounding may place a toggle position just short of a wanted value.
+        within = nodes[0].value[k], nodes[-1].value[k]
         y = solve_at_values(system, nodes, k, np.clip(wanted, *within))
     except np.linalg.LinAlgError:
         raise OutOfReachError(
             f"no position is found at one of the values of {driver!r}: it turns back or motions branch there",
             "end the stroke before it, or follow the motion with trace",
         ) from None
-    if len(nodes) > 1:  # the curve followed ends past the values
+    if len(nodes) > 1:  # make the curve end exactly at the extreme values
         nodes[0], nodes[-1] = (node_at(system, y[i], nodes[end].tangent) for i, end in ((-2, 0), (-1, -1)))
     return _finish(mechanism, k, start, nodes, y[:-2])
 
 
 def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -> Stroke:
-    """Positions at equal distances along the curve of positions, past turning points of the driver.
+    """Find positions at equal distances along the curve of positions, also past turning points of the driver.
 
     Parameters
     ----------
     mechanism : Mechanism
         The mechanism, of mobility 1.
     driver : str
-        The load whose coordinate grows at first.
+        Name of the load whose coordinate grows at first.
     length : float
-        Length of the curve: root of the summed squares of all coordinates' changes, a rotation times the
-        greatest distance of the body's points from their centre [m].
+        Length of the curve [m]: root of the summed squares of all changes of coordinates, with rotations
+        times the greatest distance of the body's points from their centre.
     points : int
-        Number of positions, the assembled one first.
+        Number of positions; the first is the assembled one.
 
     Returns
     -------
@@ -287,18 +291,18 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
 
 
 def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, float], value: float) -> float:
-    """Travel of the driver at which a weighted sum of the travels of loads first has a value [m or rad].
+    """Find the driver's travel [m or rad] at which a weighted sum of the loads' travels reaches a value.
 
     Parameters
     ----------
     mechanism : Mechanism
         The mechanism, of mobility 1.
     driver : str
-        The load whose coordinate grows.
+        Name of the load whose coordinate grows.
     weights : mapping
         Weight of each load in the sum, which must grow with the driver at first.
     value : float
-        The value of the sum, above 0 [m or rad].
+        The wanted value of the sum, above 0 [m or rad].
 
     Raises
     ------
@@ -336,9 +340,9 @@ def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, fl
 
 
 def _start(mechanism: Mechanism, driver: str, *measured: str) -> tuple[System, Node, int]:
-    """The system, the assembled position with the driver growing, and the driver's place among the loads.
+    """Prepare a curve: system, assembled position with growing driver, and the driver's index in the loads.
 
-    Loads that are measured must have a coordinate.
+    `measured` are loads that must have a coordinate; else there is a ValueError.
     """
     check_mechanism(mechanism)
     for name in measured:
@@ -361,7 +365,7 @@ def _start(mechanism: Mechanism, driver: str, *measured: str) -> tuple[System, N
 
 
 def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str) -> list[Node]:
-    """Nodes from the first to where coordinate k has moved by a value."""
+    """Follow the curve from a node until the k-th load's coordinate has changed by a value; return nodes."""
     system, unit = mechanism.system, _units(mechanism.system)[k]
     wanted = _amount(mechanism, driver, value * unit, 6)
     nodes, target, sense = [start], start.value[k] + value, np.sign(value)
@@ -387,13 +391,14 @@ def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str)
 
 
 def _finish(mechanism: Mechanism, k: int, start: Node, nodes: list[Node], y: np.ndarray) -> Stroke:
-    """The stroke at coordinates y (S, 3 n) of a driver, by its place among the loads."""
+    """Make the stroke at coordinates y (S, 3 n); k is the index of the driver in the loads."""
     system = mechanism.system
     rows, m, unit = system.rows(y), system.constraints, _units(system)
     constraints = decompose(rows.gradient[:, :m], system.rounding)
     names, index = [*system.loads], [*system.loads.values()]
     rate = times(rows.gradient[:, index], constraints.vt[:, -1])
-    still = rank_tolerance(system.rounding)  # bound of rates per unit of motion, and of singular values
+    # Velocities per unit of motion, and relative singular values, up to this count as zero.
+    still = rank_tolerance(system.rounding)
     single = (constraints.rank == system.size - 1)[:, None] & (np.abs(rate[:, [k]]) > still)
     ratio = np.divide(rate, rate[:, [k]], out=np.full_like(rate, np.nan), where=single)
     known = [load.has_coordinate for load in mechanism.loads]
@@ -417,10 +422,10 @@ def _finish(mechanism: Mechanism, k: int, start: Node, nodes: list[Node], y: np.
 
 
 def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float], still: float) -> list[Node]:
-    """Roots of a function of the nodes, one for each change of its sign.
+    """Find the roots of a function of the nodes, one for each change of its sign.
 
-    Values up to `still` count as zero: a node there has no sign, and no root is passed before the first or
-    after the last node that has one.
+    Values up to `still` count as zero: such a node has no sign, and there is no root before the first or
+    after the last node that has a sign.
     """
     f = np.array([function(node) for node in nodes])
     signed = np.flatnonzero(np.abs(f) > still)
@@ -429,7 +434,7 @@ def _zeros(system: System, nodes: list[Node], function: Callable[[Node], float],
 
 
 def _toggle(mechanism: Mechanism, node: Node, value: float, driver: str, load: str | None) -> Toggle:
-    """The toggle position of a load, or where motions branch, at a value of the driver [m or rad]."""
+    """Make the toggle position of a load, or of a branch point, at a driver's value [m or rad]."""
     position, there = Position(mechanism, node.y), _amount(mechanism, driver, value, 6)
     if load is None:
         message = "motions branch at driver value ", there, ": the mechanism may leave the drawn one there"
@@ -442,10 +447,13 @@ def _toggle(mechanism: Mechanism, node: Node, value: float, driver: str, load: s
 
 
 def _units(system: System) -> np.ndarray:
-    """Unit of each load's coordinate: L for a length, 1 for an angle."""
+    """Return factors from nondimensional to SI coordinates of the loads: the mechanism's length, or 1.
+
+    The factor is 1 for loads whose coordinate is an angle.
+    """
     return system.length / system.unit[list(system.loads.values())]
 
 
 def _amount(mechanism: Mechanism, load: str, moved: float, digits: int = 9) -> Named:
-    """How far the coordinate of a load has moved."""
+    """State the change of a load's coordinate, with its unit."""
     return amount(moved, unit="rad" if mechanism.load(load).is_couple else "m", digits=digits)

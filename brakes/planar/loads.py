@@ -1,7 +1,7 @@
-"""Loads, each with a known magnitude or an unknown amplitude (`magnitude=None`) that equilibrium gives.
+"""Loads of a mechanism, with a known magnitude or an unknown one (`magnitude=None`) that equilibrium gives.
 
-Each load has a coordinate on which it does its work: the travel of the point along the force, the rotation,
-the shortening of the cable.  A load of magnitude 0 measures a travel, and any load with a coordinate may
+Each load does work on its own coordinate: travel of a point along the force, rotation, or shortening
+of a cable.  A load of magnitude 0 measures this coordinate, and any load with a coordinate may
 drive a stroke.  `Load` tells how to write a new one.
 """
 
@@ -36,15 +36,15 @@ class Force(AppliedLoad):
     Parameters
     ----------
     name, body : str
-        Its name and the body.
+        Name of the force, and its body.
     at : tuple of 2 floats
-        The point in the drawing [m].
+        Point of application in the drawing [m].
     direction : tuple of 2 floats
-        Its direction in the drawing.
+        Direction of the force in the drawing.
     magnitude : float, optional
-        Its size along the direction [N]; None: unknown.
+        Size along the direction [N]; None if unknown.
     follows : bool
-        Whether its direction turns with the body; otherwise it is fixed in space.
+        Whether the direction turns with the body; otherwise it is fixed in space.
 
     Examples
     --------
@@ -63,37 +63,37 @@ class Force(AppliedLoad):
 
     @property
     def has_coordinate(self) -> bool:
-        """Whether its direction is fixed: otherwise its work depends on the path."""
+        """Whether the direction is fixed in space; if it is not, the work depends on the path."""
         return not self.follows
 
     def _direction(self) -> Point:
         return unit_vector("direction", self.direction)
 
     def row(self) -> Row:
-        """Travel of the point along the force [m]."""
+        """Return the row whose value is the travel of the point along the force [m]."""
         frame = self.body if self.follows else GROUND
         return Line(self.body, self.at, GROUND, self.at, frame, self._direction())
 
     def shifted(self, distance: float) -> Force:
-        """The force with its point moved along its direction [m]."""
+        """Copy the force with its point moved along its direction by a distance [m]."""
         (x, y), (dx, dy) = self.at, self._direction()
         return replace(self, at=(x + distance * dx, y + distance * dy))
 
     def shapes(self) -> tuple[Shape, ...]:
-        """A force."""
+        """Return how the load is drawn: an arrow at its point."""
         return (Shape("force", ((self.body, self.at),)),)
 
 
 @dataclass(frozen=True)
 class Moment(AppliedLoad):
-    """A moment on a body, anticlockwise positive, and its opposite on another.
+    """A moment on a body, positive anticlockwise, and the opposite moment on another body.
 
     Parameters
     ----------
     name, body : str
-        Its name and the body.
+        Name of the moment, and its body.
     magnitude : float, optional
-        Its size [N m]; None: unknown.
+        Size of the moment [N m]; None if unknown.
     other : str
         The body that has the opposite moment.
 
@@ -110,7 +110,7 @@ class Moment(AppliedLoad):
     other: Other = GROUND
 
     def row(self) -> Row:
-        """Rotation of the body against the other [rad]."""
+        """Return the row whose value is the rotation of the body relative to the other [rad]."""
         return Turn(self.body, self.other)
 
 
@@ -121,11 +121,11 @@ class CablePair(BetweenPoints, AppliedLoad):
     Parameters
     ----------
     name, body, other : str
-        Its name and the two bodies.
+        Name of the cable, and the two bodies.
     at, to : tuple of 2 floats
-        The points on the body, and on the other, in the drawing [m].
+        Points of the cable on the body and on the other body, in the drawing [m].
     magnitude : float, optional
-        Its tension [N]; None: unknown.
+        Tension of the cable [N]; None if unknown.
 
     Examples
     --------
@@ -141,7 +141,7 @@ class CablePair(BetweenPoints, AppliedLoad):
     magnitude: Newtons | None = None
 
     def row(self) -> Row:
-        """Shortening of the distance between the points [m]."""
+        """Return the row whose value is the shortening of the distance between the points [m]."""
         return self.path()
 
 
@@ -152,13 +152,13 @@ class Spring(BetweenPoints, Load):
     Parameters
     ----------
     name, body, other : str
-        Its name and the two bodies.
+        Name of the spring, and the two bodies.
     at, to : tuple of 2 floats
-        Its ends on the body, and on the other, in the drawing [m].
+        Ends of the spring on the body and on the other body, in the drawing [m].
     stiffness : float
         Stiffness [N/m].
     free_length : float
-        Length without force [m].
+        Length of the spring without force [m].
 
     Examples
     --------
@@ -176,11 +176,11 @@ class Spring(BetweenPoints, Load):
     free_length: Annotated[float, Described("m", meaning="length without force", least=0)]
 
     def row(self) -> Row:
-        """Shortening below the free length [m]."""
+        """Return the row whose value is the shortening below the free length [m]."""
         return self.path(self.free_length)
 
     def amplitude(self, coordinate: np.ndarray) -> np.ndarray:
-        """Minus stiffness times shortening: its tension, which is negative where it pushes [N]."""
+        """Compute the tension [N], minus stiffness times shortening; negative if the spring pushes."""
         return -self.stiffness * coordinate
 
 
@@ -191,13 +191,13 @@ class TorsionSpring(Load):
     Parameters
     ----------
     name, body : str
-        Its name and the body.
+        Name of the spring, and its body.
     stiffness : float
         Stiffness [N m/rad].
     free_angle : float
-        Relative angle without moment, counted from the drawing [rad].
+        Relative angle without moment, measured from the drawing [rad].
     other : str
-        The other body.
+        The body at the other end of the spring.
 
     Examples
     --------
@@ -213,9 +213,9 @@ class TorsionSpring(Load):
     other: Other = GROUND
 
     def row(self) -> Row:
-        """Rotation past the free angle [rad]."""
+        """Return the row whose value is the rotation past the free angle [rad]."""
         return Turn(self.body, self.other, offset=self.free_angle)
 
     def amplitude(self, coordinate: np.ndarray) -> np.ndarray:
-        """Minus stiffness times rotation: its moment on the body [N m]."""
+        """Compute the moment on the body [N m] at a rotation: minus stiffness times rotation."""
         return -self.stiffness * coordinate

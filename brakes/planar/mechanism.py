@@ -1,4 +1,4 @@
-"""A planar mechanism: bodies, joints and loads, and where its bodies are."""
+"""A planar mechanism, made of bodies, joints and loads, and the positions of its bodies."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from brakes.planar.system import System
 
 @dataclass(frozen=True)
 class Mechanism:
-    """Rigid bodies in a plane, their joints and loads.
+    """Rigid bodies in a plane, with joints and loads.
 
-    Points are given in one drawing of the mechanism [m], x to the right, y up, angles anticlockwise.
+    All points are given in one drawing of the mechanism [m]: x to the right, y up, angles anticlockwise.
 
     Parameters
     ----------
     bodies : tuple of str
-        Names of the bodies; `GROUND` is there by itself.
+        Names of the bodies; `GROUND` always exists and is not listed.
     joints : tuple of Joint
-        Such as a `Pin`; all kinds are in `JOINTS`.
+        The joints, such as a `Pin`; `JOINTS` lists all kinds.
     loads : tuple of Load
-        Such as a `Force`; all kinds are in `LOADS`.
+        The loads, such as a `Force`; `LOADS` lists all kinds.
 
     Raises
     ------
@@ -70,17 +70,17 @@ class Mechanism:
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """Joints, then loads."""
+        """All joints, then all loads."""
         return (*self.joints, *self.loads)
 
     @property
     def unknown_loads(self) -> list[Load]:
-        """Loads without a given magnitude, which equilibrium gives."""
+        """Loads without a given magnitude, which equilibrium determines."""
         return [load for load in self.loads if load.amplitude(np.zeros(1)) is None]
 
     @cached_property
     def friction(self) -> dict[str, tuple[str, FrictionLaw]]:
-        """Friction by its name: that of the joint, and its label where the joint has several."""
+        """Joint and friction law by name: the joint's name, with the law's label if the joint has several."""
         return {
             f"{joint.name} {law.label}".strip(): (joint.name, law)
             for joint in self.joints
@@ -90,18 +90,18 @@ class Mechanism:
 
     @cached_property
     def system(self) -> System:
-        """Its rows as arrays."""
+        """Rows of all joints and loads as arrays."""
         joints = {joint.name: joint.rows() for joint in self.joints}
         return System(self.bodies, joints, {load.name: load.row() for load in self.loads}, self.friction)
 
     @cached_property
     def shapes(self) -> tuple[tuple[str, Shape], ...]:
-        """Shapes of all joints and loads, with their names."""
+        """Name and shape of everything that is drawn for joints and loads."""
         return tuple((part.name, shape) for part in self.parts for shape in part.shapes())
 
     @cached_property
     def points(self) -> dict[str, list[Point]]:
-        """Points of each body and the ground at which joints and loads act, without repeats [m]."""
+        """Points of each body and of the ground at which joints and loads act, without repetition [m]."""
         found: dict[str, list[Point]] = {body: [] for body in (*self.bodies, GROUND)}
         for owner, (x, y) in dict.fromkeys(end for _, shape in self.shapes for end in shape.ends):
             found[owner].append((float(x), float(y)))
@@ -109,11 +109,11 @@ class Mechanism:
 
     @cached_property
     def drawing(self) -> Position:
-        """The position drawn, whether or not its joints close."""
+        """Position of the bodies in the drawing, whether or not the joints close there."""
         return Position(self, np.zeros(self.system.size))
 
     def load(self, name: str) -> Load:
-        """The load of a name."""
+        """Return the load of a name."""
         kind("load", name, str)
         known = {load.name: load for load in self.loads}
         if name not in known:
@@ -122,22 +122,23 @@ class Mechanism:
 
 
 def check_mechanism(mechanism: object, position: object = None) -> None:
-    """Refuse what is no mechanism, and what is no position of one, as arguments of an analysis."""
+    """Check that arguments of an analysis are a mechanism and, if given, a position."""
     kind("mechanism", mechanism, Mechanism)
     kind("position", position, Position | None, "assemble(mechanism) gives one")
 
 
 @dataclass(frozen=True)
 class Position:
-    """Where the bodies of a mechanism are, at one instant or at each of S.
+    """Positions of a mechanism's bodies at one instant, or at S instants.
 
     Parameters
     ----------
     mechanism : Mechanism
         The mechanism.
     coordinates : ndarray, shape (3 n,) or (S, 3 n)
-        Displacements of the n bodies from the drawing, nondimensional: x and y over the size of the
-        mechanism, and the angle times the radius of the body's points over that size.
+        Displacements of the n bodies from the drawing, nondimensional: x and y divided by the mechanism's
+        length, and the angle times the greatest distance of the body's points from their centre, over that
+        length.
 
     Examples
     --------
@@ -152,14 +153,14 @@ class Position:
 
     @property
     def batch(self) -> np.ndarray:
-        """Coordinates, shape (S, 3 n), with S = 1 for one instant."""
+        """Coordinates of shape (S, 3 n), with S = 1 for one instant."""
         return np.atleast_2d(self.coordinates)
 
     def __getitem__(self, index: int | slice) -> Position:
         return Position(self.mechanism, self.batch[index])
 
     def of(self, mechanism: Mechanism) -> Position:
-        """The position, for another mechanism with the same bodies and drawing."""
+        """Convert the position to another mechanism with the same bodies and drawing."""
         if mechanism is self.mechanism:
             return self
         if mechanism.bodies != self.mechanism.bodies:
@@ -175,11 +176,11 @@ class Position:
         return Position(mechanism, np.stack(parts, axis=-1).reshape(self.coordinates.shape))
 
     def point(self, body: str, at: Point) -> np.ndarray:
-        """Where a point of a body, given by its place in the drawing, is now [m], shape (2,) or (S, 2)."""
+        """Place [m], shape (2,) or (S, 2), of a body's point that is given by its place in the drawing."""
         place = self.mechanism.system.place(self.batch, body, at)
         return place.reshape(*self.coordinates.shape[:-1], 2)
 
     def angle(self, body: str) -> np.ndarray:
-        """Angle by which a body has turned from the drawing [rad], shape () or (S,)."""
+        """Return the angle by which a body has turned from the drawing [rad], shape () or (S,)."""
         angle = self.mechanism.system.angle(self.batch, body)
         return angle.reshape(self.coordinates.shape[:-1])

@@ -1,4 +1,4 @@
-"""Joints and loads: what each is, brings and is given; the base classes tell how to write a new one."""
+"""Base classes of joints and loads: inputs, rows and drawings, and how to write a new kind."""
 
 from __future__ import annotations
 
@@ -30,36 +30,36 @@ from brakes.planar.rows import (
 
 @dataclass(frozen=True)
 class DescribedPoint(Described):
-    """Description of a point."""
+    """Description of an input that is a point in the drawing."""
 
     def check(self, name: str, value: Any) -> Point:
-        """The point; what is not two finite coordinates is refused."""
+        """Return the point; refuse a value that is not two finite coordinates."""
         return check_point(name, value)
 
 
 @dataclass(frozen=True)
 class DescribedBody(Described):
-    """Description of the name of a body, or of a list of them."""
+    """Description of an input that is the name of a body, or a list of such names."""
 
 
 @dataclass(frozen=True)
 class DescribedDirection(Described):
-    """Description of a direction."""
+    """Description of an input that is a direction."""
 
     def check(self, name: str, value: Any) -> Point:
-        """The unit vector; what is not two finite components, or has no direction, is refused."""
+        """Return the unit vector; refuse a value that is not two finite components, or is zero."""
         return unit_vector(name, value)
 
 
 def check_inputs(core: object, prefix: str = "") -> None:
-    """Refuse described inputs that are not as described, and keep numbers as floats.
+    """Check described inputs of a dataclass against their descriptions, and store numbers as floats.
 
     Parameters
     ----------
     core : object
         An instance of a frozen dataclass.
     prefix : str
-        Put before their names in messages.
+        Text before the names of inputs in messages.
 
     Raises
     ------
@@ -79,9 +79,9 @@ def check_inputs(core: object, prefix: str = "") -> None:
 
 @cache
 def _wanted(core: type) -> list[tuple[str, Any, bool, bool, Described]]:
-    """Name of each input of a dataclass, its type, whether it is a list of these, whether it may be None.
+    """List each described input of a dataclass: name, type, whether it is a list, whether it may be None.
 
-    Told once, since designs are made by the thousand.
+    Cached, as studies make thousands of instances of each class.
     """
     hints, wanted = described_hints(core), []
     for name, described in descriptions(core).items():
@@ -92,7 +92,7 @@ def _wanted(core: type) -> list[tuple[str, Any, bool, bool, Described]]:
 
 
 def _check(name: str, value: object, wanted: Any, described: Described) -> float | None:
-    """Refuse a value that is not as described; a number is returned as a float."""
+    """Refuse a value that contradicts its description; return a number as a float, anything else as None."""
     if wanted is float:
         return described.check(name, value)
     if wanted is str:
@@ -105,7 +105,7 @@ def _check(name: str, value: object, wanted: Any, described: Described) -> float
 
 
 def is_list(hint: Any) -> bool:
-    """Whether an annotation is that of a tuple of any length."""
+    """Tell whether an annotation is a tuple of any length."""
     return Ellipsis in get_args(kinds_of(hint)[0])
 
 
@@ -141,14 +141,14 @@ class Shape(NamedTuple):
     Parameters
     ----------
     style : {"bar", "cable", "spring", "pin", "face", "force"}
-        A bar or cable through `ends`, a spring between them, a pin or a face at the first of them; a force is
-        drawn as an arrow where it is known.  The second end of a round face is its centre.
+        A bar, cable or spring along `ends`; a pin or a face at the first of them; a force, drawn as an arrow
+        if it is known.  The second end of a round face is its centre.
     ends : tuple of End
-        Points of bodies; each body's outline goes around those of all its joints and loads.
+        Points of bodies. The outline of a body goes around the points of all its joints and loads.
     frame : str
         The body with which a face turns.
     along : tuple of float
-        Direction of a face.
+        Direction of a straight face.
 
     Examples
     --------
@@ -164,12 +164,12 @@ class Shape(NamedTuple):
 
 
 class OneWay(NamedTuple):
-    """Words for a joint or load that acts one way only.
+    """Words for a joint or load that acts in one direction only.
 
-    noun : what it is.
-    cannot : what it cannot do.
-    status : the status of an equilibrium in which it would have to.
-    remedy : what to do then.
+    noun : what it is, such as "cable".
+    cannot : what it cannot do, such as "push".
+    status : status of an equilibrium in which it would have to do that.
+    remedy : advice for this case.
     """
 
     noun: str
@@ -180,12 +180,12 @@ class OneWay(NamedTuple):
 
 @dataclass(frozen=True)
 class Part:
-    """A joint or a load.
+    """Base of joints and loads of a mechanism.
 
     Parameters
     ----------
     name : str
-        Its name, which no other joint or load of the mechanism has.
+        Unique name among the joints and loads of the mechanism.
 
     Raises
     ------
@@ -209,46 +209,46 @@ class Part:
 
     @classmethod
     def kind(cls) -> str:
-        """Name of the kind, such as "rotation lock"."""
+        """Name of the kind of joint or load, such as "rotation lock"."""
         return "".join(f" {c.lower()}" if c.isupper() else c for c in cls.__name__).strip()
 
     @classmethod
     def key(cls) -> str:
-        """Its table in a file, such as "rotation_lock"."""
+        """Name of the kind's table in a file, such as "rotation_lock"."""
         return cls.kind().replace(" ", "_")
 
     @property
     def title(self) -> str:
-        """Kind and name, for messages."""
+        """Kind and name of this joint or load, for messages."""
         return f"{self.kind()} {self.name!r}"
 
     def rows(self) -> tuple[Row, ...]:
-        """Rows that it forbids (a joint), or the coordinate on which it does its work (a load)."""
+        """Return the rows of a joint's constraints, or the row whose value is a load's coordinate."""
         raise NotImplementedError
 
     def shapes(self) -> tuple[Shape, ...]:
-        """How it is drawn."""
+        """Return the shapes with which the joint or load is drawn."""
         return ()
 
     @property
     def acts_on(self) -> tuple[str, ...]:
-        """The bodies on which it acts, that whose force is given first."""
+        """The bodies on which the joint or load acts, first the one whose force is given in results."""
         return self.rows()[0].bodies
 
     @property
     def is_couple(self) -> bool:
-        """Whether it acts by a couple alone."""
+        """Whether the joint or load acts by couples only."""
         return all(row.is_couple for row in self.rows())
 
     @property
     def unit(self) -> str:
-        """Unit of its size."""
+        """Unit of the force or couple: "N" or "N m"."""
         return "N m" if self.is_couple else "N"
 
 
 @dataclass(frozen=True)
 class OnTwoBodies(Part):
-    """Base of joints and loads on a body and another one."""
+    """Base of joints and loads between a body and another one."""
 
     body: Body
     other: Other
@@ -256,7 +256,7 @@ class OnTwoBodies(Part):
 
 @dataclass(frozen=True)
 class BetweenPoints(OnTwoBodies):
-    """Base of joints and loads along the line between a point of a body and one of another."""
+    """Base of joints and loads along the line between a point of one body and a point of another."""
 
     remedy: ClassVar[str] = "it has no direction; move one of its ends"
     style: ClassVar[Style]
@@ -269,37 +269,38 @@ class BetweenPoints(OnTwoBodies):
         check_distinct(self.title, (self.at, self.to), self.remedy)
 
     def path(self, length: float | None = None) -> Path:
-        """The line between the points; its length is the drawing's if not given [m]."""
+        """Return the row of the line between the points, for a length [m], by default that of the drawing."""
         drawn = math.dist(self.at, self.to)
         return Path((self.body, self.other), (self.at, self.to), drawn if length is None else length)
 
     def shapes(self) -> tuple[Shape, ...]:
-        """A line between the points."""
+        """Return the drawing of a line between the points."""
         return (Shape(self.style, self.path().ends),)
 
 
 class Joint(Part):
     """Base class of joints.
 
-    In order to write a new joint:
+    How to write a new joint:
 
     1. Derive a frozen dataclass from `Joint`, in a module of its own.  Its fields are its inputs; annotate
        each by a type of `inputs` or by ``Annotated[type, Described(...)]``.  Checks, TOML tables and forms
        follow from that; the table's name is the class name in snake case.
-    2. `rows` returns what the joint forbids: each `Line`, `Path`, `Turn` or `Round` has the value 0 as long
-       as the joint holds, and is an unknown reaction.  The force of the joint is the one on the first body of
-       the first row.  The constructor must refuse what makes a row meaningless (points that coincide); extend
-       `__post_init__`, and call that of the base class first.
-    3. With one row, its multiplier is the size of the joint, with a sign; with several it is the length of
-       the vector of multipliers.  Override `size` if that is not a force, or not the one of interest.
-    4. If it rubs, `friction_laws` returns where and how; laws with a coefficient of 0 are left out.  If
-       friction comes from a pivot, override `with_pivot` as well.
-    5. `shapes` returns how it is drawn, by the styles of `Shape`.
-    6. `label` is its name in the plural, for forms.  Set `one_way` if only a positive size makes sense,
-       `signs` if the signs of the size have names, and `is_hinge` if it holds a point and nothing else.
-       `doubts` warns of inputs that a stroke shows to be doubtful.
-    7. Add the class to `JOINTS` and to `__all__` in `brakes/planar/__init__.py`, and write a test of it
-       against a closed form.  Files, forms, statics, strokes, friction and drawings take it from there.
+    2. `rows` returns the constraints: each `Line`, `Path`, `Turn` or `Round` has the value 0 as long
+       as the joint holds, and an unknown reaction as multiplier.  The joint's force is the force on the first
+       body of the first row.  The constructor must refuse what makes a row meaningless (coincident points):
+       extend `__post_init__`, and call the method of the base class first.
+    3. If there is one row, its multiplier with its sign is the size of the joint's force; if there are
+       several, the size is the norm of the multipliers.  Override `size` if that is not a force, or not the
+       one of interest.
+    4. If the joint has friction, `friction_laws` returns where it acts and how; laws with a coefficient of
+       0 are left out.  If it is friction in a pivot, override `with_pivot` as well.
+    5. `shapes` returns how the joint is drawn, by the styles of `Shape`.
+    6. `label` is the joint's name in the plural, for forms.  Set `one_way` if only a positive size
+       makes sense, `signs` if the signs of the size have names, and `is_hinge` if the joint holds a point
+       and nothing else. `doubts` warns of inputs that a stroke shows to be doubtful.
+    7. Add the class to `JOINTS` and to `__all__` in `brakes/planar/__init__.py`, and test it
+       against a closed form.  Files, forms, statics, strokes, friction and drawings then include it.
 
     Examples
     --------
@@ -311,22 +312,22 @@ class Joint(Part):
     is_hinge: ClassVar[bool] = False
 
     def friction_laws(self) -> tuple[FrictionLaw, ...]:
-        """Friction at the joint; none if its coefficient is 0."""
+        """Return the friction laws of the joint; those with a coefficient of 0 are not used."""
         return ()
 
     def size(self, multiplier: np.ndarray) -> np.ndarray:
-        """Size (S,) of the joint's force for multipliers (S, rows) [N, N m]."""
+        """Compute the size (S,) of the joint's force for multipliers (S, rows) [N, N m]."""
         single = multiplier.shape[1] == 1
         return multiplier[:, 0] if single else np.hypot.reduce(multiplier, axis=1)
 
     def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:
-        """Sentences on what may not be meant, by the angles (S,) of the bodies over a stroke [rad]."""
+        """Yield sentences on doubtful inputs, given the angles (S,) of the bodies over a stroke [rad]."""
         return iter(())
 
     def with_pivot(self, radius: float, friction: float) -> Joint:
-        """The joint with a radius [m] and friction of its pivot where it has none of its own.
+        """Copy the joint with a radius [m] and friction of its pivot, unless it has friction of its own.
 
-        Itself if it has no pivot.
+        A joint without a pivot returns itself.
         """
         return self
 
@@ -334,14 +335,14 @@ class Joint(Part):
 class Load(Part):
     """Base class of loads.
 
-    In order to write a new load:
+    How to write a new load:
 
-    1. Describe its inputs as those of a joint (see `Joint`, 1).
-    2. `row` returns the coordinate on which it does its work: a unit load acts as the row's gradient.  If the
-       direction of the load makes the row's value no coordinate, override `has_coordinate`.
-    3. `amplitude` returns its size at values of that coordinate, or None if equilibrium has to give it.  For
-       a load with a field `magnitude` derive from `AppliedLoad` instead, which does that.
-    4. `shapes`, `label` and `one_way` are as those of a joint.
+    1. Describe its inputs like those of a joint (see `Joint`, step 1).
+    2. `row` returns the coordinate on which the load does work: a unit load acts as the row's gradient.
+       If the row's value is not a coordinate, as for a direction that turns, override `has_coordinate`.
+    3. `amplitude` returns the load's size at values of that coordinate, or None if equilibrium determines it.
+       For a load with a field `magnitude`, derive from `AppliedLoad` instead, which does this.
+    4. `shapes`, `label` and `one_way` are like those of a joint.
     5. Add the class to `LOADS` and to `__all__` in `brakes/planar/__init__.py`, and write a test.
 
     Examples
@@ -351,24 +352,24 @@ class Load(Part):
     """
 
     def row(self) -> Row:
-        """The coordinate on which it does its work."""
+        """Return the row whose value is the coordinate on which the load does work."""
         raise NotImplementedError
 
     def rows(self) -> tuple[Row, ...]:
-        """The only row."""
+        """Return the row of the coordinate on which the load does its work, the only one."""
         return (self.row(),)
 
     @property
     def has_coordinate(self) -> bool:
-        """Whether the value of its row is a coordinate, which may drive a stroke."""
+        """Whether the value of the load's row is a coordinate, which may drive a stroke."""
         return True
 
     def amplitude(self, coordinate: np.ndarray) -> np.ndarray | float | None:
-        """Its size [N, N m] at values (S,) of its coordinate [m, rad]; None if unknown."""
+        """Compute the load's size [N, N m] at values (S,) of its coordinate [m, rad]; None if unknown."""
         raise NotImplementedError
 
     def with_magnitude(self, magnitude: float | None) -> Load:
-        """The load with another magnitude [N, N m].
+        """Copy the load with another magnitude [N, N m].
 
         Raises
         ------
@@ -378,7 +379,7 @@ class Load(Part):
         raise ValueError(f"load {self.name!r} is a spring: name a force, a moment or a cable pair")
 
     def shifted(self, distance: float) -> Load:
-        """The load with its point moved along its direction [m].
+        """Copy the load with its point moved along its direction by a distance [m].
 
         Raises
         ------
@@ -389,14 +390,14 @@ class Load(Part):
 
 
 class AppliedLoad(Load):
-    """A load of a known magnitude [N, N m], or of an unknown one (None) that equilibrium gives."""
+    """Base of loads with a known magnitude [N, N m], or an unknown one (None) that equilibrium gives."""
 
     magnitude: float | None
 
     def amplitude(self, coordinate: np.ndarray) -> float | None:
-        """Its magnitude."""
+        """Return the load's magnitude [N, N m] at any value of its coordinate; None if unknown."""
         return self.magnitude
 
     def with_magnitude(self, magnitude: float | None) -> Self:
-        """The load with another magnitude [N, N m]."""
+        """Copy the load with another magnitude [N, N m]."""
         return replace(self, magnitude=magnitude)

@@ -1,14 +1,14 @@
-"""The rows of which every joint and every load is made: `Line`, `Path`, `Turn` and `Round`.
+"""The four kinds of rows of which all joints and loads are made: `Line`, `Path`, `Turn` and `Round`.
 
-A row is a scalar function of the position.  Its gradient is at the same time a set of forces on the bodies:
-those of a unit multiplier (a joint) or of a unit magnitude (a load).  Each kind of row has
+A row is a scalar function of the positions of the bodies.  Its gradient is at the same time a set of forces
+on the bodies, for a unit multiplier (of a joint) or a unit magnitude (of a load).  Each kind of row has
 
-- `is_couple`: whether it is a couple [N m] on an angle [rad], rather than a force [N] on a length [m];
-- `bodies`, on which it acts, and `ends`, its points, which set the scales of the mechanism;
-- `add`, which evaluates all rows of its kind at once from columns, and `entries`, what one row contributes to
-  these after its index;
-- `constant`: the part of its value that does not depend on the position, lengths over that of the mechanism;
-- `effects`: what it does to a body at a given size, for free-body diagrams.
+- `is_couple`: whether it is a couple [N m] on an angle [rad], not a force [N] on a length [m];
+- `bodies` on which it acts, and `ends`, its points, from which the scales of the mechanism are set;
+- `add`, which evaluates all rows of this kind at once from columns, and `entries`, a row's values in these
+  columns after its index;
+- `constant`: the part of its value that does not depend on the position, with lengths over the mechanism's;
+- `effects`: forces and couples on a body for a size of the row, for free-body diagrams.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ from beamdyn.common.words import Words, amount
 
 GROUND = "ground"
 Point = tuple[float, float]
-End = tuple[str, Point]  # a body and a point of it, given by its place in the drawing [m]
+End = tuple[str, Point]  # a body, and a point of it given by its place in the drawing [m]
 
 
 def path_length(points: Iterable[Point]) -> float:
-    """Length of a polyline [m]."""
+    """Compute the length of a polyline [m]."""
     return sum(math.dist(p, q) for p, q in pairwise(points))
 
 
 def check_point(key: str, value: object) -> Point:
-    """Two finite coordinates [m], or a ValueError that names the key."""
+    """Return two finite coordinates [m]; raise a ValueError that names the key for anything else."""
     try:
         x, y = value  # pyright: ignore[reportGeneralTypeIssues]  (anything else is refused below)
     except (TypeError, ValueError):
@@ -49,7 +49,7 @@ def check_point(key: str, value: object) -> Point:
 
 
 def unit_vector(key: str, value: object) -> Point:
-    """The unit vector along two components, or a ValueError that names the key."""
+    """Return the unit vector along two components; raise a ValueError that names the key if it has none."""
     x, y = check_point(key, value)
     size = math.hypot(x, y)
     if not size:
@@ -58,14 +58,14 @@ def unit_vector(key: str, value: object) -> Point:
 
 
 def check_distinct(key: str, points: Iterable[Point], remedy: str) -> None:
-    """A ValueError if two successive points coincide."""
+    """Raise a ValueError if two successive points coincide."""
     for p, q in pairwise(tuple(map(float, point)) for point in points):
         if p == q:
             raise ValueError(Words(f"{key} has zero length at ", amount(*p), f": {remedy}"))
 
 
 def suggest(name: object, known: Iterable[str]) -> str:
-    """The remedy for an unknown name: the known one nearest to it, or all of them."""
+    """Compose the remedy for an unknown name: suggest the most similar known one, or list all."""
     known = tuple(known)
     near = difflib.get_close_matches(str(name), known, n=1)
     return f"did you mean {near[0]!r}?" if near else f"known: {', '.join(map(repr, known))}"
@@ -78,10 +78,10 @@ _TINY = 1e-200  # keeps a direction finite where two points of a path meet
 
 
 class Pose(NamedTuple):
-    """Where all bodies and the ground are, arrays of shape (n + 1, S).
+    """Positions of all bodies and of the ground (last), arrays of shape (n + 1, S).
 
-    centre : complex, the centres of their points.
-    angle, spin : the angles by which they have turned [rad], and exp(i angle).
+    centre : complex, centres of the bodies' points.
+    angle, spin : angles by which the bodies have turned [rad], and exp(i angle).
     """
 
     centre: np.ndarray
@@ -90,37 +90,38 @@ class Pose(NamedTuple):
 
 
 class Totals(NamedTuple):
-    """Value (R, S) of each row, and its force (complex) and couple on each body, (R, n + 1, S)."""
+    """Value (R, S) of each row, and its force (complex) and couple on each body, both (R, n + 1, S)."""
 
     value: np.ndarray
     force: np.ndarray
     couple: np.ndarray
 
     def push(self, row: np.ndarray, body: np.ndarray, arm: np.ndarray, force: np.ndarray) -> None:
-        """Add forces on bodies, each at an arm from the body's centre; a body may occur more than once."""
+        """Add forces on bodies, each at an arm from the body's centre; a body may occur several times."""
         np.add.at(self.force, (row, body), force)
         np.add.at(self.couple, (row, body), np.imag(arm.conj() * force))
 
 
-Arm = Callable[[str, Point], complex]  # distance from the centre of a body to a point of it, over L
+# Function: the vector from the centre of a body to a point of it, over the mechanism's length L.
+Arm = Callable[[str, Point], complex]
 Effect = tuple[np.ndarray, np.ndarray, float]  # point [m] (nan for a couple), force [N], couple [N m]
 
 
 class Place(Protocol):
-    """Where the bodies are at one instant: a `Position`."""
+    """Interface of a position at one instant, such as `Position`."""
 
     def point(self, body: str, at: Point) -> np.ndarray:
-        """Where a point of a body is [m], shape (2,)."""
+        """Return the place of a body's point [m], shape (2,)."""
         ...
 
     def angle(self, body: str) -> np.ndarray:
-        """Angle by which a body has turned from the drawing [rad], shape ()."""
+        """Return the angle by which a body has turned from the drawing [rad], shape ()."""
         ...
 
 
 @dataclass(frozen=True)
 class _AtPoint(ABC):
-    """A row whose force acts at a point of a body, and back on another body that has a line or a circle."""
+    """Base of rows whose force acts at a body's point, and back on another body with a line or a circle."""
 
     body: str
     at: Point
@@ -131,20 +132,20 @@ class _AtPoint(ABC):
 
     @property
     def bodies(self) -> tuple[str, str]:
-        """The body of the point and the other one."""
+        """The body that has the point, and the other body."""
         return self.body, self.other
 
     @property
     def ends(self) -> tuple[End, End]:
-        """The point, and that of the line or the centre of the circle."""
+        """The point, and a point of the line or the centre of the circle."""
         return (self.body, self.at), (self.other, self.on)
 
     @abstractmethod
     def unit_force(self, place: Place) -> complex:
-        """The force on the body of a unit row."""
+        """Return the force on the body for a unit multiplier, as a complex number."""
 
     def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
-        """A force at the point, and its opposite on the other body."""
+        """Yield the force at the point on a body, if it is one of the two bodies; see `Effect`."""
         if body in self.bodies:
             force = (size if body == self.body else -size) * self.unit_force(place)
             yield place.point(self.body, self.at), np.array((force.real, force.imag)), 0.0
@@ -152,26 +153,29 @@ class _AtPoint(ABC):
 
 @dataclass(frozen=True)
 class Line(_AtPoint):
-    """n.(p - o): distance of a point p of a body from a line through o of another, along its normal n.
+    """Distance n.(p - o) of a body's point p, along the normal n, from a line of another body through o.
 
-    A unit row pushes the body along +n.  The normal turns with the body `frame`.
+    A unit multiplier pushes the body along +n.  The normal turns with the body `frame`.
     """
 
     frame: str
     normal: Point
 
     def constant(self, length: float) -> float:
-        """None."""
+        """Return 0, the part of the value that does not change with the position."""
         return 0.0
 
     def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
-        """One tuple."""
+        """Return what `add` takes, in one tuple: indices of three bodies, two arms, and the normal."""
         bodies = index[self.body], index[self.other], index[self.frame]
         return [(*bodies, arm(self.body, self.at), arm(self.other, self.on), complex(*self.normal))]
 
     @staticmethod
     def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
-        """n.(p - o), with the couple n' x (p - o) on the body with which n turns."""
+        """Add each n.(p - o) to the value of its row, and its forces and couples to those on the bodies.
+
+        A body `frame` other than that of p also receives the couple n x (p - o), as the normal turns with it.
+        """
         a, b, frame, *vectors = columns
         turned = (pose.spin[k] * vector[:, None] for k, vector in zip((a, b, frame), vectors, strict=True))
         arm, arm_other, normal = turned
@@ -179,23 +183,23 @@ class Line(_AtPoint):
         totals.value[row] += np.real(normal.conj() * gap)
         totals.push(row, a, arm, normal)
         totals.push(row, b, arm_other, -normal)
-        # A force that follows its body (frame = body) is not a gradient: it has no such couple.
+        # A force that turns with its own body (frame = body) is not a gradient: it has no such couple.
         totals.couple[row, frame] += np.where((frame == a)[:, None], 0.0, np.imag(normal.conj() * gap))
 
     def unit_force(self, place: Place) -> complex:
-        """The normal."""
+        """Return the normal at a position, as a complex number: the force on the body of a unit row."""
         return complex(complex(*self.normal) * np.exp(1j * place.angle(self.frame)))
 
 
 @dataclass(frozen=True)
 class Round(_AtPoint):
-    """Distance of a point p of a body from a circle about a point c of another, or the sliding along it.
+    """Distance of a body's point p from a circle about a point c of another body, or the sliding along it.
 
-    A unit row pushes the body along n = (p - c)/|p - c|, turned by `direction`, and the other body back, both
-    at p.  Along the circle its gradient is the velocity of p over the surface; its value is 0 there.
+    A unit multiplier pushes the body along n = (p - c)/|p - c|, turned by `direction`, and the other body
+    back, both at p.  Along the circle its gradient is the velocity of p over the surface, and its value is 0.
 
     on : tuple of float
-        The centre c.
+        The centre c of the circle.
     direction : complex
         1: away from the centre; -1: towards it; 1j: along the circle, anticlockwise.
     """
@@ -204,17 +208,23 @@ class Round(_AtPoint):
     direction: complex
 
     def constant(self, length: float) -> float:
-        """Minus the radius, where the row is normal to the circle."""
+        """Return the constant part of the value: minus the radius over the mechanism's length, or 0.
+
+        It is 0 unless the row is normal to the circle.
+        """
         return -self.direction.real * self.radius / length
 
     def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
-        """One tuple."""
+        """Return what `add` takes, in one tuple: indices of two bodies, two arms, and the direction."""
         ends = arm(self.body, self.at), arm(self.other, self.on)
         return [(index[self.body], index[self.other], *ends, self.direction)]
 
     @staticmethod
     def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
-        """|p - c| where the row is normal to the face, 0 where it is tangential; forces act at p on both."""
+        """Add |p - c| to the value of each row normal to the circle, and the forces of all rows at p.
+
+        It is subtracted if `direction` is -1; nothing is added to the value of a row along the circle.
+        """
         a, b, arm, on, way = columns
         arm = pose.spin[a] * arm[:, None]
         span = pose.centre[a] + arm - pose.centre[b] - pose.spin[b] * on[:, None]
@@ -225,14 +235,14 @@ class Round(_AtPoint):
         totals.push(row, b, pose.centre[a] + arm - pose.centre[b], -push)
 
     def unit_force(self, place: Place) -> complex:
-        """The normal of the circle at the point, turned by the direction."""
+        """Return the normal of the circle at the point, turned by `direction`, as a complex number."""
         out = complex(*(place.point(self.body, self.at) - place.point(self.other, self.on)))
         return self.direction * out / abs(out)
 
 
 @dataclass(frozen=True)
 class Path:
-    """Shortening of a polyline over points of bodies below a length [m]; a unit row pulls it together."""
+    """Shortening of a polyline through points of bodies below a length [m]; its multiplier is the tension."""
 
     bodies: tuple[str, ...]
     points: tuple[Point, ...]
@@ -242,31 +252,35 @@ class Path:
 
     @property
     def ends(self) -> tuple[End, ...]:
-        """All points."""
+        """Each point of the path with its body."""
         return tuple(zip(self.bodies, self.points, strict=True))
 
     def constant(self, length: float) -> float:
-        """Its length."""
+        """Return the constant part of the value: the length of the path over that of the mechanism."""
         return self.length / length
 
     def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
-        """One tuple a segment."""
+        """Return what `add` takes, a tuple for each segment: two indices of bodies, two arms."""
         return [(index[a], index[b], arm(a, p), arm(b, q)) for (a, p), (b, q) in pairwise(self.ends)]
 
     @staticmethod
     def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
-        """Minus the length of the path, whose segments pull their ends together."""
+        """Subtract each path's length from the value of its row, and add the pulls of its segments.
+
+        They act on the bodies as forces, with couples about the centres.
+        """
         a, b, arm, arm_other = columns
         arm, arm_other = pose.spin[a] * arm[:, None], pose.spin[b] * arm_other[:, None]
         span = pose.centre[b] + arm_other - pose.centre[a] - arm
         length = np.maximum(np.abs(span), _TINY)
         pull = span / length
-        np.add.at(totals.value, row, -length)  # a path has a row for all its segments: not +=
+        # A path has one row for several segments: += would count only one of them.
+        np.add.at(totals.value, row, -length)
         totals.push(row, a, arm, pull)
         totals.push(row, b, arm_other, -pull)
 
     def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
-        """At each point of the body, the pull towards its neighbours on the path."""
+        """Yield the force at each point of the body: the pull towards the neighbouring points of the path."""
         points = np.array([place.point(*end) for end in self.ends])
         span = np.diff(points, axis=0)
         pull = size * span / np.linalg.norm(span, axis=1, keepdims=True)
@@ -276,7 +290,7 @@ class Path:
 
 @dataclass(frozen=True)
 class Turn:
-    """Angle of a body less `ratio` times that of another and an offset [rad]; a unit row is a couple."""
+    """Angle of a body less `ratio` times the angle of another and less an offset [rad]; acts as a couple."""
 
     body: str
     other: str = GROUND
@@ -288,20 +302,23 @@ class Turn:
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """The two bodies."""
+        """The body that turns, and the one against which it does."""
         return self.body, self.other
 
     def constant(self, length: float) -> float:
-        """Minus the offset."""
+        """Return the part of the value that does not change with the position: minus the offset [rad]."""
         return -self.offset
 
     def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
-        """One tuple."""
+        """Return what `add` takes, in one tuple: indices of two bodies, and the ratio."""
         return [(index[self.body], index[self.other], self.ratio)]
 
     @staticmethod
     def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
-        """Angle - ratio * other angle; what a gear does not pass on, its housing on the ground takes."""
+        """Add angle - ratio * other angle to the value of each row, and the couples to those on the bodies.
+
+        The ground, as a gear's housing, receives the couple that balances those on the two bodies.
+        """
         a, b, ratio = columns[0], columns[1], columns[2][:, None]
         totals.value[row] += pose.angle[a] - ratio * pose.angle[b]
         totals.couple[row, a] += 1.0
@@ -309,7 +326,7 @@ class Turn:
         totals.couple[row, -1] += ratio - 1.0
 
     def effects(self, size: float, place: Place, body: str) -> Iterator[Effect]:
-        """A couple; what a gear does not pass on, its housing on the ground takes."""
+        """Yield the couple on a body; a gear's housing on the ground takes the couples' difference."""
         share = {self.body: 1.0, self.other: -self.ratio}
         share[GROUND] = share.get(GROUND, 0.0) + self.ratio - 1.0
         if share.get(body):
@@ -320,12 +337,12 @@ Row = Line | Path | Turn | Round
 
 
 class FrictionLaw(NamedTuple):
-    """Friction of a joint: |friction| = coefficient * |force of the joint|, against the motion.
+    """Friction law of a joint: |friction| = coefficient * |force of the joint|, against the motion.
 
-    row : the row along which it acts; its value grows in the direction of sliding.
-    coefficient : friction per unit of the joint's force [m if the row is a couple, else 1].
-    pressing : which of the joint's rows make up that force, by their indices; all if empty.
-    label : where it acts, in words, if the joint has several.
+    row : the row along which friction acts; its value grows in the direction of sliding.
+    coefficient : friction divided by the joint's force [m if the row is a couple, else 1].
+    pressing : indices of the joint's rows that make up that force; all of them if empty.
+    label : where the friction acts, in words, if the joint has several laws.
     """
 
     row: Row

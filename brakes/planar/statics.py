@@ -1,4 +1,4 @@
-"""Equilibrium of a mechanism: reactions and amplitudes, or what is loose or undetermined."""
+"""Equilibrium of a mechanism: its reactions and amplitudes, or what is loose or undetermined."""
 
 from __future__ import annotations
 
@@ -27,62 +27,66 @@ from brakes.planar.system import (
     times,
 )
 
-_BALANCED = 1e-9  # largest residual of equilibrium, over the largest force
-_UNDETERMINED = 1e-7  # component in a self-stress from which a reaction counts as undetermined
-_BESIDE = 1e-2  # part of its length by which a mechanism moves away from a toggle position
-_WEAK = 1e-5  # singular value below which the result is ill-conditioned in the coordinates
+_BALANCED = 1e-9  # largest residual of equilibrium that counts as zero, over the largest force
+_UNDETERMINED = 1e-7  # component in a self-stress from which on a reaction counts as undetermined
+_BESIDE = 1e-2  # fraction of its length by which a mechanism is moved away from a toggle position
+_WEAK = 1e-5  # relative singular value below which the result counts as ill-conditioned
 
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """Forces of a mechanism in equilibrium; what is not determined is nan.
+    """Forces of a mechanism in equilibrium; values that are not determined are nan.
 
-    Arrays have the shape () of one position or (S,) of several, and a last axis (x, y) for vectors.
+    Arrays have the shape () for one position or (S,) for several; vectors have a last axis (x, y).
 
     Parameters
     ----------
     position : Position
-        The position or positions.
+        The position or positions of the bodies.
     status : str
-        The worst of the positions: "no equilibrium"; "near a toggle", where rounding of the drawing decides
-        whether there is one; "undetermined"; "loose", in balance, but nothing holds it there; "contact opens"
-        or "cable slackens", if one would have to act the other way, so that the forces are not those of the
-        mechanism; "self-locking" (see `solve_with_friction`); "determined".
+        The worst status of all positions: "no equilibrium"; "near a toggle", where rounding of the drawing
+        decides whether there is equilibrium; "undetermined"; "loose": in balance, but not held; "contact
+        opens" or "cable slackens": a part would have to act in its impossible direction, so that the forces
+        are not those of the mechanism; "self-locking" (see `solve_with_friction`); "determined".
     message : str
         The status as a sentence, with the names of bodies and joints.
     reactions : dict of ndarray
-        Force of each joint on the body named first [N].
+        Force of each joint on the body that it names first [N]; couples, as of a `RotationLock`, are in
+        `magnitudes` only.
     magnitudes : dict of ndarray
-        Its size: tension of a bar or cable, push of a contact, couple of a rotation lock on the body named
-        first [N m], component of a slot's force to the left of its direction; of a pin the absolute value.
+        Size of each joint's reaction: tension of a bar or cable, push of a contact, couple of a rotation lock
+        on the body named first [N m], component of a slot's force to the left of its direction; absolute
+        value for a pin.
     amplitudes : dict of ndarray
         Magnitude of each load, known or solved for [N, N m].
     friction : dict of ndarray
-        Friction couple [N m] or force [N] of each joint that has some, on the body named first.
+        Friction couple [N m] or force [N] of each joint that has friction, on the body named first.
     mobility, indeterminacy, uncontrolled : ndarray of int
-        Independent motions; independent self-stresses; motions that no joint or unknown load opposes.
+        Numbers of independent motions, of independent self-stresses, and of motions that no joint or unknown
+        load opposes.
     movable, loose : tuple of str
-        Bodies that the joints let move, and those that move uncontrolled, at any of the positions.
+        Bodies that the joints let move, and bodies with uncontrolled motion, at any of the positions.
     undetermined : tuple of str
         Reactions and amplitudes that equilibrium does not determine.
     open_or_slack : tuple of str
         Contacts that would have to pull and cables that would have to push, at any of the positions.
     virtual_work : ndarray
-        Largest work of all loads on a free motion, over the largest force; with mobility 0 the closure of
-        forces and moments on the whole.  It does not use the reactions.
+        Largest work of loads and friction in a free motion, over the largest force, without the reactions;
+        with mobility 0, the sum of forces or of moments that the ground receives, whichever is larger.
     residual : ndarray
-        Largest force or moment left over on a body, over the largest force.
+        Largest residual force or moment on a body, over the largest force.
     error : ndarray
-        Error of the forces over the largest one (couples over the length of the mechanism): the rounding of
+        Error of the forces relative to the largest (couples over the length of the mechanism): rounding of
         the coordinates and the residual, both over the smallest singular value of the equations with their
-        friction; nan where there are no forces.
+        friction, but not less than `virtual_work`; nan where there are no forces.
     kept, dropped : ndarray
-        Smallest singular value above the rank tolerance and largest below it, over the largest of all: the
-        wider the gap, the surer the rank.
+        Smallest singular value above the rank tolerance and largest below it, over the largest of all: a
+        wide gap makes the rank certain.
     warnings : tuple of str
-        Contacts that pull, cables that push, and ill-conditioned positions.
+        What makes the forces doubtful: positions close to a toggle position or to indeterminacy, and joints
+        with friction that jam when disturbed.
     multiplier : ndarray, shape (..., R)
-        Size of every row of joints, loads and friction [N, N m].
+        Multiplier of every row of joints, loads and friction [N, N m].
 
     Examples
     --------
@@ -117,27 +121,27 @@ class Equilibrium:
 
     @property
     def is_determined(self) -> bool:
-        """Whether statics gives every force, though a contact may have to pull or a cable to push."""
+        """Whether statics determines every force, even if a contact has to pull or a cable to push."""
         return not (self.undetermined or self.loose or np.isnan(self.multiplier).any())
 
     @property
     def largest_error(self) -> float:
-        """Largest error of the positions; nan where there are no forces."""
+        """Largest error over all positions; nan if there are no forces."""
         return float(np.fmax.reduce(self.error, axis=None))
 
     @property
     def has_answer(self) -> bool:
-        """Whether the forces are those of the mechanism; see `is_answer`."""
+        """Whether the forces are possible in the mechanism; see `is_answer`."""
         return self.is_determined and is_answer(self.status, self.multiplier)
 
 
 class Balance(NamedTuple):
-    """Terms of equilibrium at S positions, in scaled units.
+    """Terms of the equilibrium equations at S positions, in scaled units.
 
-    rows : values and gradients of joints, loads and friction.
+    rows : values and gradients of the rows of joints, loads and friction.
     unknown : indices of the rows whose multipliers are unknown.
     given : (S, R), multipliers of the known loads, 0 for all others.
-    matrix : (S, 3 n, unknowns), [J^T G].
+    matrix : (S, 3 n, unknowns), the matrix [J^T G] of `solve`.
     """
 
     rows: Rows
@@ -146,23 +150,23 @@ class Balance(NamedTuple):
     matrix: np.ndarray
 
     def forces_on_bodies(self, multiplier: np.ndarray) -> np.ndarray:
-        """Generalised forces of multipliers (S, R) on the bodies, (S, 3 n)."""
+        """Compute the generalised forces (S, 3 n) on the bodies from multipliers (S, R)."""
         return times(self.rows.gradient.swapaxes(1, 2), multiplier)
 
 
 def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium:
-    """Reactions and unknown amplitudes at one position or many.
+    """Compute reactions and unknown amplitudes at one position or many.
 
-    Solves [J^T G][lambda; s] = -Q by singular values, 3 rows a body: J the gradient of the joints, G that of
-    the loads of unknown amplitude, Q the known loads.
+    The equations [J^T G][lambda; s] = -Q, 3 rows per body, are solved by singular value decomposition: J is
+    the gradient of the joints, G that of the loads of unknown amplitude, Q are the known loads.
 
     Parameters
     ----------
     mechanism : Mechanism
         The mechanism.
     position : Position, optional
-        Where it is, if not at the assembled drawing; that of a mechanism with the same bodies and joints but
-        other loads will do.
+        Position of the bodies, by default the assembled drawing. A position of a mechanism with the same
+        bodies and joints but other loads will do.
 
     Returns
     -------
@@ -197,7 +201,7 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
 
 
 def balance_at(mechanism: Mechanism, position: Position) -> Balance:
-    """The terms of equilibrium at positions."""
+    """Compute the terms of the equilibrium equations at positions."""
     system = mechanism.system
     rows = system.rows(position.batch)
     given = np.zeros(rows.value.shape)
@@ -220,7 +224,7 @@ def collect_result(
     jammed: np.ndarray | bool = False,
     regularity: np.ndarray | None = None,
 ) -> Equilibrium:
-    """Collect the result from the scaled multipliers (S, R) of all rows; nan at `jammed` positions (S,).
+    """Make the result from the scaled multipliers (S, R) of all rows; forces at `jammed` positions are nan.
 
     `regularity` (S,) is the smallest singular value of the equations with friction, over the largest.
     """
@@ -229,7 +233,7 @@ def collect_result(
     scale = np.maximum(np.abs(multiplier).max(axis=1, initial=0.0), np.finfo(float).tiny)
     residual = np.abs(balance.forces_on_bodies(multiplier)).max(axis=1) / scale
     unbalanced = (residual > tolerance(system)) & ~np.asarray(jammed)
-    # Multipliers (S, R) that take part in a self-stress are not determined by equilibrium.
+    # Equilibrium does not determine multipliers (S, R) that take part in a self-stress.
     stressed = np.zeros(multiplier.shape, bool)
     stressed[:, balance.unknown] = np.linalg.norm(forces.null_rows(), axis=1) > _UNDETERMINED
     shown = np.where(stressed | (unbalanced | jammed)[:, None], np.nan, multiplier)
@@ -239,13 +243,13 @@ def collect_result(
     sizes = _sizes(mechanism, balance.rows, shown)
     ways = one_way_parts(mechanism.parts)
     wrong_way = find_wrong_way(ways, sizes["magnitudes"] | sizes["amplitudes"], tolerance(system) * scale)
-    # Work of loads and friction on free motions; if there are none, closure on the ground.
+    # Virtual work of loads and friction in free motions; if there are none, the sum of forces on the ground.
     loads = np.where(np.arange(multiplier.shape[1]) < system.constraints, 0.0, multiplier)
     work = np.abs(times(constraints.null_rows(), balance.forces_on_bodies(loads))).max(axis=1)
     received = [np.abs((part[:, :, -1] * multiplier).sum(axis=1)) for part in balance.rows[1:3]]
     virtual_work = np.where(constraints.rank == system.size, np.maximum(*received), work) / scale
     kept = forces.kept if regularity is None else regularity
-    missing = unbalanced | jammed | (kept == 0)  # no forces, or none that are unknown
+    missing = unbalanced | jammed | (kept == 0)  # positions without forces, or without any that are unknown
     error = np.maximum((system.rounding + residual) / np.where(missing, np.nan, kept), virtual_work)
     verdict = _verdict(position, constraints, forces, unbalanced, undetermined, wrong_way.values())
     weak = (
@@ -277,7 +281,7 @@ def collect_result(
 
 
 def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
-    """Reactions, their magnitudes, amplitudes and friction, by name, of scaled multipliers (S, R)."""
+    """Collect reactions, magnitudes, amplitudes and friction by name, from scaled multipliers (S, R)."""
     system, physical = mechanism.system, multiplier * mechanism.system.unit
     reactions, magnitudes = {}, {}
     for joint in mechanism.joints:
@@ -293,38 +297,38 @@ def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str
 
 
 def is_answer(status: str, forces: ArrayLike) -> bool:
-    """Whether forces are those of the mechanism: none is nan, and no part would have to act the other way.
+    """Tell whether forces are possible: none is nan, and no part acts in a direction that it cannot.
 
-    A mechanism that locks itself moves by the forces that are given, so that they are an answer.
+    A self-locking mechanism moves by the given forces, so that these count as an answer.
 
     Parameters
     ----------
     status : str
-        As in `Equilibrium`.
+        Status as in `Equilibrium`.
     forces : array_like
-        Forces and moments that equilibrium gives [N, N m].
+        Forces and moments from equilibrium [N, N m].
     """
     return status in ("determined", "self-locking") and bool(np.isfinite(forces).all())
 
 
 def tolerance(system: System) -> float:
-    """Force that counts as zero, over the largest: the rounding of a drawing grows with its distance."""
+    """Force relative to the largest that counts as zero; rounding grows with the distance of the drawing."""
     return max(_BALANCED, 1e3 * system.rounding)
 
 
 def find_wrong_way(
     ways: Mapping[str, OneWay], sizes: Mapping[str, np.ndarray], least: np.ndarray
 ) -> dict[str, tuple[str, str]]:
-    """Contacts that would have to pull, and cables that would have to push: status and sentence, by name.
+    """Find contacts that would have to pull and cables that would have to push: status and sentence, by name.
 
     Parameters
     ----------
     ways : mapping
-        What acts one way only: see `one_way_parts`.
+        Joints and loads that act in one direction only: see `one_way_parts`.
     sizes : mapping
-        Size of each at S positions [N]; it may have others.
+        Size of each joint's or load's force at S positions [N]; other names are ignored.
     least : ndarray, shape (S,)
-        Force below which it counts as zero [N].
+        Force below which a size counts as zero [N].
     """
     found = {}
     for name, way in ways.items():
@@ -337,12 +341,12 @@ def find_wrong_way(
 
 
 def tell_where(positions: np.ndarray) -> str:
-    """At how many of the positions (S,), such as " at 2 of 9 positions"; empty if there is but one."""
+    """State the number of positions (S,) that are marked, as " at 2 of 9 positions"; empty if S is 1."""
     return f" at {positions.sum()} of {len(positions)} positions" if len(positions) > 1 else ""
 
 
 def one_way_parts(parts: Iterable[Part]) -> dict[str, OneWay]:
-    """Joints and loads that act one way only, by name."""
+    """Return the joints and loads that act in one direction only, by name."""
     return {part.name: part.one_way for part in parts if part.one_way is not None}
 
 
@@ -354,7 +358,7 @@ def _verdict(
     undetermined: Sequence[str],
     wrong_way: Iterable[tuple[str, str]],
 ) -> dict[str, Any]:
-    """Status, message and loose bodies, as attributes of an `Equilibrium`: those of the worst position."""
+    """Find status, message and loose bodies of an `Equilibrium`, for its worst position."""
     system = position.mechanism.system
     worst = int(unbalanced.argmax()) if unbalanced.any() else int(forces.rank.argmin())
     loose, y = forces.left_null(worst), position.batch[worst]
@@ -391,7 +395,7 @@ def _verdict(
 
 
 def _is_held_beside(position: Position, index: int, motion: np.ndarray, rank: int) -> bool:
-    """Whether a little further along its free motion (3 n,) the mechanism is held in more ways than here."""
+    """Tell whether the equilibrium matrix has a higher rank a little farther along a free motion (3 n,)."""
     system, y = position.mechanism.system, position.batch[[index]]
     try:
         beside = close_joints(system, y + _BESIDE * motion, motion[None])
@@ -402,7 +406,7 @@ def _is_held_beside(position: Position, index: int, motion: np.ndarray, rank: in
 
 
 def combine(found: Sequence[tuple[str, str]]) -> tuple[str, str]:
-    """Status and message of what was found, each with a status and a sentence, the worst first."""
+    """Combine pairs of status and sentence, the worst first, to one status and one message."""
     if not found:
         return "determined", "every reaction and amplitude is determined"
     return found[0][0], joined("; ", (sentence for _, sentence in found))

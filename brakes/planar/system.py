@@ -1,8 +1,9 @@
-"""A mechanism as arrays over many positions: values and gradients of its rows, ranks, diagnoses.
+"""A mechanism as arrays over many positions: values and gradients of its rows, ranks, and diagnoses in words.
 
-Vectors are complex numbers.  Lengths are divided by one length L of the mechanism and taken from its centre;
-the angle of a body is multiplied by the radius l of its points, so that the coordinates y = (x, y, l angle)
-of all bodies are of one size, whatever the unit, place and size of the drawing.  The ground is the last body.
+Vectors are complex numbers.  Lengths are relative to the centre of the mechanism and to one length L of it;
+the angle of a body is multiplied by the radius l of its points. So the coordinates y = (x, y, l angle)
+of all bodies are of one order, whatever the unit, place and size of the drawing.  The ground is the last
+body.
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ RANK_TOLERANCE = 1e-7  # relative singular value that counts as 0; toggle positi
 
 
 class Decomposition(NamedTuple):
-    """Singular values of matrices (S, m, n): u (S, m, m), s (S, min(m, n)), vt (S, n, n), ranks (S,).
+    """Singular value decompositions of matrices (S, m, n): u (S, m, m), s (S, k), vt (S, n, n), rank (S,).
 
     `kept` and `dropped` (S,) are the smallest singular value within the rank and the largest beyond it, over
-    the largest of all: the wider the gap, the surer the rank.
+    the largest of all: a wide gap makes the rank certain.
     """
 
     u: np.ndarray
@@ -39,20 +40,20 @@ class Decomposition(NamedTuple):
     dropped: np.ndarray
 
     def null(self, index: int = 0) -> np.ndarray:
-        """Basis of the null space of one matrix, (n, n - rank)."""
+        """Return a basis of the null space of one of the matrices, (n, n - rank)."""
         return self.vt[index, self.rank[index] :].T
 
     def left_null(self, index: int = 0) -> np.ndarray:
-        """Basis of the left null space of one matrix, (m, m - rank)."""
+        """Return a basis of the left null space of one of the matrices, (m, m - rank)."""
         return self.u[index, :, self.rank[index] :]
 
     def null_rows(self) -> np.ndarray:
-        """Rows of vt, those outside the null space set to zero, (S, n, n)."""
+        """Return vt (S, n, n) with the rows outside of the null space set to zero."""
         outside = np.arange(self.vt.shape[1]) < self.rank[:, None]
         return np.where(outside[:, :, None], 0.0, self.vt)
 
     def solve(self, b: np.ndarray) -> np.ndarray:
-        """Least-squares solution of least norm, b of shape (S, m)."""
+        """Compute the least-squares solutions of least norm for right-hand sides b (S, m)."""
         k = self.s.shape[1]
         keep = np.arange(k) < self.rank[:, None]
         inverse = np.divide(1.0, self.s, out=np.zeros_like(self.s), where=keep)
@@ -61,17 +62,17 @@ class Decomposition(NamedTuple):
 
 
 def times(a: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Products of matrices (S, m, n) and vectors (S, n) or (n,)."""
+    """Multiply matrices (S, m, n) by vectors (S, n) or (n,)."""
     return (a @ x[..., None])[..., 0]
 
 
 def rank_tolerance(rounding: float) -> float:
-    """Size, relative to the largest, up to which singular values and motions count as zero."""
+    """Return the relative size up to which singular values and motions count as zero, by the rounding."""
     return max(RANK_TOLERANCE, 100 * rounding)
 
 
 def decompose(a: np.ndarray, rounding: float) -> Decomposition:
-    """Singular values, vectors and rank of matrices (S, m, n) whose entries have a relative rounding."""
+    """Decompose matrices (S, m, n) whose entries have a relative rounding error, and find their ranks."""
     u, s, vt = np.linalg.svd(a)
     padded = np.concatenate((s, np.zeros((len(s), 1))), axis=1)
     largest = np.maximum(padded[:, :1], np.finfo(float).tiny)
@@ -81,16 +82,17 @@ def decompose(a: np.ndarray, rounding: float) -> Decomposition:
     return Decomposition(u, s, vt, rank, relative[each, np.maximum(rank - 1, 0)], relative[each, rank])
 
 
-_ONE_POINT = 1e-6  # radius below which the points of a body count as one
+_ONE_POINT = 1e-6  # radius, over the mechanism's length, up to which the points of a body count as one point
 
 
 class Rows(NamedTuple):
-    """Rows at S positions.
+    """Values and gradients of all rows at S positions.
 
-    value : (S, R), lengths over L, angles in rad.
+    value : (S, R), lengths over the mechanism's length L, angles in rad.
     force : (S, R, n + 1) complex, the force of a unit row on each body, the ground last.
-    couple : (S, R, n + 1), its moment about the body's centre, over L.
-    gradient : (S, R, 3 n), the derivatives of the values by the coordinates y: the same, ground left out.
+    couple : (S, R, n + 1), moment of a unit row about the body's centre, over L.
+    gradient : (S, R, 3 n), derivatives of the values by the coordinates y: the same forces, without the
+    ground.
     """
 
     value: np.ndarray
@@ -100,45 +102,46 @@ class Rows(NamedTuple):
 
 
 class System:
-    """Arrays of a mechanism; rows are numbered joints first, then loads, then friction.
+    """A mechanism as arrays; rows are numbered joints first, then loads, then friction.
 
     Parameters
     ----------
     bodies : sequence of str
         Names of the bodies, without the ground.
     joints, loads : mapping
-        Rows of each joint, and row of each load.
+        Rows of each joint, and the row of each load.
     friction : mapping
-        Name of the joint and law of each friction.
+        Joint and friction law by the name of the friction.
 
     Attributes
     ----------
     bodies : dict
-        Index of each body; the ground has the last.
+        Index of each body; the ground is last.
     joints : dict
-        Rows of each joint (slice).
+        Indices of the rows of each joint (slice).
     loads, friction : dict
-        Row of each load, and of each friction.
+        Index of the row of each load, and of each friction.
     pressing : list of ndarray of int
-        Rows of the joint that press where there is friction, in the order of `friction`.
+        Indices of the joint's rows that make up the pressing force of each friction, in the order of
+        `friction`.
     coefficient : ndarray
-        Friction per unit of their resultant, in the same order.
+        Friction divided by that pressing force, in the same order.
     length : float
         Length L of the mechanism [m].
     origin : complex
-        Its centre [m].
+        Centre of the mechanism [m].
     centre, radius : ndarray, shape (n + 1,)
         Centre (complex) of the points of each body, and their greatest distance l from it, over L.
     rounding : float
-        Relative rounding of coordinates: that of the input, which grows with the distance from (0, 0).
+        Relative rounding of coordinates, that of the input; it grows with the distance from (0, 0).
     constant : ndarray, shape (R,)
         Part of each row's value that does not depend on the position.
     unit : ndarray, shape (R,)
-        Size [N, N m] of each row over its multiplier: L for a couple, 1 for a force.
+        Factor from multiplier to force or couple [N, N m] of each row: L for a couple, 1 for a force.
     size, constraints : int
-        Number of coordinates 3 n, and of rows of joints.
+        Number of coordinates 3 n, and number of rows of joints.
     kinds : list of (callable, list of ndarray)
-        What evaluates the rows of each kind, and the columns that it takes.
+        Function that evaluates all rows of one kind, with its columns, for each kind.
     """
 
     def __init__(
@@ -175,7 +178,7 @@ class System:
         ]
 
     def _set_scales(self, points: Sequence[tuple[int, complex]]) -> None:
-        """Origin, length L, and the centre, radius and rounding of the points (body, place) of each body."""
+        """Set origin and length, and the bodies' centre, radius and rounding, from points (body, place)."""
         self.origin = complex(np.mean([p for _, p in points])) if points else 0j
         self.length = max((abs(p - self.origin) for _, p in points), default=0.0) or 1.0
         self.centre, self.radius = np.zeros(len(self.bodies), complex), np.ones(len(self.bodies))
@@ -189,11 +192,11 @@ class System:
         self.rounding = float(np.finfo(float).eps * far / self.radius.min())
 
     def _arm(self, body: str, at: Point) -> complex:
-        """From the centre of a body to a point of it in the drawing, over L."""
+        """Return the vector from a body's centre to its point in the drawing, over the mechanism's length."""
         return (complex(*at) - self.origin) / self.length - self.centre[self.bodies[body]]
 
     def rows(self, y: np.ndarray) -> Rows:
-        """Values and gradients at coordinates y of shape (S, 3 n)."""
+        """Evaluate all rows, values and gradients, at coordinates y of shape (S, 3 n)."""
         moved = np.zeros((len(self.bodies), 3, len(y)))
         moved[:-1] = y.T.reshape(-1, 3, len(y))
         angle = moved[:, 2] / self.radius[:, None]
@@ -208,7 +211,7 @@ class System:
         return Rows(value.T, force.transpose(2, 0, 1), couple.transpose(2, 0, 1), gradient)
 
     def place(self, y: np.ndarray, body: str, at: Point) -> np.ndarray:
-        """Where a point of a body is [m], shape (S, 2)."""
+        """Compute the place [m], shape (S, 2), of a body's point at coordinates y."""
         k = self.bodies[body]
         if 3 * k == self.size:  # the ground
             return np.tile(np.array(at, dtype=float), (len(y), 1))
@@ -218,7 +221,7 @@ class System:
         return np.array(at) + moved.view(float).reshape(-1, 2)
 
     def angle(self, y: np.ndarray, body: str) -> np.ndarray:
-        """Angle of a body [rad], shape (S,)."""
+        """Compute the angle of a body [rad], shape (S,), at coordinates y."""
         k = self.bodies[body]
         return y[:, 3 * k + 2] / self.radius[k] if 3 * k < self.size else np.zeros(len(y))
 
@@ -226,7 +229,7 @@ class System:
 # Sentences that say what is loose, undetermined or out of reach ------------------------------------------
 
 
-_STILL = 1e-8  # relative motion that counts as rounding
+_STILL = 1e-8  # size of a body's motion, over the largest of all bodies, that counts as rounding
 
 
 class AssemblyError(ValueError):
@@ -240,18 +243,18 @@ class AssemblyError(ValueError):
 
 
 class OppositeTravelError(ValueError):
-    """A travel that should grow with the driver falls."""
+    """Raised if a travel that should grow with the driver decreases."""
 
 
 class OutOfReachError(ValueError):
-    """A driver does not reach a value: it turns back before it.
+    """Raised if a driver does not reach a value because its motion turns back before.
 
     Parameters
     ----------
     reason : str
-        Motion that is not reached, and where it ends.
+        The motion that is not reached, and where it ends.
     remedy : str
-        Advice.
+        Advice to the user.
 
     Examples
     --------
@@ -268,7 +271,7 @@ class OutOfReachError(ValueError):
 
 
 def names_of_moving(system: System, motions: np.ndarray) -> tuple[str, ...]:
-    """Names of the bodies that move in motions of shape (3 n, k)."""
+    """Return the names of the bodies that move in motions of shape (3 n, k)."""
     size = np.linalg.norm(motions.reshape(len(motions) // 3, 3 * motions.shape[1]), axis=1)
     moves = size > _STILL * max(size.max(initial=0.0), 1e-300)
     return tuple(name for name, moving in zip(system.bodies, moves, strict=False) if moving)
@@ -279,7 +282,7 @@ def describe(system: System, y: np.ndarray, motions: np.ndarray) -> Words:
     parts, pose = motions.reshape(len(motions) // 3, 3, motions.shape[1]), y.reshape(-1, 3)
     centre = system.centre[:-1] + pose[:, 0] + 1j * pose[:, 1]
     rate = parts[:, 2] / system.radius[:-1, None]
-    # The twist of a body: velocity (complex) of its point at the origin, and angular velocity, (n, 2, k).
+    # Twist of a body, (n, 2, k): complex velocity of its point at the origin, and angular velocity.
     twists = np.stack((parts[:, 0] + 1j * parts[:, 1] - 1j * rate * centre[:, None], rate), axis=1)
     groups: list[tuple[list[str], np.ndarray]] = []
     for name in names_of_moving(system, motions):
@@ -294,7 +297,7 @@ def describe(system: System, y: np.ndarray, motions: np.ndarray) -> Words:
 
 
 def _motion(system: System, bodies: int, twist: np.ndarray) -> str:
-    """Describe the motions (2, k) of a group of bodies; a single one has a centre or a direction."""
+    """Describe the motions (2, k) of a group of bodies in words; a single one by its centre or direction."""
     real = np.stack((twist[0].real, twist[0].imag, twist[1].real))
     left, size, _ = np.linalg.svd(real, full_matrices=False)
     ways = int((size > 1e-7 * size[0]).sum())
@@ -312,7 +315,7 @@ def _motion(system: System, bodies: int, twist: np.ndarray) -> str:
 
 
 def check_moves(system: System, driver: str, rates: np.ndarray) -> None:
-    """Refuse a driver whose velocity, per unit of the mechanism's motion, cannot be told from zero."""
+    """Raise a ValueError if a driver's velocity per unit of motion cannot be distinguished from zero."""
     margin, least = np.abs(rates).min(), rank_tolerance(system.rounding)
     if margin < least:
         raise ValueError(
@@ -323,6 +326,6 @@ def check_moves(system: System, driver: str, rates: np.ndarray) -> None:
 
 
 def join_names(names: Iterable[str]) -> str:
-    """Names as a list in a sentence."""
+    """Join names to a list within a sentence."""
     *most, last = names
     return f"{', '.join(most)} and {last}" if most else last

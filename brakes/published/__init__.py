@@ -1,4 +1,4 @@
-"""The numbers that papers and books print, one TOML file a source; tests and reports read the same files."""
+"""Published numbers from papers and books, in one TOML file per source, which tests and reports read."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from beamdyn.common.results import published
 
 
 def load(name: str) -> dict[str, Any]:
-    """Contents of ``brakes/published/<name>.toml``; see `beamdyn.common.results.published.load`."""
+    """Read the contents of ``brakes/published/<name>.toml``; see `beamdyn.common.results.published.load`."""
     return published.load(__name__, name)
 
 
 def available() -> list[str]:
-    """Names that `load` accepts, sorted."""
+    """List the names that `load` accepts, sorted."""
     return published.available(__name__)

@@ -1,7 +1,7 @@
-"""The published numbers on brakes, each beside ours, with the cost of the papers' errors, and pictures.
+"""Published numbers on brakes beside ours, with the consequences of the papers' errors, and pictures.
 
-The modules `*_as_printed` and `newton` have the papers' own, partly wrong, mechanics; the rest of `brakes`
-has only the right one.
+The modules `*_as_printed` and `newton` contain the papers' own mechanics, which is partly wrong; the rest of
+`brakes` contains only the corrected mechanics.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ _PAPERS = drum_as_printed, forklift_tables
 
 
 def compare_all(screen: Console, folder: Path) -> Sequence[Verdict]:
-    """Print the papers' numbers beside ours and draw the pictures.
+    """Print the papers' numbers beside ours, and draw the pictures.
 
     Parameters
     ----------
     screen : Console
-        Where to print.
+        Console on which the tables are printed.
     folder : Path
-        Where to draw; it is made if needed, and files of the same names are replaced.
+        Folder for the pictures; it is made if needed, and files of the same names are replaced.
 
     Returns
     -------
     sequence of Verdict
-        All that was compared.
+        Verdicts of all comparisons.
     """
     for paper in _PAPERS:
         screen.rule()
@@ -54,10 +54,10 @@ def compare_all(screen: Console, folder: Path) -> Sequence[Verdict]:
 
 
 def cells() -> list[Verdict]:
-    """Compare all numbers of both papers on drum brakes."""
+    """Compare all numbers of the drum paper and of the forklift paper; return one cell for each."""
     return [cell for paper in _PAPERS for table in paper.tables().values() for cell in table.cells]
 
 
 def pictures() -> dict:
-    """Functions that draw the pictures of all papers, by the names of their files."""
+    """Return the functions that draw the pictures of all papers, by file name."""
     return eebrake.PICTURES | drum_as_printed.PICTURES | forklift_tables.PICTURES

@@ -1,4 +1,4 @@
-"""A printed number beside ours, tables of such numbers, and errors of a paper with what they cost."""
+"""Printed numbers beside ours, tables of such numbers, and a paper's errors with their consequences."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from beamdyn.common.results.comparison import Verdict
 
 @dataclass(frozen=True)
 class Cell(Verdict):
-    """A printed number beside ours.
+    """A printed number beside the number that we compute.
 
     Parameters
     ----------
     printed : str
         The number as the paper prints it.
     ours : float
-        The number computed by the paper's own way, in the unit printed.
+        The number that the paper's own method gives, in the printed unit.
     step : float
         Unit of the last significant digit printed.
     reason : str
-        Why the two are known to differ; empty if they should agree.
+        Why the two numbers are known to differ; empty if they should agree.
     right : float, optional
-        The number by the right mechanics, in the unit printed.
+        The number that the corrected mechanics gives, in the printed unit.
     """
 
     printed: str
@@ -39,26 +39,26 @@ class Cell(Verdict):
 
     @property
     def agrees(self) -> bool:
-        """Whether ours rounds to what is printed."""
+        """Whether our number rounds to the printed one."""
         return abs(self.ours - float(self.printed)) <= self.step / 2 * (1 + 1e-12)
 
     @property
     def texts(self) -> list[str]:
-        """The printed number, then ours and, if there is one, the right one, each with a digit more."""
+        """Texts of the printed number and, with one more digit, of ours and of the right one, if any."""
         decimals = max(0, 1 - round(math.log10(self.step)))
         numbers = [x for x in (self.ours, self.right) if x is not None]
         return [self.printed, *(f"{x:.{decimals}f}" if math.isfinite(x) else "never stops" for x in numbers)]
 
 
 def step(printed: str, digits: int | None = None) -> float:
-    """Unit of the last significant digit of a printed number.
+    """Compute the unit of the last significant digit of a printed number.
 
     Parameters
     ----------
     printed : str
-        The number.
+        The number as printed.
     digits : int, optional
-        Number of significant digits, where trailing zeros only pad.
+        Number of significant digits, if trailing zeros are only padding.
     """
     if digits is not None:
         lead = len(printed.partition(".")[0].lstrip("-0"))
@@ -70,18 +70,18 @@ def step(printed: str, digits: int | None = None) -> float:
 
 @dataclass(frozen=True)
 class PrintedTable:
-    """A table of a paper, of numbers beside ours.
+    """A table of a paper, with its numbers beside ours.
 
     Parameters
     ----------
     title : str
-        Its title.
+        Title of the table.
     inputs, quantities : tuple of str
-        Headings of the inputs that vary from row to row, and of the compared numbers.
+        Headings of the inputs that vary from row to row, and of the compared quantities.
     rows : list of (tuple of str, list of Cell)
-        Inputs and numbers of each row.
+        Inputs and compared numbers of each row.
     unit : str
-        Unit of all quantities, where the title has it and the headings do not.
+        Unit of all quantities, if the title states it and the headings do not.
     """
 
     title: str
@@ -92,11 +92,11 @@ class PrintedTable:
 
     @property
     def cells(self) -> list[Cell]:
-        """All numbers, row by row."""
+        """All numbers of the table, row by row."""
         return [cell for _, cells in self.rows for cell in cells]
 
     def shown(self) -> Group:
-        """The table, with the printed number, ours by the paper's way, and the right one of each quantity."""
+        """Make the table for the console: printed number, ours, and the right one, for each quantity."""
         heads = [*self.inputs]
         for name, cell in zip(self.quantities, self.cells, strict=False):
             heads += [name, "ours", "corrected"][: len(cell.texts)]
@@ -109,18 +109,18 @@ class PrintedTable:
 
 @dataclass(frozen=True)
 class Erratum:
-    """An error in a paper and its consequence: the number that follows from it beside the right one.
+    """An error in a paper, and its consequence: a wrong number beside the right one.
 
     Attributes
     ----------
     name : str
-        Short name.
+        Short name of the error.
     where, printed, right : str
-        The place in the paper, what it has there, and what it should have.
+        The place in the paper, what is printed there, and what it should be.
     quantity, unit : str
-        Name and unit of the two values; an empty quantity where nothing follows from the error.
+        Name and unit of the two values; the name is empty if the error has no consequence.
     printed_value, right_value : float
-        The number that follows from the error, and the right one.
+        The number that results from the error, and the right one.
     remark : str
         A further remark on the consequence.
     """
@@ -137,7 +137,7 @@ class Erratum:
 
     @property
     def consequence(self) -> str:
-        """The consequence in a sentence."""
+        """One sentence that describes the consequence of the error."""
         if not self.quantity:
             return "none further on"
         unit, remark = (self.unit and f" {self.unit}"), (self.remark and f"; {self.remark}")
@@ -147,14 +147,14 @@ class Erratum:
 def errata_of(
     paper: Mapping[str, Any], costs: Mapping[str, tuple[str, str, Any, Any]]
 ) -> tuple[Erratum, ...]:
-    """The errors that a published file lists, in its order, with what they cost.
+    """List the errors in a published file, in its order, with their consequences.
 
     Parameters
     ----------
     paper : mapping
-        Contents of the file.
+        Contents of the published file.
     costs : mapping
-        By name of the error: the quantity, its unit, its value as printed and the right one.
+        Consequence by the error's name: quantity, unit, value as printed and right value.
     """
     found = []
     for known in paper["erratum"]:

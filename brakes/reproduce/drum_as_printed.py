@@ -1,8 +1,8 @@
-"""The drum paper's own numbers, from its wrong expressions, beside the right ones, and what its errors cost.
+"""The drum paper's numbers, from its wrong expressions, beside the right ones, and what its errors cause.
 
 Vardanyan et al., The Braking Torque of the Cylinder Brake Mechanism (2019). Inputs and errata come from
-``brakes/published/vardanyan_2019.toml``; the consequences are those at the paper's longest arc, 80 degrees,
-unless stated otherwise. For the right mechanics use `brakes.drum.shoe_torque`.
+``brakes/published/vardanyan_2019.toml``; the consequences are for the paper's longest arc, 80 degrees,
+unless stated otherwise. The right mechanics is in `brakes.drum.shoe_torque`.
 """
 
 from __future__ import annotations
@@ -31,18 +31,20 @@ INTRODUCTION = (
     "other sign of mu b1."
 )
 _INPUT = values_alone(PAPER["input"])
-_MU, _P, _START = _INPUT["friction"], _INPUT["force"], np.radians(_INPUT["lining_start"])  # -, N, rad
-_R, _A, _C = (1e-3 * _INPUT[name] for name in ("drum_radius", "force_arm", "pivot_depth"))  # m
-_B1, _B2 = (1e-3 * offset for offset in _INPUT["pivot_offset"])  # m
+# Friction coefficient [-], actuating force [N], and angle at which the lining starts [rad].
+_MU, _P, _START = _INPUT["friction"], _INPUT["force"], np.radians(_INPUT["lining_start"])
+# Radius of the drum, arm of the force, and depth of the pivots [m].
+_R, _A, _C = (1e-3 * _INPUT[name] for name in ("drum_radius", "force_arm", "pivot_depth"))
+_B1, _B2 = (1e-3 * offset for offset in _INPUT["pivot_offset"])  # offsets of the two pivots [m]
 PressureZero = Literal["axis", "pivot"]
-_AXIS: PressureZero = _INPUT["pressure_zero"]  # place where the pressure in (2) is 0
-_WIDTH = 0.05  # [m] the paper gives none; only the pressure depends on it
+_AXIS: PressureZero = _INPUT["pressure_zero"]  # line on which the pressure in (2) is 0
+_WIDTH = 0.05  # face width of the lining [m], which the paper does not give; only the pressure depends on it
 _LONGEST = np.radians(80.0)
 
 
 @dataclass(frozen=True)
 class Table1:
-    """Columns of the paper's Table 1, shape (8,): angles in [rad], rho in [m], torques in [N m]."""
+    """Columns of the paper's Table 1, shape (8,): arcs [rad], effective arm rho [m], torques [N m]."""
 
     arc: np.ndarray
     effective_arm: np.ndarray
@@ -51,27 +53,27 @@ class Table1:
 
     @property
     def difference(self) -> float:
-        """Largest difference of the torques, the paper's Delta M [N m]."""
+        """Largest difference of the two torques, the paper's Delta M [N m]."""
         return float(np.max(self.second_torque - self.first_torque))
 
     @property
     def total(self) -> np.ndarray:
-        """Sum of both torques [N m]."""
+        """Sum of the two torques [N m]."""
         return self.first_torque + self.second_torque
 
 
 def table_1(arc: np.ndarray | None = None) -> Table1:
-    """Compute Table 1 as printed.
+    """Compute Table 1 of the paper as printed.
 
     Parameters
     ----------
     arc : ndarray, optional
-        Arcs alpha0 of the lining [rad]; those of the paper, 10 to 80 degrees, unless given.
+        Arcs alpha0 of the lining [rad]; by default those of the paper, 10 to 80 degrees.
 
     Returns
     -------
     Table1
-        Columns in SI units.
+        Columns of the table, in SI units.
     """
     arc = np.radians(np.arange(10.0, 90.0, 10.0)) if arc is None else np.asarray(arc, dtype=float)
     rho = table_arm(arc)
@@ -79,25 +81,28 @@ def table_1(arc: np.ndarray | None = None) -> Table1:
 
 
 def table_arm(arc: np.ndarray | float) -> np.ndarray:
-    """Effective arm [m] in Table 1, at arcs [rad]; 0.87 is cos 30 deg, rounded. (12) gives 11.9 % less."""
+    """Compute the effective arm [m] of Table 1 at arcs [rad]; 0.87 is cos 30 deg. (12) gives 11.9 % less."""
     return _R * 0.87 * (np.cos(0.5236) - np.cos(_START + np.asarray(arc))) / 1.1485
 
 
 def printed_arm(arc: np.ndarray | float) -> np.ndarray:
-    """Effective arm [m] by (12) as printed, at arcs [rad]."""
+    """Compute the effective arm [m] by equation (12) as printed, at arcs [rad]."""
     span = (np.pi - 2 * _START + np.sin(_START)) / 2
     return _R * np.cos(_START) * (np.cos(_START) - np.cos(_START + np.asarray(arc))) / span
 
 
 def _torque(rho: np.ndarray | float, b: float) -> np.ndarray:
-    """Torque [N m] by (15) with the sign of b that gives the table, not the printed one; by (16) with -b."""
+    """Compute the torque [N m] by (15) with the sign of b that gives the table, not the printed sign.
+
+    With -b it is the torque of (16).
+    """
     return _MU * _P * (_C + _A) * np.asarray(rho) / (_C + _MU * b - _MU * np.asarray(rho))
 
 
 def corrected(arc: np.ndarray | float | None = None, pressure_zero: PressureZero = _AXIS) -> BrakeResult:
-    """Solve the paper's brake by the right mechanics, at arcs of the lining [rad], or those of Table 1.
+    """Solve the paper's brake by the right mechanics, at arcs of the lining [rad] (by default of Table 1).
 
-    The pressure is the paper's (2), which vanishes on the axis, or with "pivot" that of a shoe that turns
+    The pressure is the paper's (2), which is zero on the axis; with "pivot" it is that of a shoe that turns
     about its pin.
     """
     arc = table_1().arc if arc is None else arc
@@ -113,7 +118,7 @@ def _shoe(b: float, arc: np.ndarray | float = _LONGEST, pressure_zero: PressureZ
 
 
 def _integrals(arc: float) -> tuple[float, float, float]:
-    """K, S, C: integrals of sin, sin^2 and sin cos over an arc from alpha1."""
+    """Compute the integrals K, S, C of sin, sin^2 and sin cos over an arc that begins at alpha1."""
     a1, a2 = _START, _START + arc
     K = np.cos(a1) - np.cos(a2)
     S = (a2 - a1) / 2 - (np.sin(2 * a2) - np.sin(2 * a1)) / 4
@@ -121,7 +126,7 @@ def _integrals(arc: float) -> tuple[float, float, float]:
 
 
 def errata() -> tuple[Erratum, ...]:
-    """The paper's errors, in its order, each with its consequence computed."""
+    """List the paper's errors, in its order, each with its computed consequence."""
     short = np.radians(10.0)
     (K, S, C), (short_K, short_S, short_C) = _integrals(_LONGEST), _integrals(short)
     table, right, rho = table_1(), corrected(np.array([short, _LONGEST])), float(table_arm(_LONGEST))
@@ -156,7 +161,7 @@ def errata() -> tuple[Erratum, ...]:
 
 
 def tables() -> dict[str, PrintedTable]:
-    """Table 1 beside ours, and the largest difference of its torques."""
+    """Compare Table 1, and the largest difference of its torques, with our numbers."""
     printed, ours = PAPER["table_1"], table_1()
     columns = {"effective_arm": 1e3, "first_torque": 1.0, "second_torque": 1.0}
     rows: list[tuple[tuple[str, ...], list[Cell]]] = []
@@ -200,7 +205,7 @@ def shown() -> Iterator[Group]:
 
 
 def summary() -> Iterator[str]:
-    """The conclusions for a brake engineer, a paragraph each."""
+    """Yield the conclusions for a brake engineer, one paragraph each."""
     printed, right, pivot = table_1(), corrected(), corrected(pressure_zero="pivot")
     short, long = (float(printed.total[i] / right.torque[i]) for i in (0, -1))
     yield (
@@ -222,7 +227,7 @@ def summary() -> Iterator[str]:
 
 
 def notes() -> Iterator[str]:
-    """Remarks below the tables."""
+    """Yield the remarks below the tables."""
     (last,) = tables()["difference"].cells
     yield f"Largest MT2 - MT1: printed {last.printed}, ours {last.ours:.3f} N m; {last.verdict}."
 

@@ -1,4 +1,4 @@
-"""Report on the eeBrake: the numbers of its published analysis beside those of our reconstruction."""
+"""Report on the eeBrake: numbers of its published analysis beside those of our reconstruction."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from brakes.drawings.mechanism import free_body_diagrams
 from brakes.published import load
 
 PAPER = load("eebrake")
-_ERROR = 5e-10  # the reconstruction is given to ten digits
-_CABLE = 3.5e-3  # m of cable that close the reconstruction's pads
+_ERROR = 5e-10  # relative error of values of the reconstruction, whose dimensions are given to ten digits
+_CABLE = 3.5e-3  # cable travel that closes the reconstruction's pads [m]
 
 
 def sections() -> dict[str, list[Comparison]]:
-    """Compare the numbers, by the titles of their tables."""
+    """Compare the published numbers with ours, by the titles of the tables."""
     page, printed = "eeBrake page", values_alone(PAPER)
     statics, travel, given = (printed[name] for name in ("statics", "travel", "stop"))
     (f_t, x_work), (_, x_equal) = tangential_forces("equal work"), tangential_forces("equal force")
@@ -52,7 +52,10 @@ def sections() -> dict[str, list[Comparison]]:
 
 
 def tangential_forces(split: str) -> tuple[float, float]:
-    """f_t of the strut on the right lever and X on the left lever's upper pin, for a right pad force of 1."""
+    """Compute f_t and X for a right pad force of 1.
+
+    f_t is the force of the strut on the right lever, X the force on the left lever's upper pin.
+    """
     design, run = EeBrake(), _stroke(split, 0.0)
     pivot, pin = np.array(design.pivot), np.array(design.upper_pin)
     radial = (pin - pivot) / np.linalg.norm(pin - pivot)
@@ -68,7 +71,7 @@ def _stroke(split: str, travel: float) -> CaliperStroke:
 
 
 def notes() -> tuple[str, ...]:
-    """Remarks below the tables."""
+    """Return the remarks below the tables."""
     open_, closed = _stroke("equal force", _CABLE).advantage[[0, -1], 0]
     ratio = _stroke("equal work", 0.0).force_symmetry[0]
     return (

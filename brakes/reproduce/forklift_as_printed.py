@@ -1,15 +1,15 @@
-"""The forklift paper's own numbers: its stop, its Tables 2-7, and what each of its errors costs.
+"""The forklift paper's numbers as printed: its stop, its Tables 2-7, and the consequences of its errors.
 
-`stop_as_printed` reproduces Tables 2-4. It needs three things that Yoo et al. 1997 do not say: the height
-y_cg - r1 of the centre of gravity (the radius is subtracted from a height that the data count from the axle
-already), g = 9.806 m/s2, and a factor 0.97 on the slope's pull, whose origin is not known. One of the 45
-numbers does not fit. The printed torque comes out about 30 % high: safe for strength, unsafe for the stopping
+`stop_as_printed` reproduces Tables 2-4. For this it needs three things that Yoo et al. 1997 do not state:
+y_cg - r1 as the height of the centre of gravity (the radius is subtracted from a height that the data already
+count from the axle), g = 9.806 m/s2, and a factor 0.97 on the slope's pull, of unknown origin. One of the 45
+numbers does not fit. The printed torque is about 30 % too high: safe for strength, unsafe for the stopping
 distance.
 
-Errata: (3) omits the moment of the brake torque on the body. (6) has theta' for theta''. (18) is g_c. (19)
-and (22) ignore the speed lost while the brake force rises. (25) has m_B b for m_A b. The text before (21):
-from 0 to A. (26) is for the axle, Tables 4 and 5 for one brake. Table 7 gives the clearance in metres,
-without saying so. Inputs and errata come from ``brakes/published/yoo_1997.toml``.
+Errata: (3) omits the moment of the brake torque on the body. (6) has theta' instead of theta''. (18) is g_c.
+(19) and (22) ignore the speed lost while the brake force rises. (25) has m_B b instead of m_A b. The text
+before (21) should read: from 0 to A. (26) is for the axle, Tables 4 and 5 for one brake. Table 7 gives the
+clearance in metres without saying so. Inputs and errata are read from ``brakes/published/yoo_1997.toml``.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ Tables = dict[tuple[str, str], np.ndarray]  # columns by table and quantity, e.g
 
 @dataclass(frozen=True)
 class PrintedStop(Stop):
-    """A stop by the paper's equations; they can lift an axle, which the right ones cannot.
+    """A stop by the paper's equations, in which an axle can lift; in the right ones it cannot.
 
-    The status is then ``"front wheel lifts"`` or ``"rear wheel lifts"``. It is never ``"stops in the rise
-    time"``: the paper takes the full speed into the last phase.
+    If one does, the status is ``"front wheel lifts"`` or ``"rear wheel lifts"``. It is never ``"stops in the
+    rise time"``: the paper begins the last phase with the full speed.
     """
 
     @property
     def message(self) -> str:
-        """Sentence that explains the status; of many cases, how many do not stop."""
+        """One sentence that explains the status; of many cases, how many do not stop."""
         return _LIFTED.get(str(self.status)) or super().message
 
 
@@ -54,10 +54,10 @@ _LIFTED = {
 
 
 def stop_as_printed(truck: Truck, conditions: StopConditions) -> PrintedStop:
-    """Compute a stop by the way that reproduces the paper's Tables 2-4.
+    """Compute a stop by the method that reproduces the paper's Tables 2-4.
 
-    It has the parameters of `brakes.forklift.stop`, raises its errors, and takes from its result the axle
-    loads at rest and the speed gained when coasting.
+    Parameters and errors are those of `brakes.forklift.stop`. Axle loads at rest and the speed gained while
+    coasting are taken from its result.
     """
     right, c = stop(truck, conditions), conditions
     (x, y), r1, weight = truck.cg, truck.front_wheel_radius, truck.mass * c.gravity * np.cos(c.slope)
@@ -86,25 +86,25 @@ def stop_as_printed(truck: Truck, conditions: StopConditions) -> PrintedStop:
 
 
 def printed_distance(acceleration: Numbers, c: StopConditions) -> Numbers:
-    """Compute the stopping distance [m] by (19)-(24); the acceleration at full brake force [m/s2] is < 0."""
+    """Compute the stopping distance [m] by (19)-(24), for an acceleration below 0 at full force [m/s2]."""
     V, A, t2 = c.speed, acceleration, c.rise_time
     return V * c.reaction_time + (A * t2**2 / 6 + V * t2) - V**2 / (2 * A)
 
 
 def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> ForkliftAnswer | None:
-    """Solve the stages of a file with the paper's stop in place of the right one.
+    """Solve the stages of a file with the paper's stop instead of the right one.
 
     Parameters
     ----------
     design : ForkliftInput
-        The file.
+        The design that the file describes.
     stages : tuple of str
-        Stages among "vehicle", "kinematics", "forces".
+        Some of "vehicle", "kinematics", "forces".
 
     Returns
     -------
     ForkliftAnswer or None
-        None where the stop has no part in the stages.
+        The answer; None if the stages do not depend on the stop.
 
     Raises
     ------
@@ -128,12 +128,12 @@ def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> F
 
 
 def tables() -> Tables:
-    """Compute Tables 2-7 by the paper's way, in SI units.
+    """Compute Tables 2-7 by the paper's method, in SI units.
 
     Returns
     -------
     dict of ndarray
-        By table and quantity, e.g. ``("table_4", "torque")``; shapes (3, 3) for Tables 2-4, (3,) for
+        Numbers by table and quantity, e.g. ``("table_4", "torque")``; shapes (3, 3) for Tables 2-4, (3,) for
         Tables 5-7, rows and columns as printed.
     """
     computed = _vehicle_tables(stop_as_printed)
@@ -144,12 +144,12 @@ def tables() -> Tables:
 
 
 def corrected_tables() -> Tables:
-    """Compute Tables 2-4 by the right mechanics, in SI units; the distance is inf without a stop."""
+    """Compute Tables 2-4 by the right mechanics, in SI units; the distance is inf if there is no stop."""
     return _vehicle_tables(stop)
 
 
 def _vehicle_tables(solve: Callable[[Truck, StopConditions], Stop]) -> Tables:
-    """Compute Tables 2-4 by a way to compute a stop."""
+    """Compute Tables 2-4 with a function that computes a stop."""
     computed: Tables = {}
     for name in VEHICLE:
         (down, rows), (across, columns) = inputs_of(name).items()
@@ -164,24 +164,24 @@ def _vehicle_tables(solve: Callable[[Truck, StopConditions], Stop]) -> Tables:
 
 
 def inputs_of(name: str) -> dict[str, np.ndarray]:
-    """Values of the inputs that vary in a table, rows first, by their keys in the published file."""
+    """Return the values of the inputs that vary in a table, rows first, by their published keys."""
     entries = load("yoo_1997")[name].items()
     varied = {key: entry for key, entry in entries if key != "padded" and "value" in entry}
     return {key: np.array(entry["value"]) for key, entry in varied.items()}
 
 
 def quantities_of(name: str) -> tuple[str, ...]:
-    """Keys of the printed quantities of a table in the published file."""
+    """Return the keys of the printed quantities of a table in the published file."""
     return tuple(key for key, entry in load("yoo_1997")[name].items() if "printed" in entry)
 
 
 def base_case(**varied: Numbers) -> tuple[Truck, StopConditions]:
-    """Truck and conditions of the paper's base case.
+    """Make truck and conditions of the paper's base case.
 
     Parameters
     ----------
     **varied : float or ndarray
-        Inputs that differ from the paper's Table 1, in its units: the speed in km/h.
+        Inputs that differ from the paper's Table 1, in its units; the speed is in km/h.
     """
     paper = values_alone(load("yoo_1997"))
     case = paper["input"] | varied
@@ -189,13 +189,13 @@ def base_case(**varied: Numbers) -> tuple[Truck, StopConditions]:
     road = ("slope", "friction", "reaction_time", "rise_time")
     return Truck(**{name: case[name] for name in truck}), StopConditions(
         **{name: case[name] for name in road},
-        speed=case["speed"] / 3.6,  # printed in km/h
+        speed=case["speed"] / 3.6,  # the paper's speed is in km/h
         gravity=paper["reproduction"]["gravity"],
     )
 
 
 def base_forces(**varied: Numbers) -> InternalForces:
-    """Solve the forces at the base case of Tables 5-7, or with some of its inputs varied."""
+    """Compute the forces in the base case of Tables 5-7, with some of its inputs varied."""
     case = values_alone(load("yoo_1997")["input"]) | varied
     return internal_forces(
         BENDIX_12_5, **{name: case[name] for name in ("torque", "piston_force", "clearance")}
@@ -203,13 +203,13 @@ def base_forces(**varied: Numbers) -> InternalForces:
 
 
 def errata() -> tuple[Erratum, ...]:
-    """The paper's errors, each with its consequence at the base case computed."""
+    """List the paper's errors, each with its computed consequence in the base case."""
     paper = load("yoo_1997")
     printed, right = stop_as_printed(*base_case()), stop(*base_case())
     unladen = [solve(*base_case(load_mass=0.0)).acceleration for solve in (stop_as_printed, stop)]
     truck, conditions, torque = right.truck, right.conditions, right.torque_per_brake
     mu, y, r1 = conditions.friction, truck.cg[1], truck.front_wheel_radius
-    # With moments about the axle that leave out the brake torque the arm is y_cg.
+    # If the moments about the axle omit the brake torque, the arm is y_cg.
     ratio = (truck.wheelbase + mu * (y + r1)) / (truck.wheelbase + mu * y)
     missing = 1 - paper["reproduction"]["factor"]["value"]
     slower = right.acceleration - missing * (conditions.gravity * np.sin(conditions.slope))

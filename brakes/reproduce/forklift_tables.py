@@ -1,4 +1,4 @@
-"""Report on the forklift of Yoo et al. (1997): Tables 2-7, the right numbers, and what the errors cost."""
+"""Report on the forklift of Yoo et al. (1997): Tables 2-7, right numbers, and consequences of the errors."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ INTRODUCTION = (
     "0.3019 rad (17.3 deg), 20 km/h, friction 0.7 on the ground, front wheels of 0.40 m radius."
 )
 _INPUT = values_alone(PAPER["input"])
-_HEADS = {  # headings of inputs and quantities of the tables
+_HEADS = {  # headings of the tables, by input or quantity
     "friction": "friction",
     "speed": "V [km/h]",
     "slope": "slope [rad]",
@@ -52,13 +52,13 @@ _WORDS = {
 
 
 def tables() -> dict[str, PrintedTable]:
-    """Tables 2-7, every number beside ours; those of Tables 2-4 have the right ones too."""
+    """Compare Tables 2-7 with our numbers; for Tables 2-4 there are the right numbers, too."""
     ours, right = as_printed.tables(), as_printed.corrected_tables()
     return {name: _table(name, ours, right) for name in (*VEHICLE, *BRAKE)}
 
 
 def _table(name: str, ours: as_printed.Tables, right: as_printed.Tables) -> PrintedTable:
-    """Compare a table of the paper with the numbers by its own way, and with the right ones, if any."""
+    """Compare one table of the paper with the numbers of its own method, and with the right ones, if any."""
     data, misfit, number = PAPER[name], PAPER["misfit"][0], name[-1]
     inputs, quantities = as_printed.inputs_of(name), as_printed.quantities_of(name)
     padded = data.get("padded", {"value": [], "digits": None})
@@ -94,7 +94,7 @@ def shown() -> Iterator[Group]:
 
 
 def summary() -> Iterator[str]:
-    """The conclusions for a brake engineer, a paragraph each."""
+    """Yield the conclusions for a brake engineer, one paragraph each."""
     printed, right = _stops()
     high, low = float(printed.torque_per_brake), float(right.torque_per_brake)
     short, long = float(printed.distance), float(right.distance)
@@ -107,7 +107,7 @@ def summary() -> Iterator[str]:
 
 
 def notes() -> Iterator[str]:
-    """Remarks below the tables: on the misfit, the lining's friction, the shoes' way, and Newton-Raphson."""
+    """Yield the remarks below the tables: misfit, lining friction, motion of the shoes, Newton-Raphson."""
     compared, misfit, forces = tables(), PAPER["misfit"][0], as_printed.base_forces()
     every = [cell for name in VEHICLE for cell in compared[name].cells]
     yield (
@@ -149,13 +149,13 @@ def notes() -> Iterator[str]:
 
 
 def _stops(**varied: Any) -> tuple[Stop, Stop]:
-    """Solve the stop at the base case, as printed and corrected, with some inputs varied."""
+    """Solve the stop of the base case, as printed and corrected, with some inputs varied."""
     case = as_printed.base_case(**varied)
     return as_printed.stop_as_printed(*case), stop(*case)
 
 
 def _follow() -> Any:
-    """Follow the shoes over the clearance of the base case."""
+    """Follow the motion of the shoes at the clearance of the base case."""
     return follow_shoes(BENDIX_12_5, _INPUT["clearance"])
 
 

@@ -1,8 +1,9 @@
-"""The solution method of Yoo et al. 1997: Newton-Raphson on the ten equations (27)-(36), for comparison.
+"""The method of Yoo et al. 1997, for comparison: Newton-Raphson iteration on the ten equations (27)-(36).
 
-Where it ends depends on its start: from most random ones it diverges, or converges to one of the three
-mirror images of the solution, which satisfy the equations as well (A x B or C x D of the wrong sign, or both;
-B and D enter the moments by their sizes, so that Q and P_L are positive in all four).
+The result depends on the start: from most random ones the iteration diverges, or converges to one of the
+three mirror images of the solution. They satisfy the equations as well, with A x B or C x D of the wrong
+sign, or both; B and D enter the moments by their magnitudes, so that Q and P_L are positive in all four
+solutions.
 """
 
 from __future__ import annotations
@@ -18,29 +19,29 @@ from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.result import Result
 from brakes.forklift import Levers, equilibrium_equations
 
-_TOLERANCE = 1e-12  # tolerance of the largest left-hand side, in units of T/r and r
-_DIVERGED = 1e30  # the same, past which an iteration is given up
+_TOLERANCE = 1e-12  # tolerance of the largest residual of the equations, in units of T/r and r
+_DIVERGED = 1e30  # residual, in the same units, above which the iteration counts as diverged
 SCALED_START = (-1.5, 0.1, 0.1, 0.7, 0.6, 0.1, 0.05, -0.3, 0.5, 1.4)
 
 
 @dataclass(frozen=True)
 class NewtonResult(Result):
-    """End of an iteration.
+    """Result of a Newton-Raphson iteration.
 
     Attributes
     ----------
     unknowns : ndarray, shape (10,)
-        Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L [N].
+        The unknown forces Ax, Ay, Bx, By, Cx, Cy, Dx, Dy, Q, P_L [N].
     converged : bool
         Whether the residual is below the tolerance.
     physical : bool
-        Converged, with the friction along the drum's motion: no mirror image.
+        Whether it converged to friction along the drum's motion, not to a mirror image.
     iterations : int
-        Steps taken.
+        Number of steps.
     residual : float
-        Largest left-hand side, in units of T/r and r.
+        Largest residual of the equations, in units of T/r and r.
     condition_number : float
-        Condition number of the Jacobian at the end, in the units of the iteration.
+        Condition number of the Jacobian at the last step, in the units of the iteration.
     """
 
     field_units: ClassVar[dict[str, str]] = {"N": "unknowns"}
@@ -53,13 +54,13 @@ class NewtonResult(Result):
     condition_number: float
 
     def headline(self) -> Iterator[str]:
-        """Number of steps with the residual, and how it ended; see `Result.headline`."""
+        """Yield the number of steps with the residual, and the outcome; see `Result.headline`."""
         yield f"{counted(self.iterations, 'step')}, residual {number(self.residual)}"
         yield self.message
 
     @property
     def message(self) -> str:
-        """How it ended, in one sentence."""
+        """One sentence that describes the outcome of the iteration."""
         if not self.converged:
             return f"no convergence within {self.iterations} steps: try another start, or the reduction"
         mirrored = "" if self.physical else " to a mirror image: friction against the drum's motion"
@@ -67,7 +68,7 @@ class NewtonResult(Result):
 
 
 def _jacobian(levers: Levers, x: np.ndarray) -> np.ndarray:
-    """Derivatives of the `equilibrium_equations` to the unknowns, shape (10, 10)."""
+    """Compute the derivatives of `equilibrium_equations` by the unknowns, shape (10, 10)."""
     r, a1, b1, b2 = levers.drum_radius, levers.a1, levers.b1, levers.b2
     vectors = x[:8].reshape(4, 2)
     A, B, C, D = sizes = np.hypot(*vectors.T)
@@ -97,27 +98,27 @@ def newton_raphson(
     scaled: bool = True,
     steps: int = 50,
 ) -> NewtonResult:
-    """Solve the ten equations of one case by Newton-Raphson.
+    """Solve the ten equilibrium equations of a single case by Newton-Raphson iteration.
 
     Parameters
     ----------
     levers : Levers
-        Arms and directions.
+        Lever arms and directions of the forces.
     torque, piston_force : float
-        T [N m] and P_T [N].
+        Torque T [N m] and piston force P_T [N].
     start : ndarray, shape (10,), optional
-        In units of T/r; one that works for the paper's brake unless given.
+        Initial unknowns in units of T/r; by default a start that works for the paper's brake.
     damped : bool
-        Whether a step is halved until the residual falls.
+        Whether each step is halved until the residual decreases.
     scaled : bool
-        Whether forces are over T/r and lengths over r; in SI units the Jacobian is ill-conditioned.
+        Whether forces are divided by T/r and lengths by r; in SI units the Jacobian is ill-conditioned.
     steps : int
-        Largest number of steps.
+        Largest number of steps of the iteration.
 
     Returns
     -------
     NewtonResult
-        Where it ended.
+        Result of the iteration.
 
     Raises
     ------
@@ -126,13 +127,14 @@ def newton_raphson(
     """
     T, P_T = positive("torque", torque, "N m"), positive("piston_force", piston_force, "N")
     unit = T / levers.drum_radius
-    force, used = (unit, levers.in_radii) if scaled else (1.0, levers)
+    in_radii = levers.in_radii
+    force, used = (unit, in_radii) if scaled else (1.0, levers)
 
     def equations(x: np.ndarray) -> np.ndarray:
         return equilibrium_equations(used, unit / force * used.drum_radius, P_T / force, x)
 
     def residual(x: np.ndarray) -> float:
-        in_units = equilibrium_equations(levers.in_radii, 1.0, P_T / unit, x * force / unit)
+        in_units = equilibrium_equations(in_radii, 1.0, P_T / unit, x * force / unit)
         return float(np.max(np.abs(in_units)))
 
     x = np.array(SCALED_START if start is None else start, dtype=float) * unit / force

@@ -1,4 +1,4 @@
-"""Vehicles of two axles: stop, parking and hill hold, pitching over, and which axle locks first."""
+"""Vehicles with two axles: stops, parking and hill hold, pitching over, and which axle locks first."""
 
 from brakes.vehicle.axles import Vehicle
 from brakes.vehicle.backwards import Needed, friction_to_hold, friction_to_stop

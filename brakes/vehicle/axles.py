@@ -1,14 +1,14 @@
-"""A vehicle of two axles: loads of its axles, and the braking at which it slips, locks or pitches over.
+"""A vehicle with two axles: axle loads, and the braking ratios at which it slips, locks or pitches over.
 
-Let R be the braking force of all wheels along the ground, over the force normal to it, W = M g cos(beta):
-the braking ratio tau = R / W. With the centre of gravity at the height h, and at the distances a behind the
-front axle and b before the rear axle, a + b = L, moments about where the tyres touch the ground give
+Let R be the braking force of all wheels along the ground, and W = M g cos(beta) the vehicle's force normal to
+it. The braking ratio is tau = R / W. With the centre of gravity at the height h, a behind the front axle and
+b before the rear axle, a + b = L, moments about where the tyres touch the ground give
 
     loads over W: (b + tau h) / L in front and (a - tau h) / L at the rear, if the front axle leads,
                   (b - tau h) / L in front and (a + tau h) / L at the rear, if the rear axle leads.
 
-The wheels have no mass. The axle that leads is the one at the front of the motion, or the lower one at rest
-on a slope, where tau = tan(beta). So one formula covers stops and parking.
+The wheels have no mass. The leading axle is the one at the front of the motion, or the lower one at rest
+on a slope, where tau = tan(beta). So the same formulas cover stops and parking.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import one_of, refuse
 from beamdyn.common.inputs.described import Described
 from brakes.common.locking import LEAST_MARGIN
@@ -26,12 +26,12 @@ from brakes.common.locking import LEAST_MARGIN
 Axle = Literal["front", "rear"]
 Braked = Literal["front", "rear", "both"]
 ROUNDING = np.finfo(float).eps
-ACUTE: Any = {"above": -np.pi / 2, "below": np.pi / 2}  # [rad]
+ACUTE: Any = {"above": -np.pi / 2, "below": np.pi / 2}  # bounds of an acute angle of either sign [rad]
 
 
 @dataclass(frozen=True)
 class Vehicle:
-    """Mass and centre of gravity of a vehicle of two axles; every value may be an array, one per design.
+    """Mass and centre of gravity of a vehicle with two axles; every value may be an array, one per design.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Vehicle:
     cg_height : float or ndarray
         Height h of the centre of gravity above the ground [m].
     wheelbase : float or ndarray
-        Distance L of the axles [m].
+        Distance L between the axles [m].
 
     Raises
     ------
@@ -69,25 +69,24 @@ class Vehicle:
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        together(**vars(self))
         a, L = np.asarray(self.cg_behind_front), np.asarray(self.wheelbase)
         bound = "it is behind the rear axle, at {other} = {limit}"
         late = a >= L * (1 - LEAST_MARGIN)
         refuse(late, "cg_behind_front", a, "m", bound, limit=self.wheelbase, other="wheelbase")
 
     def arm(self, axle: Axle) -> Numbers:
-        """Distance [m] of the centre of gravity from the other axle, by which an axle is loaded at rest."""
+        """Return the distance [m] of the centre of gravity from the other axle, a measure of the load."""
         return self.wheelbase - self.cg_behind_front if axle == "front" else self.cg_behind_front
 
     def load_share(self, axle: Axle, ratio: Numbers, leading: Axle) -> Numbers:
-        """Load of an axle over that of both, at a braking ratio; negative past pitching over.
+        """Compute the load of an axle over that of both, at a braking ratio; negative past pitching over.
 
         Parameters
         ----------
         axle : {"front", "rear"}
             The axle.
         ratio : float or ndarray
-            Braking ratio tau.
+            Braking ratio tau, the braking force over the load of both axles.
         leading : {"front", "rear"}
             The axle that leads in the motion, or is the lower one at rest.
         """
@@ -95,11 +94,11 @@ class Vehicle:
         return (self.arm(axle) + (moved if axle == leading else -moved)) / self.wheelbase
 
     def pitching_ratio(self, leading: Axle) -> Numbers:
-        """Braking ratio at which the axle that does not lead lifts: it pitches over the other one."""
+        """Compute the braking ratio at which the vehicle pitches over: the axle that does not lead lifts."""
         return self.arm(other(leading)) / self.cg_height
 
     def locking_ratio(self, axle: Axle, friction: Numbers, share: Numbers, leading: Axle) -> Numbers:
-        """Braking ratio at which an axle with a share of the braking force locks; inf if it never does.
+        """Compute the braking ratio tau at which an axle with a share of the force locks; inf if it does not.
 
         Parameters
         ----------
@@ -108,7 +107,8 @@ class Vehicle:
         friction : float or ndarray
             Friction mu of the tyres.
         share : float or ndarray
-            Share of the axle in the braking force, 0 to 1. From share tau = mu load_share follows tau.
+            Fraction of the braking force at this axle, 0 to 1; the axle locks where share * tau is mu times
+            its `load_share`.
         """
         sense = 1 if axle == leading else -1
         left = share * self.wheelbase - sense * friction * self.cg_height
@@ -116,7 +116,7 @@ class Vehicle:
         return np.where(locks, friction * self.arm(axle) / np.where(locks, left, 1.0), np.inf)[()]
 
     def slipping_ratio(self, friction: Numbers, braked: Braked, leading: Axle) -> Numbers:
-        """Largest braking ratio that the road holds, with all braked wheels at the limit of their friction.
+        """Compute the largest braking ratio by grip, with all braked wheels at the limit of their friction.
 
         Parameters
         ----------
@@ -133,10 +133,10 @@ class Vehicle:
 
     @property
     def overturning_slopes(self) -> tuple[Numbers, Numbers]:
-        """Slopes between which it stands on both axles [rad]: over the front and the rear axle."""
+        """Slopes [rad] at which the vehicle overturns: over the front axle (negative), over the rear axle."""
         return -np.arctan(self.pitching_ratio("front")), np.arctan(self.pitching_ratio("rear"))
 
 
 def other(axle: Axle) -> Axle:
-    """The other axle."""
+    """Return the name of the other axle: "rear" for "front", and vice versa."""
     return "rear" if axle == "front" else "front"

@@ -1,13 +1,13 @@
-"""The question backwards: the friction of the tyres that a slope or a stopping distance needs.
+"""Questions backwards: the tyre friction that a slope or a stopping distance needs.
 
-A braking ratio tau on axles that carry the share n(tau) of the load needs the friction mu = tau / n(tau), and
-tau rises with mu until the vehicle pitches over: each answer is the only one. The distance of a stop,
+A braking ratio tau on axles that carry the fraction n(tau) of the load needs the friction mu = tau / n(tau),
+and tau rises with mu until the vehicle pitches over: each answer is unique. The distance of a stop,
 
     s = V t1 + V t2 / 2 - d t2^2 / 24 + V^2 / (2 d)   for the deceleration d = -A up to 2 V / t2,
     s = V t1 + (2 / 3) V sqrt(2 V t2 / d)             for a stop within the rise time,
 
-falls with d, ds/dd < 0 in both, and so has one d: the positive root of a quadratic equation, or (2 / d)^(1/2)
-from the second line.
+falls with d, ds/dd < 0 in both cases, so that d is unique: the positive root of a quadratic equation, or
+(2 / d)^(1/2) from the second formula.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from brakes.vehicle.axles import Axle, Braked, Vehicle, other
 from brakes.vehicle.stop import StopConditions
 from brakes.vehicle.truck import Truck
 
-MOST_FRICTION = 2.0  # that `Road` and `StopConditions` take
+MOST_FRICTION = 2.0  # largest friction that `Road` and `StopConditions` accept
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,9 @@ class Needed(Result):
     Attributes
     ----------
     value : ndarray
-        The only value that gives the output, in SI; nan where there is none.
+        The unique value that gives the output, in the unit of SI; nan if there is none.
     reason : str or ndarray of str
-        Why there is none; empty where there is one.
+        Why there is no value; empty if there is one.
 
     Examples
     --------
@@ -52,18 +52,21 @@ class Needed(Result):
     reason: Any
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield spanned(self.value)
         yield self.message if np.ndim(self.reason) == 0 and self.reason else ""
 
     @property
     def message(self) -> str:
-        """The value, or "none" with the reason; of one case."""
+        """Text of the value, or "none" with the reason; for a single case only."""
         return f"none: {self.reason}" if self.reason else f"{float(self.value):.6g}"
 
 
 def needed(value: Numbers, *reasons: tuple[Any, Any]) -> Needed:
-    """The value where none of the conditions holds, else nan with the words of the first that does."""
+    """Make the result: the value where no condition holds, else nan with the reason of the first that holds.
+
+    Each of `reasons` is a condition with its words.
+    """
     shapes = np.broadcast_arrays(value, *(bad for bad, _ in reasons))
     value, bad = shapes[0], list(shapes[1:])
     none = np.any(bad, axis=0) if bad else np.zeros(value.shape, dtype=bool)
@@ -72,7 +75,7 @@ def needed(value: Numbers, *reasons: tuple[Any, Any]) -> Needed:
 
 
 def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill: Axle) -> Needed:
-    """Least friction of the tyres with which a parked vehicle holds on a slope.
+    """Find the least tyre friction with which a parked vehicle holds on a slope.
 
     Parameters
     ----------
@@ -88,7 +91,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
     Returns
     -------
     Needed
-        The friction; none where the vehicle tips, or none of 2 or less suffices.
+        The friction; none if the vehicle tips, or if the friction would have to exceed 2.
 
     Raises
     ------
@@ -113,7 +116,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
 
 
 def friction_to_stop(truck: Truck, conditions: StopConditions, distance: Numbers = np.inf) -> Needed:
-    """Least friction of the tyres with which a truck with locked front wheels stops, within a distance.
+    """Find the least tyre friction with which a truck with locked front wheels stops, within a distance.
 
     Parameters
     ----------
@@ -122,13 +125,13 @@ def friction_to_stop(truck: Truck, conditions: StopConditions, distance: Numbers
     conditions : StopConditions
         Road, speed and timing; their friction is not used.
     distance : float or ndarray, optional
-        Stopping distance from the driver's reaction [m]; any if not given.
+        Stopping distance from the driver's reaction [m]; any distance if not given.
 
     Returns
     -------
     Needed
-        The friction; none where the truck pitches over, or the distance is covered before the brakes act, or
-        none of 2 or less suffices.
+        The friction; none if the truck pitches over, covers the distance before the brakes act, or
+        would need a friction above 2.
 
     Raises
     ------
@@ -162,10 +165,10 @@ def friction_to_stop(truck: Truck, conditions: StopConditions, distance: Numbers
 
 
 def _friction_for(vehicle: Vehicle, ratio: Numbers, braked: Braked, leading: Axle) -> Needed:
-    """Friction that a braking ratio needs of the braked axles."""
+    """Find the tyre friction that a braking ratio needs at the braked axles."""
     share = 1.0 + 0.0 * ratio if braked == "both" else vehicle.load_share(braked, ratio, leading)
     lifted = vehicle.load_share(other(leading), ratio, leading) <= 0
-    lifted &= braked != other(leading)  # which slips before its load is gone
+    lifted &= braked != other(leading)  # a braked upper axle slips before its load is gone
     with np.errstate(divide="ignore", invalid="ignore"):
         friction = np.maximum(ratio, 0.0) / np.where(share > 0, share, np.nan)
     much = f"even a friction of {MOST_FRICTION:g}, the most that is taken, holds less"
@@ -174,7 +177,7 @@ def _friction_for(vehicle: Vehicle, ratio: Numbers, braked: Braked, leading: Axl
 
 
 def _deceleration(c: StopConditions, left: Numbers) -> Numbers:
-    """Deceleration at full force with which the way after the reaction time is a length [m/s2]."""
+    """Find the deceleration at full force [m/s2] for a stop in a distance after the reaction time [m]."""
     V, t2 = np.asarray(c.speed), np.asarray(c.rise_time)
     way = np.where(np.asarray(left) > 0, left, np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -1,4 +1,4 @@
-"""The hardest braking of a vehicle: by grip and pitching over, and which axle locks first.
+"""The largest deceleration of a vehicle: limits by grip and by pitching over, and which axle locks first.
 
 All decelerations are braking ratios tau of `brakes.vehicle.axles`: on level ground, in units of gravity.
 """
@@ -18,7 +18,7 @@ from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
 from brakes.vehicle.axles import Axle, Vehicle
 
-_EDGE = 1e-9  # relative difference of two limits that are equal
+_EDGE = 1e-9  # relative difference of two limits that count as equal
 
 
 @dataclass(frozen=True)
@@ -30,18 +30,18 @@ class Braking(Result):
     vehicle : Vehicle
         The vehicle.
     friction, front_share : ndarray
-        Friction of the tyres, and share of the front wheels in the braking force.
+        Friction of the tyres, and fraction of the braking force at the front wheels.
     leading : {"front", "rear"}
-        The axle that leads in the motion.
+        The axle at the front of the motion.
     pitching, front_alone, rear_alone, both : ndarray
-        Ratios at which it pitches over the leading axle, and that the grip of the front wheels, of the rear
-        wheels and of all of them allows; inf where grip sets no limit.
+        Braking ratios at which the vehicle pitches over the leading axle, and which the grip of the front
+        wheels, of the rear wheels and of all wheels allows; inf where grip sets no limit.
     front_locks, rear_locks : ndarray
-        Ratios at which each axle locks when the brakes are applied with their share; inf if it never does.
+        Braking ratios at which each axle locks with its share of the braking force; inf if it never does.
     largest : ndarray
-        Largest ratio with the share at which no wheel locks or lifts.
+        Largest braking ratio, with these shares, at which no wheel locks or lifts.
     first : str or ndarray of str
-        What ends it: ``"front"`` or ``"rear"`` for the axle that locks first, ``"both"`` at once, or
+        What limits `largest`: ``"front"`` or ``"rear"`` for the axle that locks first, ``"both"`` at once, or
         ``"pitching over"``.
 
     Examples
@@ -66,13 +66,13 @@ class Braking(Result):
     first: Any
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{self.leading} axle leading: hardest braking {spanned(self.largest, 'g')}"
         yield self.message if np.ndim(self.first) == 0 else ""
 
     @property
     def message(self) -> str:
-        """What ends the hardest braking, in a phrase; of one case."""
+        """The phrase that says which wheels lock first, or that it pitches over; of one case."""
         return _WORDS[str(self.first)]
 
 
@@ -87,7 +87,7 @@ _WORDS = {
 def braking_limits(
     vehicle: Vehicle, friction: Numbers, front_share: Numbers, leading: Axle = "front"
 ) -> Braking:
-    """Find the hardest braking and which axle locks first.
+    """Compute the largest braking ratio of a vehicle, and which axle locks first.
 
     Parameters
     ----------
@@ -96,9 +96,9 @@ def braking_limits(
     friction : float or ndarray
         Friction mu of the tyres.
     front_share : float or ndarray
-        Share of the front wheels in the braking force, 0 to 1.
+        Fraction of the braking force at the front wheels, 0 to 1.
     leading : {"front", "rear"}
-        The axle that leads in the motion.
+        The axle at the front of the motion.
 
     Returns
     -------

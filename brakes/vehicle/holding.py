@@ -1,11 +1,11 @@
 """Parking and hill hold: whether a vehicle at rest on a slope holds, slips or tips, and the largest slope.
 
-With the braking ratio tau = tan(beta) of `brakes.vehicle.axles`, it slips past tan(beta) = `slipping_ratio`,
-tips over the lower axle past tan(beta) = `pitching_ratio` if that axle is braked, and a brake that gives the
-force R along the ground lets it roll past sin(beta) = R / (M g).  A vehicle that does not hold moves down
-with the braking ratio that road and brake give, the smaller of `slipping_ratio` and R / (M g cos(beta)), on
-which its axle loads depend; past `pitching_ratio` it tips.  Where the upper axle alone is braked, its load,
-and so its grip, is gone before the vehicle could tip.
+The braking ratio is tau = tan(beta), see `brakes.vehicle.axles`. The vehicle slips past tan(beta) =
+`slipping_ratio`, tips over the lower axle past tan(beta) = `pitching_ratio` if that axle is braked, and rolls
+past sin(beta) = R / (M g) if its brakes give the force R along the ground. A vehicle that does not hold moves
+down with the smaller of the braking ratios of road and brake, `slipping_ratio` and R / (M g cos(beta)), on
+which the axle loads depend; past `pitching_ratio` it tips. If only the upper axle is braked, it loses its
+load, and so its grip, before the vehicle could tip.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from beamdyn.common.results.result import Result
 from brakes.vehicle.axles import ROUNDING, Axle, Braked, Vehicle
 from brakes.vehicle.stop import STANDARD_GRAVITY, STEEPEST, SlopeAngle
 
-_EDGE = 1e-9  # difference of slopes, over the larger one, that is not decided
+_EDGE = 1e-9  # difference of slopes, relative to the larger one, that is too small to decide
 
 
 @dataclass(frozen=True)
 class Road:
-    """A road; every value may be an array, one entry per case.
+    """Slope and friction of a road; every value may be an array, one entry per case.
 
     Parameters
     ----------
@@ -63,7 +63,6 @@ class Road:
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        together(**vars(self))
 
 
 @dataclass(frozen=True)
@@ -73,28 +72,29 @@ class Holding(Result):
     Attributes
     ----------
     vehicle, road : Vehicle, Road
-        What stands where.
+        The vehicle, and the road on which it stands.
     braked : {"front", "rear", "both"}
         Axles whose wheels are braked.
     downhill : {"front", "rear"}
-        The axle that is lower.
+        The lower axle.
     status : str or ndarray of str
-        On the road's slope: ``"holds"``, ``"slips"``, ``"tips"``, ``"rolls"`` (the brake is too weak), or
-        ``"too near to decide"``, within 1e-9 of the largest slope.
+        What happens on the road's slope: ``"holds"``, ``"slips"``, ``"tips"``, ``"rolls"`` (the brake is too
+        weak), or ``"too near to decide"``, within 1e-9 of the largest slope.
     slipping_slope, tipping_slope, rolling_slope : ndarray
-        Slopes past which the braked wheels slip, the vehicle tips over its lower axle, and the brake gives
-        too little [rad]; inf where it never does.
+        Slopes past which the braked wheels slip, the vehicle tips over its lower axle, and the vehicle rolls
+        as its brakes are too weak [rad]; inf where this never happens.
     largest_slope : ndarray
-        The least of these three [rad].
+        The least of the slipping, tipping and rolling slope [rad].
     needed_force : ndarray
         Braking force along the ground that holds the vehicle on the road's slope [N].
     braking_force : ndarray
-        Braking force along the ground that acts there [N]: less than needed where the vehicle slips or
-        rolls, nan where it tips.
+        Braking force along the ground that acts on this slope [N]: less than needed where the vehicle slips
+        or rolls, nan where it tips.
     front_load, rear_load : ndarray
-        Normal forces of the axles there, at rest or as the vehicle slips or rolls [N]; nan where it tips.
+        Normal forces of the axles on this slope, at rest or as the vehicle slips or rolls [N]; nan where it
+        tips.
     error : float
-        Bound of the error of the slopes [rad], by rounding.
+        Bound of the rounding error of the slopes [rad].
 
     Examples
     --------
@@ -120,19 +120,19 @@ class Holding(Result):
     error: float
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{self.downhill} axle downhill: largest slope {spanned(np.degrees(self.largest_slope), 'deg')}"
         yield f"{self.status}" if np.ndim(self.status) == 0 else f"{np.sum(self.status == 'holds')} hold"
 
     @property
     def limited_by(self) -> Any:
-        """Failure past the largest slope: "slips", "tips" or "rolls"."""
+        """The way in which the vehicle moves on a steeper slope: it "slips", "tips" or "rolls"."""
         ends = np.stack(np.broadcast_arrays(self.slipping_slope, self.tipping_slope, self.rolling_slope))
         return np.array(["slips", "tips", "rolls"])[np.argmin(ends, axis=0)]
 
     @property
     def message(self) -> str:
-        """Sentence on the given slope and on what happens past the largest one; of one case."""
+        """Sentence on the given slope and on what happens past the largest one; for a single case only."""
         on, most = np.degrees(float(self.road.slope)), np.degrees(float(self.largest_slope))
         what = {"too near to decide": "it is too near to decide"}.get(str(self.status), f"it {self.status}")
         return f"{self.limited_by} past {most:.6g} deg: on {on:.6g} deg {what}"
@@ -145,7 +145,7 @@ def hold(
     downhill: Axle = "front",
     brake_force: Numbers = np.inf,
 ) -> Holding:
-    """Find whether a vehicle at rest holds on a slope, and the largest slope.
+    """Find whether a vehicle at rest holds on a slope, and the largest slope on which it holds.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def hold(
     downhill : {"front", "rear"}
         The lower axle.
     brake_force : float or ndarray, optional
-        Force along the ground that the brakes can give [N]; they hold the wheels on any slope if not given.
+        Force along the ground that the brakes can give [N]; if not given, they hold the wheels on any slope.
 
     Returns
     -------
@@ -201,12 +201,12 @@ def hold(
     most = np.minimum(np.minimum(slips, tips), rolls)
     near = np.abs(slope - most) <= _EDGE * most
     pressed = weight * np.cos(slope)
-    given = np.minimum(grip, force / pressed)  # braking ratio of a vehicle that moves
+    given = np.minimum(grip, force / pressed)  # braking ratio of a vehicle that slides or rolls
     ratio = np.minimum(np.tan(slope), given)
     kinds = [near, slope < most, ratio > pitching * (1 + _EDGE), grip <= given]
     status = np.select(kinds, ["too near to decide", "holds", "tips", "slips"], default="rolls")
     shares = [vehicle.load_share(axle, ratio, downhill) for axle in ("front", "rear")]
-    pressed = np.where(np.minimum(*shares) >= 0, pressed, np.nan)  # while it tips, nothing is in equilibrium
+    pressed = np.where(np.minimum(*shares) >= 0, pressed, np.nan)  # no equilibrium while it tips
     front, rear = (pressed * each for each in shares)
     return Holding(
         vehicle=vehicle,

@@ -1,16 +1,16 @@
-"""A vehicle that brakes both axles on a slope: partly, or so hard that wheels lock or it pitches over.
+"""A vehicle that brakes both axles on a slope: with rolling or locked wheels, or at the limit of pitching.
 
-The brakes give the force B of all wheels, the share phi of it in front. An axle gives the smaller of its
-share and of what its tyres hold, mu times its load, which follows the braking ratio tau: with W = M g
+The brakes give the force B at all wheels, the fraction phi of it in front. The force of an axle is the
+smaller of its part of B and of mu times its load, which depends on the braking ratio tau: with W = M g
 cos(beta),
 
     tau = min(phi B / W, mu n_f(tau)) + min((1 - phi) B / W, mu n_r(tau)).
 
-Each minimum is of functions that are linear in tau, so that the right side is concave and above 0 at tau = 0:
-it meets tau once, at the least of the ratios that the four sums of these functions give alone. The driver
-eases off where the vehicle would pitch over. None of it depends on which way the slope goes: weight and
-inertia act at the centre of gravity. How it comes to rest: `brakes.vehicle.rise`; until the brakes act it
-coasts, so that it gets faster downhill and slower uphill in the driver's reaction time.
+Each minimum is of functions that are linear in tau, so that the right side is concave, and it is positive at
+tau = 0: it equals tau once, at the least of the four ratios that the sums of these functions give. The driver
+eases off where the vehicle would pitch over. All this holds uphill and downhill: weight and inertia act at
+the centre of gravity. `brakes.vehicle.rise` has the motion to rest. Until the brakes act the vehicle coasts:
+it gets faster downhill and slower uphill in the driver's reaction time.
 """
 
 from __future__ import annotations
@@ -31,27 +31,27 @@ from brakes.vehicle.axles import Axle, Vehicle, other
 from brakes.vehicle.holding import Road
 from brakes.vehicle.rise import coast, to_rest
 
-_EDGE = 1e-9  # relative difference of two ratios or accelerations that are equal
+_EDGE = 1e-9  # relative difference of two ratios or accelerations that count as equal
 _STATES = ("no wheel locks", "front wheels locked", "rear wheels locked", "all wheels locked")
 _PITCHES = "at the limit of pitching over"
 
 
 @dataclass(frozen=True)
 class Approach:
-    """How a vehicle comes to its stop; every value may be an array, one entry per design.
+    """Speed, timing and braking force of a vehicle before its stop; values may be arrays, one per design.
 
     Parameters
     ----------
     speed : float or ndarray
         Speed V before the stop [m/s].
     reaction_time : float or ndarray
-        Time t1 until the brakes act, in which it coasts [s].
+        Time t1 until the brakes act, in which the vehicle coasts [s].
     rise_time : float or ndarray
-        Time t2 in which their force rises linearly [s].
+        Time t2 in which the braking force rises linearly [s].
     brake_force : float or ndarray, optional
         Force B along the ground that the brakes of all wheels can give [N].
     heading : {"downhill", "uphill"}
-        Which way it goes on the slope.
+        Direction of travel on the slope.
 
     Raises
     ------
@@ -86,33 +86,31 @@ class Approach:
     def __post_init__(self) -> None:
         one_of("heading", self.heading, ("downhill", "uphill"))
         keep_checked(self)
-        given = vars(self).items()
-        together(**{name: x for name, x in given if x is not None and name != "heading"})
 
 
 @dataclass(frozen=True)
 class Slowing(Result):
-    """A stop on a slope, with both axles braked; arrays have one entry per case.
+    """A stop on a slope with both axles braked; arrays have one entry per case.
 
     Attributes
     ----------
     vehicle, road, approach : Vehicle, Road, Approach
-        What stops where, and from which speed.
+        The vehicle, the road, and speed and timing of the stop.
     leading : {"front", "rear"}
-        The axle that leads.
+        The axle at the front of the motion.
     status : str or ndarray of str
         ``"no wheel locks"``, ``"front wheels locked"``, ``"rear wheels locked"``, ``"all wheels locked"``, or
         ``"at the limit of pitching over"``.
     stops : ndarray of bool
-        Whether it comes to rest.
+        Whether the vehicle comes to rest.
     ratio : ndarray
         Braking ratio at full force.
     front_force, rear_force, front_load, rear_load : ndarray
         Braking forces and loads of the axles at full force [N].
     deceleration : ndarray
-        At full force [m/s2]; negative where it gets faster.
+        Deceleration at full force [m/s2]; negative where the vehicle gets faster.
     distance, time : ndarray
-        From the driver's reaction to rest [m], [s]; inf if it never stops.
+        Distance [m] and time [s] from the driver's reaction to rest; inf if it never stops.
 
     Examples
     --------
@@ -139,17 +137,17 @@ class Slowing(Result):
     time: Annotated[Numbers, Meaning("s", "time to rest")]
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{spanned(self.distance, 'm')} in {spanned(self.time, 's')}"
         yield f"{self.status}" if np.ndim(self.status) == 0 else ""
         yield warned(self.warnings)
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """A sentence if it stands, uphill, before the brakes hold it."""
+        """Sentence on a vehicle that comes to rest uphill before the brakes hold it; empty if none does."""
         a = self.approach
         since = np.asarray(self.time - a.reaction_time)
-        with np.errstate(divide="ignore", invalid="ignore"):  # where the force does not rise but is there
+        with np.errstate(divide="ignore", invalid="ignore"):  # the rise time may be 0
             risen = np.where(since < a.rise_time, np.maximum(since, 0.0) / a.rise_time, since >= 0)
         held = self.ratio * np.cos(self.road.slope) * risen
         rolls = (a.heading == "uphill") & (held < np.sin(self.road.slope) * (1 - _EDGE))
@@ -159,7 +157,7 @@ class Slowing(Result):
 
     @property
     def message(self) -> str:
-        """Whether it stops, in one sentence; of many cases, how many do not."""
+        """One sentence that says whether the vehicle stops; of many cases, how many do not."""
         if np.ndim(self.stops):
             return f"{np.sum(~self.stops)} of {np.size(self.stops)} cases do not stop"
         held = "stops" if self.stops else "does not stop: the slope pulls as much as the brakes hold, or more"
@@ -174,18 +172,18 @@ def slow_down(
     front_share: Numbers,
     leading: Axle = "front",
 ) -> Slowing:
-    """Stop a vehicle on a slope by the brakes of both axles.
+    """Compute the stop of a vehicle on a slope with both axles braked.
 
     Parameters
     ----------
     vehicle, road, approach : Vehicle, Road, Approach
-        What stops where, and from which speed; the approach's own force is not used.
+        The vehicle, the road, and speed and timing of the stop; `approach.brake_force` is not used.
     brake_force : float or ndarray
         Force along the ground that all brakes can give [N].
     front_share : float or ndarray
-        Share of the front wheels in it, 0 to 1.
+        Fraction of this force at the front wheels, 0 to 1.
     leading : {"front", "rear"}
-        The axle that leads: the lower one downhill, the upper one uphill.
+        The axle at the front of the motion: the lower one downhill, the upper one uphill.
 
     Returns
     -------
@@ -226,7 +224,7 @@ def slow_down(
     ratio, status = _ratio(vehicle, road.friction, braked, leading)
     loads = {axle: vehicle.load_share(axle, ratio, leading) for axle in braked}
     forces = {axle: np.minimum(braked[axle], road.friction * loads[axle]) for axle in braked}
-    eased = ratio / sum(forces.values())  # below 1 only where the driver eases off
+    eased = ratio / sum(forces.values())  # below 1 only where the driver eases off to avoid pitching over
     pull = road.gravity * np.sin(road.slope) * (1 if approach.heading == "downhill" else -1)
     rate = road.gravity * np.cos(road.slope) * ratio
     stops = rate - pull > _EDGE * rate
@@ -251,7 +249,7 @@ def slow_down(
 
 
 def _ratio(vehicle: Vehicle, friction: Numbers, braked: dict[Axle, Any], leading: Axle) -> tuple[Any, Any]:
-    """Braking ratio, and the words for what ends it."""
+    """Compute the braking ratio, and the status of the wheels that limits it."""
     moved = friction * vehicle.cg_height / vehicle.wheelbase
     rolling = braked["front"] + braked["rear"]
     locked = []
@@ -261,7 +259,8 @@ def _ratio(vehicle: Vehicle, friction: Numbers, braked: dict[Axle, Any], leading
         locked.append(np.where(left > 0, held / np.where(left > 0, left, 1.0), np.inf))
     sums = np.stack(np.broadcast_arrays(rolling, *locked, friction))
     least, pitching = sums.min(axis=0), vehicle.pitching_ratio(leading)
-    first = np.argmax(sums <= least * (1 + _EDGE), axis=0)  # of equal ones, that with fewer wheels locked
+    # Of equal ratios, the state with fewer wheels locked is taken.
+    first = np.argmax(sums <= least * (1 + _EDGE), axis=0)
     lifts = least >= pitching * (1 - _EDGE)
     status = np.where(lifts, _PITCHES, np.array(_STATES)[first])
     return np.minimum(least, pitching)[()], status[()]

@@ -1,10 +1,11 @@
 """A truck that drives down a slope and brakes its front wheels (Yoo et al. 1997, section 2).
 
-Axes: x down the slope, y up from the ground; the origin is where the front wheels touch it. The front axle A
-is locked; the rear axle B, at x = L, leads and rolls. The wheels have no mass. With the total mass M, the
-centre of gravity at x = a and at the height h = y_cg + r1 above the ground, b = L - a, and the friction mu:
+Axes: x down the slope, at the angle beta to the horizontal, y up from the ground; the origin is where the
+front wheels, of the radius r1, touch it. The front axle A is locked; the rear axle B, at x = L, leads and
+rolls. The wheels have no mass. With the total mass M, the centre of gravity at x = a, y_cg above the front
+axle and so at the height h = y_cg + r1 above the ground, b = L - a, and the friction mu:
 
-    N_A = M b g cos(beta) / (L + mu h),   R_A = mu N_A,
+    load of the front axle N_A = M b g cos(beta) / (L + mu h),   its braking force R_A = mu N_A,
     acceleration = g sin(beta) - R_A / M,   torque of one brake = r1 R_A / 2.
 
 Brakes whose torque T is less than that let the wheels roll, with R_A = 2 T / r1 in place of mu N_A, and
@@ -14,15 +15,16 @@ Load transfer: the friction at the ground moves mu h N_A / L from the braked fro
 axle. Both axle loads stay positive for any friction as long as the centre of gravity is between the axles.
 At rest gravity alone decides: the truck overturns past tan(beta) = b / h.
 
-That is a truck that reverses, as the paper's does. One that drives forwards has its front axle downhill,
-as if h had the other sign: N_A = M b g cos(beta) / (L - mu h); it overturns over that axle from mu = a / h.
+These formulas are for a truck that reverses, as the paper's does. If it drives forwards, its front axle is
+downhill and h changes its sign: N_A = M b g cos(beta) / (L - mu h); it overturns over that axle from mu = a /
+h.
 
-The paper's equation (3) and its tables differ; `brakes.reproduce.forklift_as_printed` has them.
+The paper's equation (3) and tables differ from this; `brakes.reproduce.forklift_as_printed` has them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -39,13 +41,13 @@ from brakes.vehicle.axles import ACUTE, ROUNDING
 from brakes.vehicle.rise import to_rest
 from brakes.vehicle.truck import Truck
 
-STANDARD_GRAVITY = 9.806  # [m/s2] the paper's
-STEEPEST = np.pi / 4  # [rad] past which no road goes
+STANDARD_GRAVITY = 9.806  # acceleration of gravity in Yoo et al. (1997) [m/s2]
+STEEPEST = np.pi / 4  # steepest slope that a road can have [rad]
 
 
 @dataclass(frozen=True)
 class SlopeAngle(Described):
-    """Description of the angle of a slope, which files may give in %, too."""
+    """Description of the angle of a slope, which a file may also give in %."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,7 @@ class StopConditions:
     gravity : float or ndarray
         Gravity g [m/s2].
     direction : {"reverse", "forward"}
-        Which way the truck drives.
+        Direction of travel.
 
     Raises
     ------
@@ -94,11 +96,10 @@ class StopConditions:
     def __post_init__(self) -> None:
         one_of("direction", self.direction, ("reverse", "forward"))
         keep_checked(self)
-        together(**self.numbers)
 
     @property
     def numbers(self) -> dict[str, Numbers]:
-        """The values that may be arrays, by name."""
+        """The inputs that may be arrays, by name; all but the direction."""
         return {name: value for name, value in vars(self).items() if name != "direction"}
 
     @property
@@ -109,7 +110,7 @@ class StopConditions:
 
 @dataclass(frozen=True)
 class Stop(Result):
-    """A stop, or why there is none; arrays have one entry per case.
+    """A truck's stop, or why it does not stop; arrays have one entry per case.
 
     Attributes
     ----------
@@ -121,23 +122,23 @@ class Stop(Result):
         Whether the truck comes to rest.
     status : str or ndarray of str
         ``"stops"``, ``"stops in the rise time"``, ``"never stops"``, ``"brakes too weak"``, or ``"too near to
-        decide"``: the slope is the steepest that the brakes hold, up to 1e-9 of its pull or rounding.
+        decide"``: the slope is within 1e-9 of the steepest on which the brakes hold, or within rounding.
     acceleration : ndarray
-        Down the slope with the full brake force, A [m/s2]; negative when the truck slows down.
+        Acceleration A down the slope at full brake force [m/s2]; negative when the truck slows down.
     distance, time : ndarray
-        From the driver's reaction to rest [m], [s]; inf if it never stops. ISO 6292 counts from the
-        first actuation: subtract `reaction_distance`.
+        Distance [m] and time [s] from the driver's reaction to rest; inf if it never stops. ISO 6292 counts
+        from the first actuation: subtract `reaction_distance`.
     reaction_distance, rise_distance, braking_distance : ndarray
-        Parts of the distance [m]: before the brakes act, while their force rises, and at full force.
+        Parts of the distance [m]: before the brakes act, while the brake force rises, and at full force.
     speed_lost_in_rise : ndarray
-        Speed lost while the brake force rises [m/s]; negative if gained.
+        Speed lost while the brake force rises [m/s]; negative if the truck gains speed.
     speed_gained_coasting : ndarray
         Speed that a freely rolling truck would gain in the reaction time [m/s]. The model holds the
-        speed there (engine brake), so that the distance leaves it out.
+        speed constant then (engine brake), so that the distance does not contain this gain.
     torque_per_brake : ndarray
         Torque of one of the two front brakes at full force [N m].
     front_load, rear_load : ndarray
-        Normal forces of the axles while it slides [N].
+        Normal forces of the axles during braking at full force [N].
     standing_front_load, standing_rear_load : ndarray
         Normal forces of the axles at rest on the slope [N].
 
@@ -173,7 +174,7 @@ class Stop(Result):
     standing_rear_load: Annotated[Numbers, Meaning("N", "rear axle's load, at rest", "kN")]
 
     def headline(self) -> Iterator[str]:
-        """The result in one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{spanned(self.distance, 'm')} in {spanned(self.time, 's')}"
         yield f"torque of a brake {spanned(self.torque_per_brake, 'N m')}"
         yield self.message
@@ -185,13 +186,13 @@ class Stop(Result):
 
     @property
     def limited_by(self) -> Any:
-        """Limit of the braking force: "road" where the front wheels lock, else "brake"."""
+        """The limit of the braking force: "road" where the front wheels lock, else "brake"."""
         held = self.conditions.friction * self.front_load
         return np.where(self.brake_force >= held * (1 - 4 * ROUNDING), "road", "brake")[()]
 
     @property
     def pulled_distance(self) -> Numbers:
-        """Distance if the slope pulls from the start of the rise [m]; see `brakes.vehicle.rise`."""
+        """Stopping distance [m] if the slope also pulls while the force rises; see `brakes.vehicle.rise`."""
         c = self.conditions
         pull = c.gravity * np.sin(c.slope)
         way, _ = to_rest(c.speed, pull, pull - self.acceleration, c.rise_time, self.stops)
@@ -199,7 +200,7 @@ class Stop(Result):
 
     @property
     def residual(self) -> Numbers:
-        """Residual moment of the axles' forces about the centre of gravity, over weight times wheelbase."""
+        """Residual moment of the axle forces about the centre of gravity, over weight times wheelbase."""
         (a, y), truck, c = self.truck.cg, self.truck, self.conditions
         height, friction = y + truck.front_wheel_radius, c.sense * self.brake_force
         moment = (truck.wheelbase - a) * self.rear_load - a * self.front_load - height * friction
@@ -207,9 +208,9 @@ class Stop(Result):
 
     @property
     def error(self) -> Numbers:
-        """Bound of the relative error of distance and time, and of the loads over the weight.
+        """Bound of the relative error of distance and time, and of the axle loads relative to the weight.
 
-        The rounding of inputs and sums, over the margin to never stopping.
+        It is the rounding of inputs and sums, amplified near the slope on which the truck never stops.
         """
         c = self.conditions
         pull = c.gravity * np.abs(np.sin(c.slope))
@@ -218,20 +219,21 @@ class Stop(Result):
 
     @property
     def message(self) -> str:
-        """Meaning of the status, in one sentence; of many cases, how many do not stop."""
+        """One sentence that explains the status; of many cases, how many do not stop."""
         if np.ndim(self.status):
             short = int(np.sum(~self.stops))
             return f"{short} of {np.size(self.stops)} cases do not stop" if short else "every case stops"
         return _SENTENCES[str(self.status)]
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """The message of each case that does not stop, of as many cases, by its row."""
+        """Return the message of each case that does not stop, by its index; `count` is their number."""
         each = np.broadcast_to(self.status, (count,)).tolist()
         return {i: _SENTENCES[status] for i, status in enumerate(each) if not status.startswith("stops")}
 
 
-_EDGE = 1e-9  # deceleration, over the pull of the slope, that cannot be told from none
+_EDGE = 1e-9  # deceleration relative to the slope's pull that counts as zero
 
+_KINDS = ["too near to decide", "brakes too weak", "never stops", "stops in the rise time"]
 _SENTENCES = {
     "stops": "the truck stops",
     "stops in the rise time": "the truck stops while the brake force is still rising",
@@ -254,8 +256,8 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
     conditions : StopConditions
         Road, speed and timing.
     most_torque : float or ndarray, optional
-        Torque that each front brake can give [N m]; what locks its wheel if not given. The driver presses no
-        harder than that: the force rises in the rise time to the smaller one of what brake and road allow.
+        Torque that each front brake can give [N m]; if not given, the torque that locks its wheel. The driver
+        presses no harder than needed: the force rises to the smaller of what brake and road allow.
 
     Returns
     -------
@@ -286,9 +288,7 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
     brakes = np.inf if most_torque is None else positive("most_torque", most_torque, "N m")
     strongest = 2 * brakes / truck.front_wheel_radius
     _refuse_overturning(truck, conditions, strongest)
-    one_case = truck.cg[0] + truck.cg[1] + truck.front_wheel_radius + truck.wheelbase  # shape of its cases
-    together(truck=one_case, most_torque=strongest, **conditions.numbers)
-    beta, V, mu, t1, t2, g, _, _ = np.broadcast_arrays(*conditions.numbers.values(), one_case, strongest)
+    beta, V, mu, t1, t2, g = _broadcast(truck, conditions, strongest)
     (a, y), L, M = truck.cg, truck.wheelbase, truck.mass
     h, b = conditions.sense * (y + truck.front_wheel_radius), L - a
     gc, gs = g * np.cos(beta), g * np.sin(beta)
@@ -298,20 +298,11 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
     R = np.where(rolls, strongest, mu * locked)
     front = np.where(rolls, (M * b * gc - R * h) / L, locked)
     A = gs - R / M
-    # The deceleration rises linearly to -A within t2; for A >= 0 there is no end.
-    v2 = V + A * t2 / 2
-    in_rise = v2 <= LEAST_MARGIN * V
-    slowing = np.where(A < 0, A, -1.0)  # what follows from the -1 is replaced below
-    tau = np.sqrt(2 * V * t2 / -slowing)
-    rise = np.where(in_rise, 2 / 3 * V * tau, V * t2 + A * t2**2 / 6)
-    braking = np.where(in_rise, 0.0, -(v2**2) / (2 * slowing))
-    time = t1 + np.where(in_rise, tau, t2 / 2 - V / slowing)
     undecided = np.maximum(_EDGE, 4 * _rounding(truck, conditions)) * g * np.abs(np.sin(beta))
     stops, near = -undecided > A, np.abs(A) <= undecided
-    braking = np.where(stops, braking, np.inf)
-    kinds = ["too near to decide", "brakes too weak", "never stops", "stops in the rise time"]
+    in_rise, lost, rise, braking, time = _slow_down(V, A, t2, stops)
     weak = ~stops & rolls & (gs < mu * locked / M)
-    status = np.select([near, weak, ~stops, in_rise], kinds, default="stops")
+    status = np.select([near, weak, ~stops, in_rise], _KINDS, default="stops")
     return Stop(
         truck=truck,
         conditions=conditions,
@@ -319,11 +310,11 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
         status=status[()],
         acceleration=A[()],
         distance=(V * t1 + rise + braking)[()],
-        time=np.where(stops, time, np.inf)[()],
+        time=(t1 + time)[()],
         reaction_distance=(V * t1)[()],
         rise_distance=rise[()],
         braking_distance=braking[()],
-        speed_lost_in_rise=np.where(in_rise, V, V - v2)[()],
+        speed_lost_in_rise=lost[()],
         speed_gained_coasting=(gs * t1)[()],
         torque_per_brake=np.where(rolls, brakes, locking)[()],
         front_load=front[()],
@@ -333,8 +324,36 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
     )
 
 
+def _broadcast(truck: Truck, conditions: StopConditions, strongest: Numbers) -> Sequence[np.ndarray]:
+    """Broadcast the conditions with truck and brakes, whose shapes must fit."""
+    # Serves for its shape alone.
+    one_case = truck.cg[0] + truck.cg[1] + truck.front_wheel_radius + truck.wheelbase
+    together(truck=one_case, most_torque=strongest, **conditions.numbers)
+    return np.broadcast_arrays(*conditions.numbers.values(), one_case, strongest)[:-2]
+
+
+def _slow_down(V: np.ndarray, A: np.ndarray, t2: np.ndarray, stops: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Slow down from V [m/s] by an acceleration that changes linearly from 0 to A [m/s2] within t2 [s].
+
+    Returns
+    -------
+    tuple of ndarray
+        Whether it comes to rest in the rise time; speed lost [m/s] and way [m] in the rise; way after it, and
+        time from the begin of braking to rest [s], both inf where it does not stop.
+    """
+    v2 = V + A * t2 / 2
+    in_rise = v2 <= LEAST_MARGIN * V
+    slowing = np.where(A < 0, A, -1.0)  # -1 avoids a division by zero, whose result is replaced below
+    tau = np.sqrt(2 * V * t2 / -slowing)
+    rise = np.where(in_rise, 2 / 3 * V * tau, V * t2 + A * t2**2 / 6)
+    braking = np.where(in_rise, 0.0, -(v2**2) / (2 * slowing))
+    time = np.where(in_rise, tau, t2 / 2 - V / slowing)
+    ways = rise, np.where(stops, braking, np.inf), np.where(stops, time, np.inf)
+    return in_rise, np.where(in_rise, V, V - v2), *ways
+
+
 def _rounding(truck: Truck, conditions: StopConditions) -> Numbers:
-    """Bound of the error of the deceleration, over what it is the difference of."""
+    """Bound of the rounding error of the deceleration, relative to the terms that it is the difference of."""
     size = (1 + conditions.friction) * truck.sizes_of_coordinates / (truck.wheelbase - truck.cg[0])
     return ROUNDING * (4 + size)
 

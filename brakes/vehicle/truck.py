@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked, together
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.inputs.described import Described
 from brakes.common.locking import LEAST_MARGIN
@@ -25,15 +25,15 @@ class Truck:
     empty_mass : float or ndarray
         Mass of the empty truck [kg].
     empty_cg : tuple
-        Its centre of gravity (x, y) [m].
+        Centre of gravity (x, y) of the empty truck [m].
     load_mass : float or ndarray
         Mass of the load [kg], which may be 0.
     load_cg : tuple
-        Its centre of gravity (x, y) [m]; a load on the fork has x < 0.
+        Centre of gravity (x, y) of the load [m]; a load on the fork has x < 0.
     front_wheel_radius : float or ndarray
         Radius r1 of the front wheels [m].
     wheelbase : float or ndarray
-        Distance L of the axles [m].
+        Distance L between the axles [m].
 
     Raises
     ------
@@ -71,10 +71,6 @@ class Truck:
 
     def __post_init__(self) -> None:
         keep_checked(self)
-        (x, y), (xl, yl) = self.empty_cg, self.load_cg
-        together(empty_mass=self.empty_mass, load_mass=self.load_mass, wheelbase=self.wheelbase,
-                 front_wheel_radius=self.front_wheel_radius,
-                 empty_x=x, empty_y=y, load_x=xl, load_y=yl)  # fmt: skip
         self._check("the empty truck's centre of gravity", *self.empty_cg, "check {other}")
         self._check("the centre of gravity with the load", *self.cg, "take less load, or nearer the axle")
 
@@ -90,30 +86,30 @@ class Truck:
 
     @property
     def mass(self) -> Numbers:
-        """Mass with the load [kg]."""
+        """Mass of the truck with its load [kg]."""
         return self.empty_mass + self.load_mass
 
     @property
     def cg(self) -> tuple[Numbers, Numbers]:
-        """Centre of gravity (x, y) with the load [m]."""
+        """Centre of gravity (x, y) of the truck with its load [m]."""
         m, ml = self.empty_mass, self.load_mass
         x, y = ((m * e + ml * w) / (m + ml) for e, w in zip(self.empty_cg, self.load_cg, strict=True))
         return x, y
 
     @property
     def sizes_of_coordinates(self) -> Numbers:
-        """Sum of the lengths that make up the arms of weight and friction; it scales their rounding [m]."""
+        """Sum of the lengths in the arms of weight and friction [m], which scales their rounding errors."""
         m, ml = self.empty_mass, self.load_mass
         empty, load = (np.abs(x) + np.abs(y) for x, y in (self.empty_cg, self.load_cg))
         return (m * empty + ml * load) / (m + ml) + self.front_wheel_radius + self.wheelbase
 
     @property
     def vehicle(self) -> Vehicle:
-        """The truck with its load as two axles and a centre of gravity."""
+        """The truck with its load, reduced to two axles and a centre of gravity."""
         x, y = self.cg
         return Vehicle(self.mass, x, y + self.front_wheel_radius, self.wheelbase)
 
     @property
     def overturning_slopes(self) -> tuple[Numbers, Numbers]:
-        """Slopes between which the truck stands on both axles [rad]: over the front and the rear axle."""
+        """Slopes [rad] at which the truck overturns: over the front axle (negative), over the rear axle."""
         return self.vehicle.overturning_slopes

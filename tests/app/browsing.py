@@ -1,4 +1,4 @@
-"""What a person does on the page of an interactive program in a real browser, and waits for."""
+"""Actions of a person on the page of an interactive program in a real browser."""
 
 DRAWING = ".board[data-words$='drawing of the result']"
 CHARTS = ".charts[data-words$='charts of the result']"
@@ -15,12 +15,12 @@ def go(page, name):
 
 
 def drawing(page):
-    """What identifies the drawing in front, or the charts of a screen that has only these."""
+    """Return what identifies the drawing in front, or the charts of a screen that has only these."""
     return in_front(page).get_attribute("data-picture")
 
 
 def in_front(page):
-    """The drawing of the screen in front, or its charts if it has only these."""
+    """Return the drawing of the screen in front, or its charts if it has only these."""
     return page.locator(PICTURE).locator("visible=true").first
 
 
@@ -35,12 +35,12 @@ def redrawn(page, before):
 
 
 def kept(page, text):
-    """Wait until the browser keeps a text of the design."""
+    """Wait until the browser has stored a text of the design."""
     page.wait_for_function("text => Object.values(sessionStorage).some(v => v.includes(text))", arg=text)
 
 
 def field(page, label):
-    """A field of the screen in front."""
+    """Return a field of the screen in front."""
     return page.get_by_label(label, exact=True).locator("visible=true")
 
 

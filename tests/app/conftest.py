@@ -1,6 +1,7 @@
-"""What tests of the interactive programs start from: a simulated client without a server, or a real browser.
+"""Fixtures of tests of the interactive programs: a simulated client without a server, or a real browser.
 
-Where NiceGUI is missing, what needs it skips; the screens themselves are pure functions, which do not.
+Tests that need NiceGUI are skipped where it is missing; the screens themselves are pure functions, whose
+tests run anyway.
 """
 
 import asyncio
@@ -14,7 +15,7 @@ NO_NICEGUI = "the interactive program needs NiceGUI: pip install 'beamdyn[app]'"
 
 @pytest.hookimpl(wrapper=True)
 def pytest_make_collect_report(collector):
-    """A module that imports NiceGUI skips where there is none."""
+    """Skip a module that imports NiceGUI where it is not installed."""
     report = yield
     if report.failed and "No module named 'nicegui'" in str(report.longrepr):
         report.outcome, report.longrepr = "skipped", (str(collector.path), 0, f"Skipped: {NO_NICEGUI}")
@@ -42,7 +43,7 @@ def simulate(monkeypatch, tmp_path):
 
 
 class AtOnce:
-    """What makes answers here and now, in place of `Processes`."""
+    """Solver that computes answers at once, in place of `Processes`."""
 
     def submit(self, task, *given):
         made = asyncio.get_running_loop().create_future()
@@ -54,14 +55,14 @@ class AtOnce:
 
 
 class InThread:
-    """What makes answers beside the page's event loop."""
+    """Solver that computes answers beside the page's event loop."""
 
     def submit(self, task, *given):
         return asyncio.ensure_future(asyncio.to_thread(task, *given))
 
 
 def clients(first):
-    """A function that gives a further client at each call, its page open."""
+    """Yield a function that opens the page for a further client at each call."""
     import re
 
     import httpx
@@ -85,13 +86,13 @@ def clients(first):
 
 
 class Fields:
-    """What a simulated client does to the fields of a page and sees on it."""
+    """Actions of a simulated client on the fields of a page, and what it sees there."""
 
     def __init__(self, user):
         self.user = user
 
     def field(self, path):
-        """The field of an input, on the first screen that has it."""
+        """Return the field of an input, on the first screen that has it."""
         found = [e for e in self.user.client.elements.values() if e.props.get("data-path") == path]
         return found[0]
 
@@ -100,7 +101,7 @@ class Fields:
             self.field(path).set_value(text)
 
     def leave(self, path, text):
-        """Type into a field that is taken when it is left, as those of lists are."""
+        """Type into a field whose text counts when the field is left, as for lists."""
         field = self.field(path)
         with self.user.client:
             field.set_value(text)
@@ -115,7 +116,7 @@ class Fields:
             bar.set_value(name)
 
     def text(self):
-        """All that is written on the page, drawings left out."""
+        """Return all text on the page, except in drawings."""
         elements = self.user.client.elements.values()
         words = [getattr(e, "text", None) or e.props.get("innerHTML", "") for e in elements]
         return "\n".join(str(w) for w in words if w and "<img" not in str(w))
@@ -137,7 +138,7 @@ def fields():
 
 @pytest.fixture(scope="session")
 def address():
-    """Where a program is served, as a process of its own: a function of its name."""
+    """Return a function that serves the program of a name in a new process, and returns its address."""
     pytest.importorskip("nicegui", reason=NO_NICEGUI)
     made = {}
 
@@ -152,7 +153,8 @@ def address():
         stop(process)
 
 
-@pytest.fixture(scope="module")  # until it is closed no other event loop runs, such as that of `simulate`
+# Until the browser is closed no other event loop can run, such as that of `simulate`.
+@pytest.fixture(scope="module")
 def browser():
     sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
     with sync_api.sync_playwright() as playwright:
@@ -163,13 +165,13 @@ def browser():
 
 @pytest.fixture
 def opened(browser, address):
-    """Open the page of a program: a function of its name and address; no script may fail on it."""
+    """Return a function that opens the page of a program, on which no script may fail."""
     yield from opening(browser, address)
 
 
 @pytest.fixture(scope="module")
 def shared(browser, address):
-    """The same for pages that several tests use."""
+    """Return such a function for pages that several tests use."""
     yield from opening(browser, address)
 
 
@@ -185,7 +187,8 @@ def opening(browser, address):
         page.set_default_timeout(1e3 * PATIENCE)
         page.set_default_navigation_timeout(1e3 * PATIENCE)
         page.goto(at or address(program))
-        page.wait_for_function("window.did_handshake")  # what is typed before a page is reloaded is lost
+        # Text typed before the page is connected would be lost.
+        page.wait_for_function("window.did_handshake")
         page.wait_for_selector(".board:visible, .chart:visible")
         return page
 
@@ -197,5 +200,5 @@ def opening(browser, address):
 
 @pytest.fixture
 def page(opened):
-    """The page of `brakes app`."""
+    """Open the page of `brakes app`."""
     return opened()

@@ -1,4 +1,4 @@
-"""An interactive program as a process of its own, and what that process listens to."""
+"""Starting an interactive program in a new process, and the addresses that the process listens to."""
 
 import ipaddress
 import os
@@ -19,12 +19,12 @@ _LISTENS = "0A"  # state of a socket in /proc/net/tcp
 
 
 def listens_to(process):
-    """Addresses and ports that a process listens to; of Linux only."""
+    """Return addresses and ports that a process listens to; on Linux only."""
     own = set()
     for entry in Path(f"/proc/{process.pid}/fd").iterdir():
         try:
             own.add(os.readlink(entry))
-        except FileNotFoundError:  # closed meanwhile
+        except FileNotFoundError:  # the file was closed meanwhile
             continue
     found = set()
     for kind in ("tcp", "tcp6"):
@@ -37,7 +37,7 @@ def listens_to(process):
 
 
 def _address(text):
-    """An address as /proc has it: words of four bytes, each in the order of this processor."""
+    """Decode an address as /proc has it: words of four bytes, each in the order of this processor."""
     words = [bytes.fromhex(text[i : i + 8]) for i in range(0, len(text), 8)]
     if sys.byteorder == "little":
         words = [word[::-1] for word in words]

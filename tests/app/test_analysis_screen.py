@@ -11,13 +11,15 @@ import beamdyn as bd
 from beamdyn.analyses import analyses
 from beamdyn.analyses.analysis import Analysis
 from beamdyn.analyses.options import Count, PositiveSpeed
+from beamdyn.analyses.results import cautions
 from beamdyn.app.analysis_screen import analysis_screen, first_entries
 from beamdyn.app.deck_screen import DECK
-from beamdyn.app.program import SCENE, SHOWN
+from beamdyn.app.program import BEAMDYN, SCENE, SHOWN
 from beamdyn.app.scene_form import ASIDE, inputs_of
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.screens.form_entries import tables_of, toml_of
+from beamdyn.common.screens.form_entries import options_of, tables_of, toml_of
+from beamdyn.common.screens.open_document import OpenDocument
 
 ROOT = Path(__file__).parents[2]
 SCENE_FILE = str(ROOT / "examples" / "tyre_harvester.toml")
@@ -122,8 +124,9 @@ def test_a_deck_is_pasted_or_opened_and_makes_a_scene():
 
 @pytest.mark.parametrize("described", SHOWN, ids=lambda each: each.screen)
 def test_screens_open_with_an_answer_and_a_picture_for_each_width(described):
-    screen = next(each for each in SCENE.screens if each.name == described.screen)
-    answer = solve(screen, SCENE.base_entries)
+    pairs = ((document, each) for document in BEAMDYN.documents for each in document.screens)
+    document, screen = next(pair for pair in pairs if pair[1].name == described.screen)
+    answer = solve(screen, document.base_entries)
     assert len([*screen.rows(answer)]) > 1 and [*screen.headline(answer)]
     assert all(screen.picture(answer, narrow).axes for narrow in (False, True))
 
@@ -138,6 +141,37 @@ def test_options_in_groups_have_fields_and_those_given_several_times_one_for_all
     assert [each.name for each in result.inputs] == ["mount.radius", "beam.thickness"]
     assert "An input and its values" in inputs_meaning("study.vary")
     assert first_entries(described)["study.vary"] == given["study.vary"]
+
+
+def test_a_number_in_place_of_a_word_is_typed():
+    """How many modes, or auto: an entry, as a list would have no number."""
+    (screen,) = (each for each in SCENE.screens if each.name == "Frequency response")
+    given = SCENE.base_entries | {"response.frequencies": "50, 60 Hz"}
+    for text, kept in (("2", "2 modes"), ("auto", "all functions")):
+        assert kept in solve(screen, given | {"response.modes": text}).result.provenance.method
+    with pytest.raises(ValueError, match=r"response\.modes"):
+        solve(screen, given | {"response.modes": "few"})
+
+
+def test_a_number_is_typed_where_a_word_may_stand_as_well():
+    given = SCENE.base_entries | {"response.modes": "3", "loads.modes": "auto"}
+    known = {each.path: each for each in inputs_of(given)}
+    assert options_of(known["response.modes"]) == ()  # it is no list of words
+    assert options_of(known["beam.density"]) == () and options_of(known["motion.kind"])
+    tables = tables_of(given, [*known.values()])
+    assert tables["response"]["modes"] == 3 and tables["loads"]["modes"] == "auto"
+    screen = next(each for each in SCENE.screens if each.name == "Frequency response")
+    assert solve(screen, given).result.scene == solve(screen, SCENE.base_entries).result.scene
+
+
+@pytest.mark.parametrize("name", ["Map", "Random road", "Frequency response"])
+def test_what_follows_a_slider_waits_neither_for_model_errors_nor_for_the_choice_of_modes(name, monkeypatch):
+    screen = next(each for each in SCENE.screens if each.name == name)
+    work = OpenDocument(SCENE)
+    monkeypatch.setattr(cautions, "_of_model_error", lambda *_: 1 / 0)
+    found = work.attempt(screen, for_drawing=True)
+    assert not found.is_whole and found.headline and screen.picture(found.answer, False).axes
+    assert found.is_rough == (name != "Map")
 
 
 def inputs_meaning(path):

@@ -3,6 +3,7 @@
 import asyncio
 import re
 import threading
+import time
 from dataclasses import replace
 
 import pytest
@@ -147,7 +148,7 @@ class Slow:
 
     def __init__(self):
         self.go, self.solved = threading.Event(), []
-        self.screen = replace(FREQUENCIES, solve=self.solve)
+        self.screen = replace(FREQUENCIES, solve=self.solve, coarser=lambda tables: tables)
         self.program = Program("slow", "Slow", (replace(SCENE, screens=(self.screen,)),))
 
     def solve(self, tables):
@@ -191,6 +192,74 @@ def test_page_goes_on_while_an_answer_takes_long_and_solves_the_newest_entries_n
         assert page.greyed() == 0
 
     simulate(slow.program, body, InThread())
+
+
+def test_the_picture_of_an_answer_comes_first_and_its_tables_follow(simulate, fields):
+    go, drawn, tabled = threading.Event(), [], []
+
+    def charts(answer, _):
+        drawn.append(answer.locus.scene.mount.radius)
+        return FREQUENCIES.charts(answer)
+
+    def tables(answer):
+        time.sleep(1.2 * SOON)
+        assert go.wait(PATIENCE)
+        tabled.append(answer.locus.scene.mount.radius)
+        return [f"a table of {tabled[-1]:g} m"]
+
+    async def body(client):
+        go.set()
+        page = fields(await client())
+        await becomes("Up to date.", page)
+        go.clear()
+        page.enter("mount.radius", "0.13 m")
+        await becomes("Preliminary. The tables follow.", page)
+        assert drawn[-1] == 0.13 and "a table of 0.215 m" in page.text()
+        assert page.greyed() == 0 and "Up to date." not in page.text()
+        go.set()
+        await becomes("Up to date.", page)
+        assert "a table of 0.13 m" in page.text() and tabled == [0.215, 0.13]
+
+    screen = replace(FREQUENCIES, charts=charts, tables=tables)
+    simulate(Program("later", "Later", (replace(SCENE, screens=(screen,)),)), body, InThread())
+
+
+def test_tables_that_fail_leave_the_picture_and_say_so(simulate, fields):
+    def tables(answer):
+        time.sleep(1.2 * SOON)
+        if answer.locus.scene.mount.radius == 0.13:
+            raise ValueError("it has no table")
+        return ["a table"]
+
+    async def body(client):
+        page = fields(await client())
+        await becomes("Up to date.", page)
+        page.enter("mount.radius", "0.13 m")
+        await becomes("it has no table", page)
+        assert "Refused. Stale: for the entries before." in page.text() and page.greyed() == 1
+        page.enter("mount.radius", "0.14 m")
+        await becomes("Up to date.", page)
+        assert "no table" not in page.text() and page.greyed() == 0
+
+    screen = replace(FREQUENCIES, tables=tables)
+    simulate(Program("none", "None", (replace(SCENE, screens=(screen,)),)), body, InThread())
+
+
+def test_one_click_opens_the_scene_of_a_deck(simulate, fields):
+    async def body(client):
+        page = fields(await client())
+        page.go("Deck")
+        button = element(page.user, "Open its scene")
+        with page.user.client:
+            (listener,) = [e for e in button._event_listeners.values() if e.type == "click"]
+            button._handle_event({"listener_id": listener.id, "args": {}})
+        await asyncio.sleep(0.1)
+        assert page.field("beam.length").value == "40 m"
+        assert page.field("options.top_speed").value == "3.1 rad/s"
+        page.go("Frequencies")
+        await becomes("Up to date.", page)
+
+    simulate(BEAMDYN, body)
 
 
 @pytest.mark.parametrize("solver", [None, InThread()])

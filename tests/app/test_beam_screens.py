@@ -1,6 +1,7 @@
 """The beam's screens as pure functions: what they show is what the package's functions find."""
 
 import json
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -11,6 +12,7 @@ from beamdyn.app.frequency_screen import FREQUENCIES
 from beamdyn.app.mode_shapes import MODE_SHAPES
 from beamdyn.app.program import SCENE
 from beamdyn.app.rotor_screen import ROTOR
+from beamdyn.app.scene_form import COARSE
 from beamdyn.app.scene_screen import bar, left_out_table
 from beamdyn.app.steady_state import STEADY_STATE, stretches
 from beamdyn.app.trade import TRADE
@@ -313,6 +315,29 @@ def test_digits_that_the_physics_does_not_have_are_said_to_be_missing():
 def test_measurements_are_made_once_for_all_digits():
     first, second = solved(TRADE, **{"trade.digits": "2"}), solved(TRADE, **{"trade.digits": "4"})
     assert first.numerical is second.numerical
+
+
+@pytest.mark.parametrize("screen", [TRADE, TRANSIENT], ids=lambda s: s.name)
+def test_what_follows_a_slider_has_the_charts_of_the_whole_answer(screen):
+    work = opened(**SHORT)
+    whole, rough = work.attempt(screen), work.attempt(screen, for_drawing=True)
+    assert rough.is_rough and not rough.is_whole and whole.is_whole and not whole.is_rough
+    charts = [screen.charts(each.answer, 0.0) for each in (whole, rough)]
+    assert len(charts[0]) == len(charts[1]) > 1
+    assert all(options_of(chart) for chart in charts[1])
+    assert [each.words for each in rough.headline] == [each.words for each in whole.headline]
+    if screen is TRANSIENT:
+        assert rough.answer.peak == pytest.approx(whole.answer.peak, rel=1e-2)  # its tolerance
+
+
+def test_what_a_coarse_solution_cannot_answer_is_answered_whole():
+    def solve(tables):
+        if COARSE in tables:
+            raise ValueError("too coarse")
+        return FREQUENCIES.solve(tables)
+
+    found = opened().attempt(replace(FREQUENCIES, solve=solve), for_drawing=True)
+    assert found.is_whole and found.tables
 
 
 # What the physics leaves out ----------------------------------------------------------------------------

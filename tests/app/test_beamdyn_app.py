@@ -1,12 +1,13 @@
 """`beamdyn app`: pure functions, and its page used by a simulated client."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from beamdyn import frequency_locus, load_scene
-from beamdyn.app.program import BEAMDYN, FREQUENCIES, SCENE, STEADY_STATE
+from beamdyn.app.program import BEAMDYN, DECK, FREQUENCIES, SCENE, STEADY_STATE
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.common.screens.controls import DragSlider
@@ -152,6 +153,20 @@ def test_hostile_text_changes_nothing():
     with pytest.raises(ConfigError):
         work.open("[beam]\nlength = '1 m'\n__import__ = 'os'", "hostile")
     assert work.entries == before
+
+
+def test_a_file_opens_in_the_document_in_front_if_that_reads_it(monkeypatch):
+    """A scene stays on the screens of harvesters; a blade of another program goes to that of decks."""
+    page = pytest.importorskip("beamdyn.common.screens.page")
+    monkeypatch.setattr(page.ui, "notify", lambda said: None)
+    harvester, brought = next(each for each in BEAMDYN.documents if each.name == "harvester"), []
+    works = {each.name: OpenDocument(each) for each in BEAMDYN.documents}
+    front = SimpleNamespace(program=BEAMDYN, works=works, current=(harvester, None), _bring=brought.append)
+    front._file = SimpleNamespace(close=lambda: None)
+    for name in ("bir_tip.toml", "blade_stations.csv"):
+        page.Page.open(front, (EXAMPLES / name).read_text(encoding="utf-8"), name)
+    assert brought == [harvester, DECK]
+    assert works["harvester"].entries["beam.tip.mass"] and works["harvester"].entries["harvest.speeds"]
 
 
 def test_page_marks_a_mistake_and_slider_writes_the_field(simulate, fields):

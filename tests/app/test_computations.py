@@ -22,8 +22,8 @@ class Started:
         self.futures[name] = asyncio.get_running_loop().create_future()
         return self.futures[name]
 
-    def want(self, name):
-        self.way.want(lambda: self.start(name))
+    def want(self, name, **how):
+        self.way.want(lambda: self.start(name), **how)
 
     async def end(self, name):
         self.futures[name].set_result(name)
@@ -42,6 +42,27 @@ def test_what_waits_gives_way_to_what_is_newer(monkeypatch):
         await made.end("third")
         assert made.shown == [("first", False), ("third", True)] and [*made.futures] == ["first", "third"]
         assert not made.way.busy
+
+    asyncio.run(body())
+
+
+def test_what_gives_way_is_ended_at_once_when_something_newer_is_wanted(monkeypatch):
+    monkeypatch.setattr("nicegui.background_tasks.create", asyncio.ensure_future)
+
+    async def body():
+        made = Started()
+        made.want("long", gives_way=True)
+        await asyncio.sleep(0)
+        made.want("newer")
+        for _ in range(5):
+            await asyncio.sleep(0)
+        assert made.futures["long"].cancelled() and "newer" in made.futures
+        made.want("newest")
+        await asyncio.sleep(0)
+        assert not made.futures["newer"].cancelled()
+        await made.end("newer")
+        await made.end("newest")
+        assert made.shown == [("newer", False), ("newest", True)]
 
     asyncio.run(body())
 

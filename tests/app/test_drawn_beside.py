@@ -96,6 +96,30 @@ def test_another_tab_is_answered_while_a_report_is_made(simulate, fields, solver
     simulate(BRAKES, body, solver)
 
 
+def test_a_report_says_that_it_is_being_made_and_can_be_cancelled(simulate, solver):
+    async def body(another):
+        user = await another()
+        press(user, "Report as HTML")
+        spinner = next(
+            each
+            for each in user.client.elements.values()
+            if each.props.get("aria-label") == "a file is being made"
+        )
+        row = spinner.parent_slot.parent
+        _, said, button = row.default_slot.children
+        while not any(task is page_tasks.report for _, task, _ in solver.held):
+            solver.let_go()
+            await asyncio.sleep(0.01)
+        await wait_for(lambda: row.visible and said.text.startswith("forklift.html"))
+        UserInteraction(user, {button}, None).click()
+        await wait_for(lambda: not row.visible)
+        assert all(made.cancelled() for made, task, _ in solver.held if task is page_tasks.report)
+        assert "forklift.html was cancelled" in user.notify.messages
+        assert not user.download.http_responses
+
+    simulate(BRAKES, body, solver)
+
+
 def test_files_are_drawn_beside(simulate, fields, solver):
     async def body(another):
         user = await another()

@@ -297,7 +297,9 @@ def test_a_change_of_a_list_is_solved_once(simulate, fields, monkeypatch):
         page.go("Mechanism")
         solved = []
         of_screen = OpenDocument.attempt
-        monkeypatch.setattr(OpenDocument, "attempt", lambda *given: solved.append(1) or of_screen(*given))
+        monkeypatch.setattr(
+            OpenDocument, "attempt", lambda *given, **named: solved.append(1) or of_screen(*given, **named)
+        )
         page.leave("points.C.x", "21")
         assert solved == [1]
 

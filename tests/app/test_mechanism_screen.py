@@ -42,10 +42,9 @@ def test_file_of_parts_opens_solves_and_is_saved(name):
     assert MECHANISM.opened(work.text(), "saved") == work.entries
 
 
-def test_screen_shows_what_the_command_prints(capsys):
+def test_screen_shows_what_the_command_prints(finished):
     """Hibbeler, Statics, 14th edition, problem 6-80: the work takes 3.6427 times the hand's force."""
-    assert main(["caliper", str(EXAMPLES / "toggle-clamp.toml")]) == 0
-    printed = capsys.readouterr().out
+    printed = finished(main(["caliper", str(EXAMPLES / "toggle-clamp.toml")]), 0).out
     shown = html(SCREEN.tables(answer(opened(FILES["toggle-clamp"]))))
     assert "364.27" in printed and ">364.27<" in shown
     words = {word for line in printed.splitlines() for word in line.split() if any(map(str.isdigit, word))}
@@ -155,15 +154,14 @@ def test_mistake_is_a_sentence(path, text, sentence):
 
 
 @pytest.mark.parametrize("travel", ["15 mm", "1 km"])
-def test_a_stroke_past_the_toggle_is_refused_as_the_command_does(travel, tmp_path, capsys):
+def test_a_stroke_past_the_toggle_is_refused_as_the_command_does(travel, tmp_path, finished):
     work = opened(FILES["toggle-clamp"])
     work.put("run.travel", travel)
     assert not work.solve(SCREEN)
     (said,) = work.mistakes[SCREEN.name].values()
     file = tmp_path / "far.toml"
     file.write_text(work.text(), encoding="utf-8")
-    assert main(["caliper", str(file)]) == 1
-    assert said[0] in capsys.readouterr().err
+    assert said[0] in finished(main(["caliper", str(file)]), 1).err
 
 
 def test_what_statics_does_not_determine_is_a_note():

@@ -3,13 +3,16 @@
 import asyncio
 import gc
 import os
+import signal
 import subprocess
 import sys
 import time
 from concurrent.futures import BrokenExecutor
+from contextlib import suppress
 
 import pytest
 
+from beamdyn.common.results.one_line import few_digits, number
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
 from beamdyn.common.screens.page_tasks import outcome_of
@@ -20,6 +23,7 @@ from tests.app.serving import PATIENCE, ROOT
 
 FORKLIFT = BRAKES.documents[0]
 VEHICLE = FORKLIFT.screens[0]
+ENTERED = []
 ALL = [(document, screen) for document in BRAKES.documents for screen in document.screens]
 
 
@@ -29,6 +33,33 @@ ALL = [(document, screen) for document in BRAKES.documents for screen in documen
 def sleep(document, screen, seconds):
     time.sleep(seconds)
     return os.getpid()
+
+
+def sleep_on(document, screen, seconds):
+    """Sleep whatever comes."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        with suppress(BaseException):
+            time.sleep(seconds)
+
+
+def import_slowly(document, screen, folder):
+    """Import a module that takes its time, and needs what it has defined at its end."""
+    sys.path.insert(0, folder)
+    import imported_slowly
+
+    return imported_slowly.part.end, os.getpid()
+
+
+def leave_few_digits(document, screen):
+    """Enter `few_digits` and never leave it, as where an interruption comes between the two."""
+    ENTERED.append(entered := few_digits())
+    entered.__enter__()
+    return number(66.0234)
+
+
+def written(document, screen):
+    return number(66.0234)
 
 
 def threads_of_blas(document, screen):
@@ -102,6 +133,17 @@ def test_no_process_starts_before_it_is_needed_and_idle_ones_are_used_again():
     running(body)
 
 
+async def cancelled(processes, task, *given):
+    """Cancel a task soon after it has begun; return how long that took [s]."""
+    begun = submit(processes, task, *given)
+    await asyncio.sleep(0.1)
+    begin = time.perf_counter()
+    begun.cancel()
+    await asyncio.wait([begun])
+    assert begun.cancelled()
+    return time.perf_counter() - begin
+
+
 def test_blas_has_one_thread():
     async def body(processes):
         counts = await submit(processes, threads_of_blas)
@@ -110,17 +152,49 @@ def test_blas_has_one_thread():
     running(body)
 
 
-def test_what_is_cancelled_ends_with_its_process_and_others_go_on():
+@pytest.mark.skipif(not hasattr(signal, "SIGUSR1"), reason="the system has no signal to interrupt a task")
+def test_what_is_cancelled_is_interrupted_and_its_process_goes_on():
     async def body(processes):
+        processes.most = 1
         first = await submit(processes, sleep, 0.0)
-        long = submit(processes, sleep, 10 * PATIENCE)
-        await asyncio.sleep(0.1)
-        begin = time.perf_counter()
-        long.cancel()
-        await asyncio.wait([long])
-        assert long.cancelled() and time.perf_counter() - begin < 0.1 * PATIENCE
-        assert not alive(first)
+        await cancelled(processes, sleep, 10 * PATIENCE)
+        assert [await submit(processes, sleep, 0.0) for _ in range(2)] == [first, first]
+
+    running(body)
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGUSR1"), reason="the system has no signal to interrupt a task")
+def test_no_interruption_leaves_a_module_half_imported(tmp_path):
+    package = tmp_path / "imported_slowly"
+    package.mkdir()
+    (package / "__init__.py").write_text("import imported_slowly.part\nimport time\ntime.sleep(0.2)\n")
+    (package / "part.py").write_text("end = 1\n")
+
+    async def body(processes):
+        processes.most = 1
+        first = await submit(processes, sleep, 0.0)
+        await cancelled(processes, import_slowly, str(tmp_path))
+        assert await submit(processes, import_slowly, str(tmp_path)) == (1, first)
+
+    running(body)
+
+
+def test_what_a_task_leaves_set_does_not_reach_the_next_one():
+    async def body(processes):
+        processes.most = 1
+        assert await submit(processes, leave_few_digits) == "66"
+        assert await submit(processes, written) == "66.02"
+
+    running(body)
+
+
+def test_what_heeds_no_interruption_ends_with_its_process_and_others_go_on():
+    async def body(processes):
+        processes.most = 1
+        first = await submit(processes, sleep, 0.0)
+        assert await cancelled(processes, sleep_on, 10 * PATIENCE) < 0.1 * PATIENCE
         assert await submit(processes, sleep, 0.0) != first
+        assert not alive(first)
 
     running(body)
 

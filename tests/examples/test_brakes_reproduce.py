@@ -108,9 +108,8 @@ def test_corrected_tables() -> None:
 
 
 @pytest.mark.slow
-def test_reproduce_prints_and_draws(capsys, tmp_path) -> None:
-    assert main(["reproduce", "--output", str(tmp_path / "new")]) == DONE
-    out, err = capsys.readouterr()
+def test_reproduce_prints_and_draws(finished, tmp_path) -> None:
+    out, err = finished(main(["reproduce", "--output", str(tmp_path / "new")]), DONE)
     assert err == ""
     told = " ".join(out.split())
     for words in (
@@ -134,18 +133,16 @@ def test_reproduce_prints_and_draws(capsys, tmp_path) -> None:
     assert all((tmp_path / "new" / name).read_bytes().startswith(b"\x89PNG") for name in drawn)
 
 
-def test_an_unexpected_verdict_is_reported(capsys, tmp_path, monkeypatch) -> None:
+def test_an_unexpected_verdict_is_reported(finished, tmp_path, monkeypatch) -> None:
     true = as_printed.tables()
     wrong = true | {("table_4", "torque"): 1.01 * true["table_4", "torque"]}
     monkeypatch.setattr(as_printed, "tables", lambda: wrong)
     monkeypatch.setattr(reproduce, "pictures", dict)
-    assert main(["reproduce", "--output", str(tmp_path)]) == NO_ANSWER
-    out, err = capsys.readouterr()
+    out, err = finished(main(["reproduce", "--output", str(tmp_path)]), NO_ANSWER)
     assert out.count("differs: unexpected") >= 8 and "9 of" in err
 
 
-def test_output_must_be_a_folder(capsys, tmp_path) -> None:
+def test_output_must_be_a_folder(finished, tmp_path) -> None:
     path = tmp_path / "file"
     path.write_text("")
-    assert main(["reproduce", "--output", str(path)]) == 2
-    assert "give a folder" in capsys.readouterr().err
+    assert "give a folder" in finished(main(["reproduce", "--output", str(path)]), 2).err

@@ -13,9 +13,8 @@ FILES = sorted((Path(__file__).parents[2] / "examples" / "calipers").glob("*.tom
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_example_runs(path, capsys):
-    assert main(["caliper", str(path)]) == 0
-    out, err = capsys.readouterr()
+def test_example_runs(path, finished):
+    out, err = finished(main(["caliper", str(path)]), 0)
     assert err == "" and "every reaction and amplitude is determined" in out
 
 
@@ -24,6 +23,5 @@ def test_each_named_caliper_has_an_example():
 
 
 @pytest.mark.parametrize("name", calipers.NAMED)
-def test_named_caliper_runs(name, capsys):
-    assert main(["caliper", name]) == 0
-    assert "pads together" in capsys.readouterr().out
+def test_named_caliper_runs(name, finished):
+    assert "pads together" in finished(main(["caliper", name]), 0).out

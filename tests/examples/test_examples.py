@@ -37,10 +37,9 @@ def test_table_3_in_a_few_lines():
 HARVESTER = str(ROOT / "examples" / "harvester_45deg.toml")
 
 
-def test_linear_frequencies_of_the_bent_harvester_come_with_their_model_error(capsys):
+def test_linear_frequencies_of_the_bent_harvester_come_with_their_model_error(finished):
     """What large deflection is worth: 60.66 Hz, of the boundary-value solver, for 55.62 Hz; and camber."""
-    assert main(["modes", HARVESTER, "--speed", "100 rad/s"]) == 0
-    printed = capsys.readouterr()
+    printed = finished(main(["modes", HARVESTER, "--speed", "100 rad/s"]), 0)
     said = " ".join(printed.out.split())
     assert "55.62" in said
     assert "left out: large deflection +9.1 % (mode 1)" in said
@@ -48,15 +47,14 @@ def test_linear_frequencies_of_the_bent_harvester_come_with_their_model_error(ca
     assert "the model error, 11 %, exceeds 1 %: large deflection, left out" in " ".join(printed.err.split())
 
 
-def test_chosen_physics_bends_the_harvester(capsys, tmp_path):
+def test_chosen_physics_bends_the_harvester(finished, tmp_path):
     commented = "# physics = "
     text = (ROOT / "examples" / "harvester_45deg.toml").read_text()
     assert commented in text
     changed = tmp_path / "auto.toml"
     changed.write_text(text.replace(commented, "physics = "))
     for arguments in ([HARVESTER, "--physics", "auto"], [str(changed)]):
-        assert main(["modes", *arguments, "--speed", "100 rad/s"]) == 0
-        said = " ".join(capsys.readouterr().out.split())
+        said = " ".join(finished(main(["modes", *arguments, "--speed", "100 rad/s"]), 0).out.split())
         assert "60.657" in said
         assert "55.62" not in said
         assert 'physics "auto", for 0.001: large deflection' in said

@@ -13,6 +13,8 @@ from benchmarks.peers import (
     bent,
     calculix,
     exudyn,
+    hexahedra,
+    in_space,
     large_deflection,
     measure,
     page,
@@ -131,6 +133,53 @@ def test_cables_spin_up_as_the_elastica(duration, linear):
     cables, own = spin_up.cables(duration, spin_up.Setting(12, 2e-3, 4.0)), spin_up.elastica(duration)
     assert cables.differs_from(own) < 1e-3
     assert spin_up.linear(duration).differs_from(own) > linear
+
+
+# Exudyn and CalculiX, beams in space ----------------------------------------------------------------
+
+
+STRIP = in_space.Case(0.027, 0.023, bd.TipLoad((0.0, 4500.0, 5800.0)))
+
+
+@pytest.mark.skipif(exudyn.version() is None, reason="there is no Exudyn: pip install exudyn")
+@pytest.mark.parametrize("number", [0, 6])
+def test_a_beam_in_space_bends_as_exudyns(number):
+    """Two meshes; without the shortening by twist, which Exudyn has not, only their own error is left."""
+    case = in_space.random_case(number)
+    coarse, fine = (in_space.exudyn_tip(case, count) for count in (20, 40))
+    own, limit = bd.equilibrium(case.scene, 0.0, discretization=bd.Ritz(12)).tip, in_space.limit(coarse, fine)
+    assert np.linalg.norm(limit - own) < 1e-3
+    left = [np.linalg.norm(tip - in_space.without_shortening(case)) for tip in (coarse, fine, limit)]
+    assert left[2] < 1e-5 and left[0] / left[1] == pytest.approx(4, rel=0.05)
+
+
+def test_solids_are_loaded_by_the_whole_force_at_the_middle_of_their_tip():
+    case, counts = STRIP, (3, 2, 4)
+    weights = in_space.face_weights(counts)
+    places = [place for place in hexahedra.numbers(counts) if place[0] == 6]
+    assert weights.sum() == pytest.approx(1.0, rel=1e-14)
+    assert weights @ np.array(places) == pytest.approx([6, 2, 4], rel=1e-14)
+    loads = in_space.deck(case, counts).split("*CLOAD\n")[1].split("*NODE PRINT")[0].splitlines()
+    total = [sum(float(row.split(",")[2]) for row in loads if int(row.split(",")[1]) == k) for k in (1, 2, 3)]
+    assert total == pytest.approx(case.load.force, rel=1e-9)
+
+
+@pytest.mark.skipif(calculix.version() is None, reason="there is no CalculiX: apt-get install calculix-ccx")
+def test_a_beam_in_space_bends_as_a_solid():
+    case = STRIP
+    own = bd.equilibrium(case.scene, 0.0, discretization=bd.Ritz(12)).tip
+    assert np.linalg.norm(in_space.solid_tip(case, (8, 2, 2)) - own) < 0.01
+    assert np.linalg.norm(own - [1.0, 0.0, 0.0]) > 0.3
+
+
+def test_the_section_on_beams_in_space_has_its_table(monkeypatch):
+    for module in (calculix, exudyn):
+        monkeypatch.setattr(module, "version", lambda: None)
+    monkeypatch.setattr(in_space, "CASES", 1)
+    monkeypatch.setattr(in_space, "random_case", lambda number: STRIP)
+    (row,) = in_space.rows(1)
+    assert len(row) == len(in_space.HEAD) and tables.MISSING in row
+    assert in_space.section([row]).startswith(page.IN_SPACE)
 
 
 # Tables -------------------------------------------------------------------------------------------

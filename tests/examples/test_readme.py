@@ -88,13 +88,12 @@ def test_the_first_two_shell_blocks_are_install_and_test() -> None:
     assert "beamdyn reproduce" in install and "pytest" in test
 
 
-def test_page_on_spreads(capsys) -> None:
+def test_page_on_spreads(finished) -> None:
     """Its Python runs, and its command prints the ranges of the page, which follow from no random number."""
     names: dict[str, object] = {}
     exec(blocks("docs/spread.md", "python")[0], names)
     command = blocks("docs/spread.md", "sh")[0].replace("\\\n", " ").splitlines()[0]
-    assert main(shlex.split(command)[1:]) == 0
-    shown = capsys.readouterr().out
+    shown = finished(main(shlex.split(command)[1:]), 0).out
     page = blocks("docs/spread.md", "text")[0].splitlines()
     ranges = page[page.index("Ranges, by Ritz, at most 14 functions, batched") :][4:6]
     assert [line.rpartition("corner")[0] in shown for line in ranges] == [True, True]  # then the error

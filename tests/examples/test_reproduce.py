@@ -30,13 +30,12 @@ def rows(sections):
     return [row for section in sections.values() for row in section]
 
 
-def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept, sections):
+def test_reproduce_prints_and_draws(finished, tmp_path, monkeypatch, swept, sections):
     monkeypatch.setattr(inward_beam, "run_sweep", lambda progress: swept)
     monkeypatch.setattr(
         inward_beam, "sections", lambda of: {id(swept): sections}[id(of)]
     )  # once, of that sweep
-    assert main(["reproduce", "--output", str(tmp_path / "new")]) == DONE
-    out, err = capsys.readouterr()
+    out, err = finished(main(["reproduce", "--output", str(tmp_path / "new")]), DONE)
     assert err == ""
     for number in ("65.231", "65.230", "65.23045643", "61.96301890", "50.90709537", "50.90705785"):
         assert number in out
@@ -75,15 +74,14 @@ def test_reproduce_prints_and_draws(capsys, tmp_path, monkeypatch, swept, sectio
         assert (tmp_path / "new" / f"fig_{i}.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_an_unexpected_verdict_is_reported(capsys, tmp_path, monkeypatch):
+def test_an_unexpected_verdict_is_reported(finished, tmp_path, monkeypatch):
     row = [*inward_beam.first_frequencies()][1]
     monkeypatch.setattr(inward_beam, "run_sweep", lambda progress: None)
     monkeypatch.setattr(
         inward_beam, "sections", lambda swept: {"title": [replace(row, ours=row.ours + 0.01)]}
     )
     monkeypatch.setattr(inward_beam_figures, "pictures", lambda swept: {})
-    assert main(["reproduce", "--output", str(tmp_path)]) == NO_ANSWER
-    out, err = capsys.readouterr()
+    out, err = finished(main(["reproduce", "--output", str(tmp_path)]), NO_ANSWER)
     assert "differs: unexpected" in out
     assert "not as expected" in err
 
@@ -198,14 +196,13 @@ def test_tables_of_papers(papers):
     assert bounded.count(False) == 3  # those with stretch
 
 
-def test_reproduce_prints_tables(capsys, tmp_path, monkeypatch, papers):
+def test_reproduce_prints_tables(finished, tmp_path, monkeypatch, papers):
     monkeypatch.setattr(inward_beam, "run_sweep", lambda progress: None)
     monkeypatch.setattr(inward_beam, "sections", lambda swept: {})
     monkeypatch.setattr(inward_beam_figures, "pictures", lambda swept: {})
     monkeypatch.setattr(printed_tables, "reference_entries", lambda discretization: {})
     monkeypatch.setattr(printed_tables, "compare_papers", lambda: papers)
-    assert main(["reproduce", "--tables", "--output", str(tmp_path)]) == DONE
-    lines = capsys.readouterr().out.splitlines()
+    lines = finished(main(["reproduce", "--tables", "--output", str(tmp_path)]), DONE).out.splitlines()
     for words in (
         ("Mabie, Rogers 1972: tapers", "Ritz", "10", "agrees but 5 errata, 3 last"),
         ("IEA-15 blade, computed", "Ritz", "10", "agrees in all printed digits"),

@@ -58,22 +58,20 @@ def test_a_change_in_the_thirteenth_digit_does_not_stop_a_truck(direction: str):
 
 
 @pytest.mark.parametrize("digit", range(-3, 4))
-def test_command_ends_alike_on_either_side_of_the_steepest_slope(digit: int, capsys, tmp_path):
+def test_command_ends_alike_on_either_side_of_the_steepest_slope(digit: int, finished, tmp_path):
     text = Path("examples/forklift.toml").read_text().replace('"3500 kg"', '"0 kg"')
     limit = np.arctan(0.7 * (1.89 - 1.049) / (1.89 + 0.7 * 0.759)) * (1 + digit * 1e-13)
     file = tmp_path / "truck.toml"
     file.write_text(text.replace('"0.3019 rad"', f'"{float(limit)!r} rad"'))
-    assert main(["forklift", str(file)]) == 1
-    assert "too near the steepest" in " ".join(capsys.readouterr().err.split())
+    assert "too near the steepest" in " ".join(finished(main(["forklift", str(file)]), 1).err.split())
 
 
-def test_commands_state_the_error_near_self_locking(capsys, tmp_path):
+def test_commands_state_the_error_near_self_locking(finished, tmp_path):
     limit = drum.brake_torque(drum.simplex(SHOE), friction=0.3, force=1.0).locking_friction
     text = Path("examples/drum.toml").read_text().split("[second_shoe]")[0] + '[load]\nforce = "1000 N"\n'
     file, saved = tmp_path / "drum.toml", tmp_path / "found.json"
     file.write_text(text.replace("friction = 0.35", f"friction = {float(limit) * (1 - 1e-9)!r}"))
-    assert main(["drum", str(file), "--json", str(saved)]) == 0
-    assert "bound of the relative error" in capsys.readouterr().out
+    assert "bound of the relative error" in finished(main(["drum", str(file), "--json", str(saved)]), 0).out
     assert 1e-7 < json.loads(saved.read_text())["error"] < 1e-4
 
 

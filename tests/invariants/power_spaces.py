@@ -1,4 +1,4 @@
-"""Powers of x as a discretization: with exact integrals, for derivations over the same trial functions."""
+"""A discretization by powers of x with exact integrals, for derivations over the same trial functions."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -63,7 +63,7 @@ class PowerSpaces:
 
 @dataclass(frozen=True)
 class PowerSeries:
-    """The discretization."""
+    """The discretization by powers of x."""
 
     def spaces(self, beam):
         return PowerSpaces(beam.length)
@@ -82,7 +82,7 @@ class PowerSeries:
 
 
 def over_the_beam(weight, p):
-    """Integral of a profile times a polynomial over xi."""
+    """Compute the integral of a profile times a polynomial over xi."""
     segments = zip(pairwise(weight.breakpoints), weight.coefficients, strict=True)
     return sum(_over_segment(ends, row, p) for ends, row in segments)
 

@@ -129,3 +129,10 @@ def test_in_space_a_motion_in_one_plane_has_the_backbone_of_that_plane() -> None
     )
     assert in_space.frequency == pytest.approx(planar.frequency, rel=1e-11)  # both are known to rounding
     assert in_space.coefficient == pytest.approx(planar.coefficient, abs=planar.error + in_space.error)
+
+
+@pytest.mark.parametrize("smallest", [bd.Ritz(1), bd.Fem(2)])
+def test_the_smallest_discretization_has_no_smaller_one_to_estimate_its_error(
+    smallest: bd.Discretization,
+) -> None:
+    assert bd.backbone(CANTILEVER, discretization=smallest).error == np.inf

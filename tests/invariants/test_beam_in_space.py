@@ -18,15 +18,17 @@ from beamdyn.equations.beam_in_space.finite_rotations import skew
 from beamdyn.equations.beam_in_space.moving_beam import Carrier, MovingBeam
 from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 from beamdyn.equations.beam_in_space.station_forces import StationForces
+from beamdyn.equations.beam_in_space.tip_forces import TipForces
+from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.modal_basis import ModalBasis
 from beamdyn.modes.modal.model import Model
+from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.profile import to_profile
 from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 from beamdyn.transient.elastica_steps import propagate_elastica
 from benchmarks.cases.beams_in_space import bend, uniform
 from benchmarks.cases.elastica import harvester_at, published, scene_of
-from benchmarks.cases.loaded_beam import TipLoad
 from benchmarks.cases.two_planes import models, second_method_cases
 from benchmarks.cases.two_planes import scene_of as two_planes_scene
 
@@ -83,10 +85,10 @@ LOADS: dict[str, tuple[Callable[[BentBeam], StationForces], bool]] = {  # and wh
     "centrifugal": (lambda bent: bent.masses.centrifugal(AXIS / np.linalg.norm(AXIS)), True),
     "angular acceleration": (lambda bent: bent.masses.euler(AXIS), False),
     "root acceleration": (lambda bent: bent.masses.translated(AXIS), True),
-    "dead force": (TipLoad(FORCE).on, True),
-    "dead couple": (TipLoad(couple=COUPLE).on, False),
-    "force that follows": (TipLoad(FORCE, follows=True).on, False),
-    "couple that follows": (TipLoad(couple=COUPLE, follows=True).on, False),
+    "dead force": (TipForces(FORCE).on, True),
+    "dead couple": (TipForces(couple=COUPLE).on, False),
+    "force that follows": (TipForces(FORCE, follows=True).on, False),
+    "couple that follows": (TipForces(couple=COUPLE, follows=True).on, False),
 }
 
 
@@ -153,8 +155,8 @@ def test_turned_frame_turns_the_answer() -> None:
         upright, turned = (uniform(1.0, law, functions=8, initial=(0, 0, 0, 0.5, 0.3, 0)) for _ in range(2))
         turned = replace(turned, kinks=y[None])
         for follows in (False, True):
-            first = bend(upright, TipLoad(2 * FORCE, COUPLE, follows))
-            load = TipLoad(2 * FORCE, COUPLE, True) if follows else TipLoad(Q @ (2 * FORCE), Q @ COUPLE)
+            first = bend(upright, TipForces(2 * FORCE, COUPLE, follows))
+            load = TipForces(2 * FORCE, COUPLE, True) if follows else TipForces(Q @ (2 * FORCE), Q @ COUPLE)
             np.testing.assert_allclose(bend(turned, load).tip, Q @ first.tip, rtol=0, atol=1e-11)
 
 
@@ -490,3 +492,95 @@ def test_a_section_that_deforms_without_a_force_is_refused_with_its_place() -> N
     law[3, 4] = law[4, 3] = 1.5
     with pytest.raises(InvalidValue, match=r"section = -0\.08.* at x/L = .*6 x 6"):
         uniform(1.0, law)
+
+
+# Loads at the tip of scenes -------------------------------------------------------------------------
+
+FORCE_AT_TIP, MOMENT_AT_TIP = np.array([-0.3, 0.8, 0.5]), np.array([0.2, -0.4, 0.3])
+CURVED = bd.Beam.from_stiffness(
+    1.0,
+    1.0,
+    1.0,
+    second_bending_stiffness=3.0,
+    torsion_stiffness=0.8,
+    rotary_inertia=1e-3,
+    second_rotary_inertia=2e-3,
+    sweep=Polynomial([0.0, 0.5]),
+)
+IN_SPACE = bd.Physics(2, rotary_inertia=True, torsion=True, large_deflection=True)
+
+
+def pushed(load: bd.TipLoad, bending_angle: float = 0.3, **others: Any) -> bd.Scene:
+    return bd.Scene(CURVED, bd.Mount(0.5, 2.0, bending_angle), physics=IN_SPACE, tip_load=load, **others)
+
+
+@pytest.mark.parametrize("follows", [False, True])
+def test_a_load_turned_with_the_beam_turns_its_tip(follows: bool) -> None:
+    c, s = np.cos(0.9), np.sin(0.9)
+    turn = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    loads = (
+        bd.TipLoad(tuple(Q @ FORCE_AT_TIP), tuple(Q @ MOMENT_AT_TIP), follows) for Q in (np.eye(3), turn)
+    )
+    one, other = (
+        bd.equilibrium(pushed(load, angle), 0.0) for load, angle in zip(loads, (0.3, 1.2), strict=True)
+    )
+    np.testing.assert_allclose(other.tip, turn @ one.tip, rtol=0, atol=1e-11)
+    assert np.linalg.norm(one.tip - bd.equilibrium(pushed(bd.TipLoad()), 0.0).tip) > 0.1
+
+
+def test_small_loads_do_not_know_whether_they_follow_the_tip() -> None:
+    """Also of a swept beam: the components are those on the unloaded beam."""
+    unloaded = bd.equilibrium(pushed(bd.TipLoad()), 0.0).tip
+    loads = [
+        bd.TipLoad(tuple(1e-5 * FORCE_AT_TIP), tuple(1e-5 * MOMENT_AT_TIP), each) for each in (False, True)
+    ]
+    dead, following = (bd.equilibrium(pushed(load), 0.0).tip - unloaded for load in loads)
+    np.testing.assert_allclose(following, dead, rtol=0, atol=1e-4 * np.linalg.norm(dead))
+
+
+def test_frequencies_under_a_load_are_those_of_motion_about_the_equilibrium() -> None:
+    """The derivative, by differences, of the residual of the equations in time."""
+    for load in (bd.TipLoad((0.0, 0.5, 0.4)), bd.TipLoad((0.0, 0.5, 0.4), (0.1, 0.0, 0.2), follows=True)):
+        model = Model(pushed(load), bd.Ritz(6))
+        q = model.solver.equilibria(np.array([1.5]))[0]
+        root = root_motion(model.scene.mount, MotionSample.steady(1.5))
+        rest, pencil = np.zeros_like(q), model.equations_at(1.5).steady()
+
+        def residual(q: np.ndarray, model=model, root=root, rest=rest) -> np.ndarray:
+            return model.bent.at(q).work(rest, rest, root)
+
+        steps = 1e-6 * np.eye(len(q))
+        change = np.array([(residual(q + step) - residual(q - step)) / 2e-6 for step in steps]).T
+        K = pencil.K0 + 1.5**2 * pencil.K2
+        np.testing.assert_allclose(residual(q), 0.0, atol=1e-10)
+        np.testing.assert_allclose(change, K, rtol=0, atol=1e-8 * np.abs(K).max())
+
+
+def test_critical_speed_under_a_dead_load_is_where_the_first_frequency_vanishes() -> None:
+    inward = bd.Scene(
+        bd.Beam.from_stiffness(1.0, 1.0, 1.0),
+        bd.Mount(4.0),
+        physics=bd.Physics(large_deflection=True),
+        tip_load=bd.TipLoad((-1.0, 0.0, 0.0)),
+    )
+    basis = bd.Ritz(12)
+    found = bd.critical_point(inward, basis)
+    below, above = (bd.natural_modes(inward, k * found.speed, 1, basis) for k in (1 - 1e-8, 1 + 1e-8))
+    assert found.of_bent_beam and not below.growth_rate.any() and above.growth_rate.any()
+    assert "its load" in found.reason
+    assert found.speed < bd.critical_speed(replace(inward, tip_load=bd.TipLoad()))
+
+
+def test_energy_under_a_dead_force_that_begins_at_once() -> None:
+    scene = bd.Scene(
+        bd.Beam.from_stiffness(1.0, 1.0, 1.0),
+        motion=bd.SteadyRotation(1.0),
+        physics=bd.Physics(large_deflection=True),
+        tip_load=bd.TipLoad((0.0, 1.0, 0.0)),
+    )
+    run = bd.simulate(scene, 2.0, modes=2, tolerance=1e-6, initial="rest")
+    energy = run.energy(run.t)
+    np.testing.assert_allclose(energy, 0.0, rtol=0, atol=1e-6 * 0.3)  # the work of the force is of order 0.3
+    assert np.abs(run.tip).max() > 0.4
+    still = bd.simulate(scene, 0.5, modes=2, tolerance=1e-6, initial="equilibrium")
+    assert np.ptp(still.tip) < 1e-6 < abs(still.tip[0])

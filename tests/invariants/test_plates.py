@@ -18,7 +18,7 @@ from numpy.polynomial.legendre import leggauss
 import beamdyn as bd
 from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.discretization import CLAMPED
-from beamdyn.equations.fields.plate import Strip
+from beamdyn.equations.fields.strip import Strip
 from beamdyn.scene.profile import ONE
 from beamdyn.scene.rectangle import Rectangle
 

@@ -229,7 +229,9 @@ def test_results_are_kept_in_files(tmp_path):
     back = bd.load(tmp_path / "r.json")
     np.testing.assert_array_equal(back.quantile("moment"), found.quantile("moment"))
     np.testing.assert_array_equal(back.psd([10.0, 20.0]), found.psd([10.0, 20.0]))
-    assert found.plot().get_ylabel() == "largest strain expected in 3600 s"
+    ax = found.plot()
+    assert ax.get_ylabel() == "largest strain [1e-6] expected in 3600 s"
+    np.testing.assert_allclose(ax.lines[0].get_ydata()[0], 1e6 * found.values("strain")[0, 0, 0], rtol=1e-12)
 
 
 BAD = [

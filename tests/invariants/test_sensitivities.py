@@ -227,7 +227,7 @@ def test_result_is_saved_drawn_and_read(tmp_path):
     found.save(tmp_path / "s.json")
     again = bd.load(tmp_path / "s.json")
     np.testing.assert_array_equal(again.derivative, found.derivative)
-    assert [text.get_text() for text in found.plot().get_yticklabels()] == ["speed", "beam.thickness"]
+    assert [text.get_text() for text in found.plot().get_yticklabels()] == ["speed", "thickness"]
     with pytest.raises(ValueError, match=r"beam\.thickness, speed"):
         found.by("mount.radius")
 

@@ -10,23 +10,23 @@ POINTS = (
     (-0.05, 0.01, 10, 6.0),
     (-0.3, 0.1, 20, 2.0),
     (-0.9, 0.4, 30, 0.0),
-)  # x, y, z, twist
+)  # x, y, z [m] and twist [deg]
 CENTRE, TENSION = (0.06, -0.11), (0.04, 0.09)  # x and y of the centres of mass and of tension [m]
-MASS, INERTIA = 200.0, (40.0, 6.0)  # kg/m; kg m about x and y, in the centre
+MASS, INERTIA = 200.0, (40.0, 6.0)  # mass per length [kg/m]; inertias about x and y through the centre [kg m]
 FLAP, EDGE, TORSION, AXIAL, SHEAR = 2e8, 8e8, 5e7, 5e9, (3e8, 9e8)
 
 
 def stiffness(factor=1.0):
-    """In BeamDyn's order; about the axis, with the centre of tension beside it."""
+    """Return the stiffness in BeamDyn's order, about the axis, with the centre of tension beside it."""
     (x, y), K = TENSION, np.diag([*SHEAR, AXIAL, EDGE, FLAP, TORSION])
     strain = np.eye(6)
-    strain[2, 3], strain[2, 4] = y, -x  # stretch of the centre of tension
+    strain[2, 3], strain[2, 4] = y, -x  # bending stretches the centre of tension
     return factor * strain.T @ K @ strain
 
 
 def mass(factor=1.0):
     (x, y), M = CENTRE, np.diag([MASS, MASS, MASS, *INERTIA, sum(INERTIA)])
-    velocity = np.eye(6)  # of the centre, by that of the axis and the turning rates
+    velocity = np.eye(6)  # velocity of the centre from that of the axis and the turning rates
     velocity[0, 5], velocity[1, 5], velocity[2, 3], velocity[2, 4] = -y, x, y, -x
     return factor * velocity.T @ M @ velocity
 
@@ -60,7 +60,7 @@ def primary_file(points=POINTS, members=("1 4",), **changes):
 
 
 def write_turbine(folder, **files):
-    """A turbine of OpenFAST whose blades BeamDyn computes, and all that it names."""
+    """Write the files of an OpenFAST turbine whose blades BeamDyn computes."""
     written = {"primary.dat": primary_file(), "blade.dat": blade_file(), "ed.dat": elastodyn_main()}
     written |= {
         "turbine.fst": '1 X\n2  CompElast - (switch)\n"ed.dat"  EDFile\n"primary.dat"  BDBldFile(1)\n'

@@ -1,4 +1,4 @@
-"""What several modules of unit tests use."""
+"""Fixtures that several modules of unit tests use."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from beamdyn.cli import main
 
 @pytest.fixture
 def run(capsys: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
-    """Run a command of beamdyn in this process: its exit code, output and messages."""
+    """Return a function that runs a command of beamdyn in this process: exit code, output and messages."""
 
     def run(*arguments: object) -> tuple[int, str, str]:
         code = main([str(a) for a in arguments])

@@ -3,9 +3,9 @@
 import numpy as np
 
 STATIONS = (0.0, 0.2, 0.5, 0.8, 1.0)
-TWIST = (12.0, 11.0, 5.0, 1.5, 0.0)  # deg, to feather
-MASS = (400.0, 300.0, 180.0, 60.0, 12.0)  # kg/m
-FLAP = (4e9, 1.5e9, 2e8, 1.5e7, 2e5)  # N m2
+TWIST = (12.0, 11.0, 5.0, 1.5, 0.0)  # structural twist [deg], positive to feather
+MASS = (400.0, 300.0, 180.0, 60.0, 12.0)  # mass per length [kg/m]
+FLAP = (4e9, 1.5e9, 2e8, 1.5e7, 2e5)  # flap stiffness [N m2]
 EDGE = (4.2e9, 2.5e9, 9e8, 1.4e8, 6e6)
 HEADS = ("BlFract", "PitchAxis", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
 UNITS = ("(-)", "(-)", "(deg)", "(kg/m)", "(Nm^2)", "(Nm^2)")
@@ -20,7 +20,7 @@ def rows():
 
 
 def elastodyn_blade(**changes):
-    """A blade file, line by line; its table begins in line 17."""
+    """Return the lines of a blade file; its table begins in line 17."""
     given = {"count": 5, "heads": HEADS, "units": UNITS, "rows": rows(), "mass_factor": 1.1} | changes
     lines = ["------- ELASTODYN V1.00.* INDIVIDUAL BLADE INPUT FILE ----", "A blade of the tests"]
     lines += [
@@ -41,7 +41,7 @@ def elastodyn_blade(**changes):
 
 
 def elastodyn_main(**changes):
-    """A main file; the names of its values are those of the manual."""
+    """Return the lines of a main file; the names of its values are those of the manual."""
     given = {
         "TipRad": LENGTH + HUB,
         "HubRad": HUB,
@@ -67,7 +67,7 @@ MULTIPLIERS = (
 
 
 def bmodes_main(**changes):
-    """A main file of BModes 3."""
+    """Return the lines of a main file of BModes 3."""
     given = {"Echo": "true", "beam_type": 1, "rot_rpm:": 18.0, "rpm_mult:": 0.5, "radius:": "41.25"}
     given |= {
         "hub_rad:": "1.25D0",
@@ -94,7 +94,7 @@ def bmodes_main(**changes):
 
 
 def bmodes_sections(**changes):
-    """Section properties; its table begins in line 6."""
+    """Return the lines of section properties; the table begins in line 6."""
     given = {"count": 5, "first": "sec_loc"} | changes
     names = (
         "str_tw tw_iner mass_den flp_iner edge_iner flp_stff edge_stff tor_stff axial_stff cg_offst sc_offst"

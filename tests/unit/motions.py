@@ -3,7 +3,6 @@
 from itertools import pairwise
 
 import numpy as np
-import pytest
 
 from beamdyn.scene.motion import (
     MotionSample,
@@ -58,7 +57,7 @@ def name(motion):
 
 
 def gauss(function, a, b, pieces=40):
-    """Integral of a function of an array, by pieces."""
+    """Integrate a function of an array by Gauss quadrature on pieces."""
     x, w = np.polynomial.legendre.leggauss(8)
     h = (b - a) / pieces
     t = a + h * (np.arange(pieces)[:, None] + (x + 1) / 2)
@@ -69,12 +68,3 @@ def pieces_of(motion, end=6.0):
     inner = [t for t in motion.breakpoints if t < min(end, motion.end)]
     edges = [0.0, *inner, min(end, motion.end)]
     return list(pairwise(edges))
-
-
-def refused(build, *parts):
-    """The build is refused by a ValueError of one line that contains all parts."""
-    with pytest.raises(ValueError) as refusal:
-        build()
-    message = str(refusal.value)
-    assert "\n" not in message
-    assert [part for part in parts if part not in message] == []

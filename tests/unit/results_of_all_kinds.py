@@ -20,10 +20,10 @@ from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.results.result import Result
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
 from brakes import chain, drum, forklift, machines, vehicle
-from brakes.answers.band import BRAKE as BAND
 from brakes.answers.caliper import CALIPER, MECHANISM
 from brakes.answers.drum import BRAKE as DRUM
 from brakes.answers.forklift import FORKLIFT
+from brakes.answers.machine import MACHINES
 from brakes.answers.vehicle import BRAKE as VEHICLE
 from brakes.app.bases import base
 from brakes.calipers import NAMED, stop
@@ -98,6 +98,7 @@ BASES = {
 MAKERS: dict[str, Callable[[], Result]] = {
     "Actuation": lambda: chain.actuate(PEDAL, LINE),
     "Backbone": lambda: bd.backbone(BENT, 5.0),
+    "BestResistance": lambda: bd.best_resistance(LAYERED, 50.0, 1),
     "BrakeResult": lambda: drum.brake_torque(drum.simplex(SHOE), friction=0.4, force=1e3),
     "BrakedStop": lambda: chain.brake_from_pedal(TRUCK, STOP, PEDAL, LINE, 0.7),
     "Braking": lambda: vehicle.braking_limits(BICYCLE, 0.8, 0.7),
@@ -135,7 +136,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "FrequencyBounds": lambda: bd.frequency_bounds(HARVESTER, 50.0),
     "FrequencyResponse": lambda: bd.frequency_response(HARVESTER, 50.0, np.linspace(1.0, 100.0, 60)),
     "FromPedal": _from_pedal,
-    "Harvest": lambda: bd.harvest(LAYERED, [20.0, 50.0], 2),
+    "Harvest": lambda: bd.harvest(LAYERED, [20.0, 50.0], 2, road=bd.RoadRoughness("A")),
     "Heat": lambda: chain.heat_of_stop(vehicle.stop(TRUCK, STOP), chain.Drums(18.0, 0.05), 1e5, 0.15),
     "Holding": lambda: vehicle.hold(BICYCLE, ROAD),
     "InputSweep": lambda: InputSweep(("a.x",), ("mm",), (np.arange(3.0),), ("y",), ("N",), (np.ones(3),)),
@@ -143,7 +144,7 @@ MAKERS: dict[str, Callable[[], Result]] = {
     "Kinematics": lambda: forklift.follow_shoes(BENDIX, 5e-4),
     "LoadCycles": lambda: cycles_of(made("TransientLoads")),
     "Locus": lambda: bd.frequency_locus(HARVESTER, SPEEDS),
-    "MachineAnswer": lambda: _answer(BAND),
+    "MachineAnswer": lambda: _answer(MACHINES["band"]),
     "MachineResult": lambda: machines.solve_brake(
         machines.Band(0.2, 0.05, 3.9, 0.5, 0.1), friction=0.2, force=1e2
     ),
@@ -206,7 +207,7 @@ EXAMPLES_OF_INPUTS = (
 
 
 def cycles_of(loads: bd.TransientLoads) -> bd.LoadCycles:
-    """Cycles as `count_cycles` gives them, which needs the package that counts."""
+    """Return cycles like those of `count_cycles`, which needs the package that counts."""
     ranges, means, counts = np.array([1e-4, 3e-4]), np.zeros(2), np.array([1.0, 0.5])
     what = ("strain", 0, 0.0, ranges, means, counts, 0.0, 1.0, ())
     return bd.LoadCycles(*what, loads.provenance, loads.scene)
@@ -214,12 +215,12 @@ def cycles_of(loads: bd.TransientLoads) -> bd.LoadCycles:
 
 @cache
 def made(name: str) -> Any:
-    """The result of a class, computed once."""
+    """Return the result of a class, computed once."""
     return MAKERS[name]()
 
 
 def result_classes() -> dict[str, type[Result]]:
-    """Classes of results, of all modules of both packages, without those that are only derived from.
+    """Return the classes of results of all modules of both packages, without base classes.
 
     Modules of screens define none, and may lack the toolkit that they import.
     """

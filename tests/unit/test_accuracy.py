@@ -38,3 +38,11 @@ def test_effects_are_switches_of_the_physics() -> None:
     fields = {name for name in vars(Physics()) if name != "branch"}
     assert {effect.switch for effect in EFFECTS} == fields
     assert not any(effect.switch for effect in NEVER_MODELLED)
+
+
+@pytest.mark.parametrize("ratio", [0.05, 0.3, 0.5, 0.8])
+def test_the_error_of_the_finest_of_three_is_that_of_a_geometric_series(ratio: float) -> None:
+    """By the margin, which alone counts where answers converge slowly."""
+    margin = refinement.THREE_DISCRETIZATIONS
+    found = refinement.error_of_finest(margin, ratio - ratio**2, 1 - ratio)
+    assert found == pytest.approx(margin.factor * min(ratio**2, ratio - ratio**2), rel=1e-12)

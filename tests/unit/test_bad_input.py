@@ -17,6 +17,7 @@ from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import Profile, Table, as_profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor
+from tests.unit.refusals import refused
 
 STRIP = {"length": 0.05, "width": 0.01, "thickness": 0.0002, "youngs_modulus": 200e9, "density": 7850.0}
 STIFFNESS = {"length": 0.05, "mass_per_length": 0.0157, "bending_stiffness": 1.3e-3}
@@ -32,15 +33,6 @@ NO_NUMBER = [None, "0.2 mm", "big", [], {}, 1j, object()]
 
 def strip(**changes):
     return Beam.rectangular(**(STRIP | changes))
-
-
-def refused(build, *parts):
-    """The build is refused by a ValueError of one line that contains all parts."""
-    with pytest.raises(ValueError) as refusal:
-        build()
-    message = str(refusal.value)
-    assert "\n" not in message
-    assert [part for part in parts if part not in message] == []
 
 
 # Dimensions -----------------------------------------------------------------------------------------

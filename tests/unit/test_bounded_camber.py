@@ -94,3 +94,12 @@ def test_a_transient_between_two_critical_speeds_says_what_is_not_known() -> Non
     run = bd.simulate(bd.Scene(STRIP, INWARD, motion, physics=PLATE), 1.0, modes=2)
     assert np.isnan(run.left_out[BENT])
     assert "past the critical speed" in run.left_out_effects.not_known[BENT]
+
+
+def test_loads_of_layers_without_poissons_ratio_have_the_bound() -> None:
+    scene = bd.load_scene("examples/bimorph.toml")
+    found = bd.static_loads(scene, speeds=[20.0], at=[0.001]).left_out_effects
+    assert scene.beam.strip is not None and scene.beam.strip.poissons_ratio is None
+    assert "as if no section cambered" in found.assumed[CAMBER]
+    # The strain follows the stiffness, which a Poisson's ratio of 0.5 raises by at most 1/(1 - 0.5^2).
+    assert 0.2 < np.abs(found.changes[CAMBER]).max() < 1 / 3

@@ -374,6 +374,21 @@ def test_command_writes_what_it_prints(run, tmp_path: Path) -> None:
     assert bd.load(record).unit == "rpm"
 
 
+def test_command_finds_few_equilibria_and_the_same_crossings(run, tmp_path: Path) -> None:
+    """A beam bent far is solved at a fifth of the speeds; where a line crosses does not depend on them."""
+    bent, table = tmp_path / "bent.toml", tmp_path / "x.csv"
+    text = (ROOT / "examples" / "harvester_45deg.toml").read_text()
+    bent.write_text(text.replace("[beam]", "[physics]\nlarge_deflection = true\n\n[beam]"))
+    few = ("--modes", "1", "--crossings", table, "--csv", tmp_path / "f.csv")
+    code, _, _ = run("campbell", bent, "--top-speed", "90 rad/s", *few)
+    assert code == DONE and len((tmp_path / "f.csv").read_text().splitlines()) < 90
+    with warnings.catch_warnings(action="ignore"):
+        known = bd.campbell(bd.load_scene(bent), np.linspace(0, 90, 181), modes=1)
+    found = [float(row["speed_rad_per_s"]) for row in csv.DictReader(table.read_text().splitlines())]
+    error = 3 * known.crossings[0].error  # of both, by different bases
+    assert found == pytest.approx([each.speed for each in known.crossings], rel=error)
+
+
 def test_command_overlays_scenes_and_lists_orders(run, tmp_path: Path) -> None:
     other = tmp_path / "stiffer.toml"
     other.write_text(BLADE.read_text())

@@ -49,6 +49,11 @@ def test_a_trade_off_of_more_modes_than_its_reference_resolves_is_refused(refuse
     assert "--modes = 99: give a whole number from 1 to 20; " in said
 
 
+def test_an_option_that_is_given_twice_is_named_with_a_remedy(refused):
+    said = refused("identify", TYRE, "--measured", "62 Hz", "--free", "length", "--free", "thickness")
+    assert "--free is given twice; give it once, with all values where it takes several." in said
+
+
 @pytest.mark.parametrize(
     "command", [("simulate", "--t-end", "1 s"), ("sweep", "--speeds", "5 rad/s", "--window", "0:1 s")]
 )

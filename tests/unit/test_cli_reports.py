@@ -76,11 +76,10 @@ def cells(page: str) -> set[str]:
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_report_has_inputs_results_drawings_and_version_in_one_file(name, tmp_path, capsys):
+def test_report_has_inputs_results_drawings_and_version_in_one_file(name, tmp_path, finished):
     program, file, options, drawings = COMMANDS[name]
     path = tmp_path / "report.html"
-    assert program.main([name.split()[0], str(file), *options, "--report", str(path)]) == DONE
-    printed = capsys.readouterr()
+    printed = finished(program.main([name.split()[0], str(file), *options, "--report", str(path)]), DONE)
     page = path.read_text(encoding="utf-8")
     assert len(pictures(page)) == drawings
     assert {ET.fromstring(text).tag for text in pictures(page)} == {"{http://www.w3.org/2000/svg}svg"}
@@ -190,14 +189,13 @@ def test_file_that_cannot_be_written_is_refused_first(command, name, sentence, t
     assert (tmp_path / "old.html").read_text() == "mine"
 
 
-def test_force_overwrites_and_each_file_is_its_own(tmp_path, capsys):
+def test_force_overwrites_and_each_file_is_its_own(tmp_path, finished):
     path = tmp_path / "old.html"
     path.write_text("mine")
     assert brakes.cli.main(["drum", str(DRUM), "--report", str(path), "--force"]) == DONE
     assert "262.96" in path.read_text(encoding="utf-8")
     both = ["--report", str(path), "--csv", str(path), "--force"]
-    assert brakes.cli.main(["drum", str(DRUM), *both]) == BAD_INPUT
-    assert "give each its own file" in capsys.readouterr().err
+    assert "give each its own file" in finished(brakes.cli.main(["drum", str(DRUM), *both]), BAD_INPUT).err
 
 
 # Text of others is text ---------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.studies.beside_data.pairing import NO_MODE, pair
 from beamdyn.studies.beside_data.single_numbers import say_value
@@ -105,3 +106,44 @@ def test_another_kind_of_data_is_refused():
 def test_a_density_is_said_without_an_exponent():
     assert say_value(7853.4, "kg/m3") == "7850 kg/m3"
     assert say_value(2.0e-4, "m").elsewhere == "0.2 mm"
+
+
+@pytest.mark.parametrize(
+    "factor, words",
+    [
+        (2 * np.pi, "2 pi times those of the scene, within 5 %: they may be in rad/s, and read as Hz"),
+        (60.0, "60 times"),
+        (1e3, "1000 times"),
+        (1 / (2 * np.pi), "1/(2 pi) times"),
+        (1 / 60, "1/60 times"),
+        (1e-3, "1/1000 times"),
+    ],
+)
+def test_values_off_by_the_factor_of_a_unit_are_said_to_be_in_another(factor, words):
+    shares = np.array([0.95, 0.953, 0.957])
+    for count in (2, 3):  # in radians a second the first and second come near modes 2 and 4
+        found = bd.compare(SCENE, bd.MeasuredFrequencies((factor * shares * EXACT)[:count].tolist()))
+        (said,) = [each for each in found.warnings if "all measured" in each]
+        assert words in said and said.kind == "input"
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        np.multiply(1.01, EXACT),
+        np.multiply(10.0, EXACT),  # no factor of two units
+        [2 * np.pi * EXACT[0], EXACT[1], EXACT[2]],  # not all
+        2 * np.pi * np.multiply([0.88, 0.95, 0.97], EXACT),  # further off than 10 %
+        [2 * np.pi * EXACT[0]],  # one value may be of mode 2
+    ],
+)
+def test_other_values_are_not_said_to_be_in_another_unit(values):
+    found = bd.compare(SCENE, bd.MeasuredFrequencies([*values], uncertainty=0.1))
+    assert not any("all measured" in each for each in found.warnings)
+
+
+def test_numbers_that_explain_are_in_the_unit_of_length_of_the_scene():
+    inches = replace(SCENE, units=bd.DisplayUnits(length="in"))
+    found = bd.compare(inches, bd.MeasuredFrequencies([62.1], rounding=0.05))
+    (said,) = [in_files(text, found.display_units) for text in found.sentences() if "explain" in text]
+    assert "beam.length = 2.02 in" in said and "beam.youngs_modulus = 181 GPa" in said

@@ -131,7 +131,7 @@ from tests.unit.toml_scenes import (
         ),
         ("beam", None, "beam: missing; give a table [beam]"),
         ("beam", "50 mm", 'beam = "50 mm": give a table'),
-        ("mount", None, "mount: missing; give a table [mount]"),
+        ("mount", None, "mount: missing; give a table [mount] with radius"),
         (
             "mount.radius",
             "-215 mm",
@@ -255,7 +255,11 @@ from tests.unit.toml_scenes import (
         ("beam.twist", 10, 'beam.twist = 10: give a unit, e.g. "10 rad" or "10 deg"'),
         ("beam.twist", {"polynomial": ["0 deg", 5]}, "beam.twist.polynomial[1] = 5: give a unit, e.g."),
         ("modle", {}, "modle: unknown key; did you mean model?"),
-        (" ", 1, " : unknown key; known are beam, mount, motion, model, damping, harvester, physics"),
+        (
+            " ",
+            1,
+            " : unknown key; known are beam, mount, motion, model, damping, tip_load, harvester, physics",
+        ),
     ],
 )
 def test_mistake_names_key_value_and_remedy(path, value, message):

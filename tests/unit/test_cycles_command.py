@@ -115,9 +115,9 @@ def test_turning_points_are_found_between_the_samples_of_a_run(exponent):
     [
         (
             ("--woehler", "5"),
-            '--woehler = "5": it is of counted cycles; give --cycles, too',
+            '--woehler = "5": it needs counted cycles; give --cycles, too',
         ),
-        (("--cycles-file", "c.csv"), "--cycles-file = c.csv: it is of counted cycles; give --cycles, too"),
+        (("--cycles-file", "c.csv"), "--cycles-file = c.csv: it needs counted cycles; give --cycles, too"),
         (("--cycles", "strain", "--equivalent-cycles", "5"), "give --woehler, too"),
         (("--cycles", "strain", "--woehler", "five"), 'give numbers, such as "3, 5, 10"'),
         (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from functools import cache
 from itertools import combinations
 from pathlib import Path
 
@@ -42,9 +43,10 @@ TOUCHING = 0.75  # boxes that matplotlib measures include a fringe of half a pix
 def rotors():
     for path in sorted((ROOT / "examples").glob("*.toml")):
         try:
-            yield pytest.param(bd.draw(bd.load_scene(path)).drawings, id=path.stem)
+            scene = bd.load_scene(path)
         except ConfigError:  # of a brake
             continue
+        yield pytest.param(lambda s=scene: bd.draw(s).drawings(), id=path.stem)
 
 
 def screens():
@@ -125,6 +127,12 @@ def kinds(document):
 ALL = [*rotors(), *screens(), *mechanisms(), *commands(), *named(), *sketches()]
 
 
+@cache
+def drawn(draw):
+    """Return the rows that each of the tests below looks at, computed once."""
+    return draw()
+
+
 def extents(figure):
     """Texts of a figure with the boxes in which matplotlib draws them, by axes [pt]."""
     canvas = FigureCanvasAgg(figure)
@@ -151,7 +159,7 @@ def check_texts(figure):
 
 @pytest.mark.parametrize("draw", ALL)
 def test_no_two_texts_overlap_and_none_leaves_the_frame(draw):
-    check_texts(figure_of(draw()))
+    check_texts(figure_of(drawn(draw)))
 
 
 @pytest.mark.parametrize("at", [(0.5, 0.5), (1.0, 0.2)])
@@ -166,7 +174,7 @@ def test_the_check_finds_a_text_on_another_and_one_that_leaves(at):
 
 @pytest.mark.parametrize("draw", ALL)
 def test_no_label_covers_the_end_of_an_arrow_or_a_line(draw):
-    rows = draw()
+    rows = drawn(draw)
     for layout in lay_out(rows, Paper.of(rows)):
         arrows = [shape for shape in layout.drawing.shapes if isinstance(shape, Arrow)]
         for at in layout.fit.to_paper(np.reshape([(a.foot, a.tip) for a in arrows], (-1, 2))):
@@ -177,7 +185,7 @@ def test_no_label_covers_the_end_of_an_arrow_or_a_line(draw):
 
 @pytest.mark.parametrize("draw", ALL)
 def test_svg_has_every_text_at_the_width_that_was_measured(draw):
-    rows = draw()
+    rows = drawn(draw)
     root = ET.fromstring(svg_of(rows))
     assert root.get("role") == "img" and root.find(f"{SVG}title").text and root.find(f"{SVG}desc").text
     ids = [element.get("id") for element in root.iter() if element.get("id")]
@@ -450,7 +458,7 @@ def signs_of(layout):
 @pytest.mark.parametrize("draw", ALL)
 def test_on_the_page_no_text_covers_another_or_a_sign_and_none_leaves_the_frame(draw):
     """In the places that the layout gives, which the page and SVG files state."""
-    rows = draw() if callable(draw) else draw
+    rows = drawn(draw)
     for layout in lay_out(rows, Paper.of(rows)):
         left, top, right, bottom = layout.frame
         signs = list(signs_of(layout))

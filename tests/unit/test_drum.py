@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from brakes import drum
+from brakes import chain, drum, machines
+from tests.unit.refusals import refused
 
 SHOE = {
     "drum_radius": 0.138,
@@ -20,14 +21,6 @@ SHOE = {
 
 def shoe(**changes) -> drum.Shoe:
     return drum.Shoe(**(SHOE | changes))
-
-
-def refused(build, *parts: str) -> None:
-    with pytest.raises(ValueError) as refusal:
-        build()
-    message = str(refusal.value)
-    assert "\n" not in message
-    assert [part for part in parts if part not in message] == []
 
 
 # What is refused --------------------------------------------------------------------------------------
@@ -245,3 +238,28 @@ def test_borders_of_a_shoe_do_not_hang_on_the_thirteenth_digit(change: float):
     ):
         with pytest.raises(ValueError, match=said):
             drum.Shoe(**given | border)
+
+
+@pytest.mark.parametrize(
+    ("build", "named"),
+    [
+        (
+            lambda: shoe(pivot=(np.full(2, 0.02), -0.11), drum_radius=np.full(3, 0.138)),
+            ("pivot[0] (2,)", "drum_radius (3,)"),
+        ),
+        (
+            lambda: shoe(lining=(0.5, np.full(2, 1.9)), face_width=np.full(3, 0.05)),
+            ("lining[1] (2,)", "face_width (3,)"),
+        ),
+        (
+            lambda: machines.Band(np.full(2, 0.2), 0.05, np.full(3, 3.9), force_arm=0.5, first_arm=0.1),
+            ("(2,)", "(3,)"),
+        ),
+        (
+            lambda: chain.HydraulicLine(np.full(2, 0.022), np.full(3, 0.032)),
+            ("master_bore (2,)", "cylinder_bore (3,)"),
+        ),
+    ],
+)
+def test_numbers_of_a_part_that_do_not_broadcast_are_named_with_their_shapes(build, named):
+    refused(build, "shapes do not broadcast", *named)

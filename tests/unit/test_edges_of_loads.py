@@ -39,9 +39,7 @@ def test_strain_past_one_percent_is_said():
 
 
 def test_headline_has_the_unit_of_the_error():
-    found = bd.static_loads(
-        bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.2, math.pi, 0.3)), np.array([20.0])
-    )
+    found = bd.static_loads(bd.Scene(bd.Beam.rectangular(**BEAM), bd.Mount(0.2, 1.0, 0.3)), np.array([20.0]))
     lines = [each for each in found.headline() if "error" in each]
     assert lines[0].endswith("N m")
 

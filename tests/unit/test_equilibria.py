@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,16 +12,21 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.app import frequency_screen
 from beamdyn.cli import DONE, NO_ANSWER, main
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.modes.modal import equilibrium
 from beamdyn.scene.profile import to_profile
 from benchmarks.cases.elastica import harvester_at
+from tests.conftest import Finished
 
 BENT = bd.Physics(large_deflection=True)
 SPRING = bd.Mount(0.2, 1.0, root_stiffness=0.0)
 SECOND_HINGE, IN_SPACE = bd.Mount(0.2, 1.0, second_root_stiffness=0.0), bd.Physics(2, large_deflection=True)
 SLOPE = to_profile("prebend", 0.1)
+ACROSS = (0.0, 0.1, 0.0)
+FOLLOWING, TWISTING = bd.TipLoad(ACROSS, follows=True), bd.TipLoad(moment=(1e-3, 0.0, 0.0))
+PUSHED = bd.Scene(harvester_at(45.0).beam, bd.Mount(0.2, 1.0), physics=BENT, tip_load=bd.TipLoad(ACROSS))
 
 
 def harvester(degrees: float, physics: bd.Physics = BENT) -> bd.Scene:
@@ -118,6 +124,14 @@ def test_critical_speed_is_that_of_a_straight_beam() -> None:
         (lambda: bd.equilibrium(harvester(0.0), 10.0, "up"), "branch"),
         (lambda: bd.equilibrium(harvester(0.0), math.nan), "speed"),
         (lambda: bd.equilibrium(harvester(0.0), 10.0).shape([0.06]), "x"),
+        (lambda: replace(PUSHED, physics=bd.Physics()), "physics.large_deflection"),
+        (lambda: replace(PUSHED, tip_load=bd.TipLoad((0.0, 0.0, 1.0))), "physics.planes"),
+        (lambda: replace(PUSHED, tip_load=bd.TipLoad(moment=(0.0, 1.0, 0.0))), "physics.planes"),
+        (lambda: bd.critical_point(replace(PUSHED, tip_load=FOLLOWING)), "tip_load.follows"),
+        (lambda: bd.critical_point(replace(PUSHED, physics=IN_SPACE, tip_load=TWISTING)), "tip_load.moment"),
+        (lambda: bd.backbone(PUSHED), "tip_load.force"),
+        (lambda: bd.resonance_speeds(replace(PUSHED, motion=bd.SteadyRotation(1.0)), 9.0), "tip_load.force"),
+        (lambda: bd.steady_response(replace(PUSHED, motion=bd.SteadyRotation(1.0)), [9.0]), "tip_load.force"),
     ],
 )
 def test_refused_by_name(call: Callable[[], object], named: str) -> None:
@@ -176,3 +190,64 @@ def test_a_blade_that_coils_is_followed_to_an_angle_alone(monkeypatch: pytest.Mo
     short = bd.critical_point(scene, bd.Ritz(6))
     assert whole.speed == short.speed == np.inf
     assert 0 < short.none_below < whole.none_below
+
+
+# A load at the tip ----------------------------------------------------------------------------------
+
+
+def test_a_load_that_was_not_reached_says_how_much_of_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(equilibrium, "_MOST_TURNS", 0.1)
+    with pytest.raises(bd.NoEquilibrium, match=r"followed to 0\.\d+ of the load at its tip"):
+        bd.equilibrium(replace(PUSHED, tip_load=bd.TipLoad((0.0, 1.0, 0.0))), 0.0)
+
+
+def test_changes_by_effects_are_not_known_of_a_loaded_beam() -> None:
+    beam = bd.Beam.rectangular(0.05, 0.01, 0.001, 200e9, 7850.0, poissons_ratio=0.3)
+    scene = bd.Scene(beam, physics=BENT, tip_load=bd.TipLoad(ACROSS))
+    for found, shape in ((bd.equilibrium(scene, 0.0), ()), (bd.natural_modes(scene, modes=2), (2,))):
+        assert found.left_out["shear deformation"].shape == shape
+        assert "no load at its tip" in found.left_out_effects.not_known["shear deformation"]
+
+
+def test_a_file_has_the_load_and_a_study_varies_it(tmp_path: Path) -> None:
+    path, given = tmp_path / "loaded.toml", Path("examples/harvester_45deg.toml").read_text(encoding="utf-8")
+    load = 'force = ["0 N", "0.1 N", "0 N"]\nmoment = ["0 N m", "0 N m", "1 N mm"]\nfollows = true'
+    path.write_text(f"{given}\n[physics]\nlarge_deflection = true\n[tip_load]\n{load}\n", encoding="utf-8")
+    scene = bd.load_scene(path)
+    assert scene.tip_load == bd.TipLoad(ACROSS, (0.0, 0.0, 1e-3), follows=True)
+    assert "load at the tip" in str(scene)
+    found = bd.study(scene, {"tip_load.force[1]": [0.0, 0.1], "speed": [100.0]}, modes=1)
+    alone = bd.natural_modes(scene, 100.0, 1).frequency
+    np.testing.assert_allclose(found.value[1, 0], alone, rtol=1e-9)
+    assert abs(found.value[0, 0, 0] / alone[0] - 1) > 0.01
+
+
+BECK = """[beam]
+length = "1 m"
+mass_per_length = "1 kg/m"
+bending_stiffness = "1 N m2"
+[mount]
+radius = "0 m"
+setting_angle = "180 deg"
+[physics]
+large_deflection = true
+[tip_load]
+force = ["-20.06 N", "0 N", "0 N"]
+follows = true
+"""
+
+
+def test_flutter_under_a_follower_load_is_an_answer_without_a_critical_speed(
+    tmp_path: Path, finished: Finished
+) -> None:
+    """The growth rate is that of a Galerkin solution of Beck's column with its own functions."""
+    file = tmp_path / "beck.toml"
+    file.write_text(BECK, encoding="utf-8")
+    said = finished(main(["modes", str(file), "--modes", "2"]), NO_ANSWER).err
+    assert "unstable at 0 rad/s: mode 1 (flutter, 0.2069 1/s)" in said and "critical" not in said
+    assert main(["locus", str(file), "--speeds", "0:1:3 rad/s", "--plot", str(tmp_path / "l.png")]) == DONE
+    tables = tomllib.loads(BECK.replace("20.06", "20.04"))
+    shown = frequency_screen.solve(tables | {"options": {"top_speed": "0.5 rad/s", "modes": 2}})
+    assert shown.critical is None and shown.critical_speed == np.inf
+    assert "critical speed" not in [each.words for each in frequency_screen.headline(shown)]
+    assert frequency_screen.draw(shown).axes and frequency_screen.chart(shown)

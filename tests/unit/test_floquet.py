@@ -55,14 +55,25 @@ def test_periods(motion, gravity, expected):
         (None, 0.0, "needs a periodic motion"),
         (bd.SteadyRotation(0.0), 0.0, "stands still"),
         (bd.SpinUp(50.0, 1.0), 0.0, "does not repeat itself"),
+        (bd.PulsatingRotation(1000.0, 0.1, 0.01), 9.81, "does not cover the circle in 4096 periods"),
+    ],
+)
+def test_motions_that_do_not_repeat_themselves_are_refused(motion, gravity, said):
+    with pytest.raises(ValueError, match=said):
+        bd.floquet_multipliers(bd.Scene(STRIP, MOUNT, motion, gravity=gravity))
+
+
+@pytest.mark.parametrize(
+    ("motion", "gravity", "said"),
+    [
         (bd.PulsatingRotation(50.0, 0.1, 20.0), 9.81, r"do not meet again.*the ratio 93/37;"),
         (bd.PulsatingRotation(1000.0, 0.1, 0.01), 9.81, r"do not meet again.*the ratio 1/64;"),
         (bd.RollingWheel(0.3, 10.0, bd.RoadWave(0.3, 0.01)), 0.0, "do not meet again"),
     ],
 )
-def test_motions_without_a_period_are_refused(motion, gravity, said):
+def test_a_period_is_refused_where_phases_do_not_meet(motion, gravity, said):
     with pytest.raises(ValueError, match=said):
-        bd.floquet_multipliers(bd.Scene(STRIP, MOUNT, motion, gravity=gravity))
+        period_of(bd.Scene(STRIP, MOUNT, motion, gravity=gravity))
 
 
 def test_large_deflection_is_refused():
@@ -86,12 +97,17 @@ def test_charts_refuse(vary, said):
         bd.stability_chart(bd.Scene(STRIP, MOUNT, PULSATING), vary)
 
 
-def test_charts_refuse_phases_that_meet_after_other_numbers_of_turns():
+def test_charts_judge_each_scene_where_phases_meet_after_other_numbers_of_turns_or_never():
     rotation = 10 * math.pi
-    motion, rates = bd.PulsatingRotation(rotation, 0.1, 10.0), [10.0, 12.5]
-    with pytest.raises(ValueError, match="other numbers of turns"):
-        scene = bd.Scene(STRIP, MOUNT, motion, gravity=9.81)
-        bd.stability_chart(scene, {"motion.frequency": rates, "mount.radius": [0.1, 0.2]}, 1)
+    motion, rates = bd.PulsatingRotation(rotation, 0.1, 10.0), [10.0, 10.0 * math.sqrt(1.5), 12.5]
+    scene = bd.Scene(STRIP, MOUNT, motion, gravity=9.81, damping_ratio=0.01)
+    chart = bd.stability_chart(scene, {"motion.frequency": rates, "mount.radius": [0.1, 0.2]}, 1)
+    assert chart.integrated == 6
+    for i, method in enumerate(("multipliers", "exponent", "multipliers")):
+        given = replace(scene, mount=bd.Mount(0.2), motion=replace(motion, frequency=rates[i]))
+        alone = bd.floquet_multipliers(given, 1)
+        assert (alone.method, alone.status) == (method, chart.status[i, 1])
+        assert alone.growth_rate == pytest.approx(chart.growth_rate[i, 1], rel=1e-9)
 
 
 def test_a_chart_resumes_from_its_store(tmp_path, monkeypatch):

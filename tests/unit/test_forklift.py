@@ -12,6 +12,7 @@ from brakes import forklift
 from brakes.forklift import BENDIX_12_5, Levers, StopConditions, Truck, internal_forces
 from brakes.reproduce.forklift_as_printed import stop_as_printed
 from brakes.reproduce.newton import newton_raphson
+from tests.unit.refusals import refused
 
 TRUCK = {
     "empty_mass": 5950.0,
@@ -28,14 +29,6 @@ LEVERS |= {"alpha1": 0.34, "alpha2": 0.34, "gamma": 0.17}
 
 def stop(truck=None, **changes):
     return forklift.stop(Truck(**(TRUCK | (truck or {}))), StopConditions(**(BASE | changes)))
-
-
-def refused(build, *parts: str) -> None:
-    with pytest.raises(ValueError) as refusal:
-        build()
-    message = str(refusal.value)
-    assert "\n" not in message
-    assert [part for part in parts if part not in message] == []
 
 
 # Vehicle ----------------------------------------------------------------------------------------------

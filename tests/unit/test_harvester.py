@@ -13,8 +13,10 @@ import pytest
 import beamdyn as bd
 from beamdyn.cli import main
 from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.results import result
 from beamdyn.files.scenes import parse_scene
 from beamdyn.scene.numbers import number_at, paths_of, with_numbers
+from beamdyn.steady import best_resistance, harvest
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "bimorph.toml"
 TEXT = EXAMPLE.read_text(encoding="utf-8")
@@ -50,9 +52,13 @@ def test_bad_layers_are_refused_with_key_value_bound_and_remedy():
     refused("harvester.connection = 'both'", connection="both")
     layered = bd.Harvester(**CERAMIC).on(STRIP)
     refused("harvester.start", "overlap", beam=layered)
+    refused("beam = 3: layers stand on a Beam", "Beam.rectangular makes one", beam=3)
+    across = {"poissons_ratio": 0.5, "eps33s": 3e-9}
+    refused("harvester.poissons_ratio = 0.5", "no material couples so much", **across)
+    refused("harvester.poissons_ratio = 0.6", "at most 0.5", poissons_ratio=0.6)
     refused("rectangular section", beam=bd.Beam.from_stiffness(0.05, 0.0157, 1.3e-3))
     tapered = bd.Beam.rectangular(0.05, bd.Polynomial([0.02, -0.01]), 0.0002, 200e9, 7850.0)
-    refused("width = 0.01", "constant", beam=tapered)
+    refused("width = 0.01", "constant under the layers", "a beam of even width", beam=tapered)
     refused("twist", beam=bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, twist=0.3))
 
 
@@ -123,7 +129,9 @@ def test_outputs_that_a_circuit_does_not_have_are_refused():
     beside = with_numbers(SCENE, {"harvester.start": 0.02})
     with pytest.raises(ValueError, match=r"position = 0\.01 m: the layers begin at 0\.02 m"):
         bd.frequency_response(beside, 20.0, [10.0], output=bd.LayerStrain(0.01))
-    with pytest.raises(ValueError, match=r"camber = True: it is not modelled of sections with piezo"):
+    with pytest.raises(
+        ValueError, match=r"camber = True: it needs poissons_ratio of the beam and of its layers"
+    ):
         replace(SCENE, physics=bd.Physics(camber=True))
     with pytest.raises(ValueError, match="short-circuited"):
         replace(SCENE, physics=bd.Physics(large_deflection=True))
@@ -176,7 +184,7 @@ def test_past_the_critical_speed_no_resistance_is_best():
     assert main(["best-resistance", str(EXAMPLE), "--speed", "300 rad/s"]) == 1
 
 
-def test_sensitivities_of_a_scene_with_layers(capsys):
+def test_sensitivities_of_a_scene_with_layers(finished):
     """By the coupling, which is negative, and by a begin at 0; the load changes no natural mode."""
     given = with_numbers(SCENE, {"harvester.resistance": math.inf, "harvester.start": 0.005})
     found = bd.frequency_sensitivities(given, modes=1)
@@ -188,8 +196,7 @@ def test_sensitivities_of_a_scene_with_layers(capsys):
         above, below = (bd.natural_modes(each, modes=1).frequency[0] for each in either)
         derivative = found.derivative[names.index(name), 0]
         assert derivative == pytest.approx((above - below) / (2 * step), rel=1e-4), name
-    assert main(["sensitivities", str(EXAMPLE), "--modes", "1"]) == 0
-    assert "harvester.s11e" in capsys.readouterr().out
+    assert "harvester.s11e" in finished(main(["sensitivities", str(EXAMPLE), "--modes", "1"]), 0).out
 
 
 def test_natural_modes_say_their_circuit(capsys, tmp_path):
@@ -202,10 +209,79 @@ def test_natural_modes_say_their_circuit(capsys, tmp_path):
         assert " ".join(capsys.readouterr().out.split()).count(said) == 2
 
 
-def test_the_command(capsys, tmp_path):
+def test_the_command(finished, tmp_path):
     path = tmp_path / "power.csv"
     given = ["harvest", str(EXAMPLE), "--speeds", "40:60:3 rad/s", "--modes", "2", "--csv", str(path)]
-    assert main(given) == 0
-    printed = capsys.readouterr().out
+    printed = finished(main(given), 0).out
     assert "power [W]" in printed and "Resonances: 44.47 rad/s, 58.77 rad/s" in printed
     assert path.read_text(encoding="utf-8").startswith("speed_rad_per_s,power_W,efficiency,voltage_V")
+
+
+def test_a_random_road_is_warned_of_and_refused_where_it_says_nothing(capsys, finished, tmp_path):
+    road = bd.RoadRoughness("C")
+    found = bd.harvest(SCENE, [0.0, 20.0, 50.0], modes=2, road=road)
+    assert found.road is not None and found.road.power[0] == 0 < found.road.power[1]
+    said = " ".join(found.warnings)
+    assert "the road lacks a spatial frequency that excites the first resonance, at 20 to 50 rad/s" in said
+    assert "with 3 standard deviations on the road, at 50 rad/s: past their limit" in said
+    assert found.best[1] == pytest.approx(found.power[2] + found.road.power[2], rel=1e-15)
+    rough = bd.harvest(SCENE, [100.0], modes=2, road=bd.RoadRoughness("C", highest=10.0))
+    assert any("parametric term that is left out would raise" in said for said in rough.warnings)
+    for scene, words in (
+        (replace(with_numbers(SCENE, {"harvester.resistance": 0.0}), damping_ratio=0.0), "damping_ratio"),
+        (replace(SCENE, motion=bd.SteadyRotation(50.0)), "rolling radius"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            bd.harvest(scene, [50.0], modes=1, road=road)
+    with pytest.raises(ValueError, match=r'road = .C.: .*RoadRoughness\("C"\)'):
+        bd.harvest(SCENE, [50.0], modes=1, road="C")  # pyright: ignore[reportArgumentType]
+    path, given = (
+        tmp_path / "power.csv",
+        ["harvest", str(EXAMPLE), "--speeds", "60:90:2 km/h", "--modes", "2"],
+    )
+    assert "give --road" in finished(main([*given, "--highest", "5 1/m"]), 2).err
+    assert main([*given, "--road", "A", "--highest", "10 1/m", "--csv", str(path)]) == 0
+    assert "On a random road, class A, up to 10 1/m" in capsys.readouterr().out
+    head, first, _ = path.read_text(encoding="utf-8").splitlines()
+    assert float(
+        dict(zip(head.split(","), first.split(","), strict=True))["velocity_km_per_h"]
+    ) == pytest.approx(60)
+
+
+def test_the_best_resistance_is_that_of_the_most_power_tried():
+    best = bd.best_resistance(SCENE, 50.0, modes=2)
+    assert best.tried_power.max() == pytest.approx(best.power[0], rel=1e-9)  # with one discretization
+    assert best.resistances[best.tried_power.argmax()] == pytest.approx(best.resistance, rel=1e-5)
+    assert np.isfinite(best.model_error)
+
+
+def test_the_time_stated_counts_resonances_and_resistances_tried(monkeypatch):
+    clock = [0.0]
+
+    def taking(seconds, does):
+        def late(*given):
+            clock[0] += seconds
+            return does(*given)
+
+        return late
+
+    for module in (result, harvest, best_resistance):
+        monkeypatch.setattr(module, "perf_counter", lambda: clock[0])
+    monkeypatch.setattr(harvest, "resonance_speeds", taking(1.0, harvest.resonance_speeds))
+    monkeypatch.setattr(best_resistance, "steady_response", taking(10.0, best_resistance.steady_response))
+    assert bd.harvest(SCENE, [50.0], modes=1).provenance.wall_time == 1.0
+    assert bd.best_resistance(SCENE, 50.0, modes=1).provenance.wall_time == 11.0
+
+
+def test_the_best_resistance_counts_the_power_of_a_random_road(capsys):
+    road = bd.RoadRoughness("A", highest=10.0)
+    best = bd.best_resistance(SCENE, 50.0, modes=1, road=road)
+    assert best.resistance != pytest.approx(bd.best_resistance(SCENE, 50.0, modes=1).resistance, rel=0.01)
+    for factor in (0.9, 1.1):
+        other = with_numbers(SCENE, {"harvester.resistance": factor * best.resistance})
+        (found,) = bd.harvest(other, [50.0], modes=1, road=road).total_power
+        assert found < best.total_power[0]
+    given = ["best-resistance", str(EXAMPLE), "--speed", "50 rad/s", "--modes", "1", "--highest", "10 1/m"]
+    assert main(given) == 2 and "give --road" in capsys.readouterr().err
+    assert main([*given, "--road", "A"]) == 0
+    assert "On a random road, class A, up to 10 1/m" in capsys.readouterr().out

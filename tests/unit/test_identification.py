@@ -156,6 +156,15 @@ def test_data_that_no_mode_meets_are_refused():
         )
 
 
+@pytest.mark.parametrize("free", [{"beam.thickness": (1e-4, 5e-3)}, {"mount.root_stiffness": None}])
+def test_data_in_another_unit_are_named_whether_or_not_a_number_makes_up_for_it(free):
+    exact = bd.natural_modes(bd.Scene(OUTWARD.beam), 0.0, 3).frequency
+    for factor, said in ((2 * np.pi, ["they may be in rad/s, and read as Hz"]), (1.0, [])):
+        found = bd.identify(bd.Scene(OUTWARD.beam), bd.MeasuredFrequencies(0.96 * factor * exact), free)
+        doubts = [each for each in found.warnings if "all measured" in each]
+        assert [each.partition(": ")[2].partition(";")[0] for each in doubts] == said
+
+
 def test_a_beam_that_bends_far_is_compared_without_explanations():
     scene = bd.Scene(
         bd.Beam.rectangular(0.05, 0.01, 2e-4, 200e9, 7850.0), physics=bd.Physics(large_deflection=True)

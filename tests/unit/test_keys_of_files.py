@@ -11,10 +11,9 @@ OTHERS = {each.name: each for each in (FORKLIFT, CALIPER, MECHANISM)}
 
 
 @pytest.mark.parametrize("name", [*STANDARD, *OTHERS])
-def test_every_key_is_listed_with_its_unit(name, capsys, monkeypatch):
+def test_every_key_is_listed_with_its_unit(name, finished, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
-    assert main(["keys", name]) == 0
-    out = capsys.readouterr().out
+    out = finished(main(["keys", name]), 0).out
     brake = OTHERS.get(name) or STANDARD[name][1]()
     for entry in brake.inputs({}):
         (first, *_) = [line.split() for line in out.splitlines() if line.split()[:1] == [entry.name]]
@@ -24,13 +23,11 @@ def test_every_key_is_listed_with_its_unit(name, capsys, monkeypatch):
     assert "required" in out
 
 
-def test_an_empty_file_and_an_unknown_command_say_where_to_begin(capsys, tmp_path):
+def test_an_empty_file_and_an_unknown_command_say_where_to_begin(finished, tmp_path):
     file = tmp_path / "empty.toml"
     file.touch()
-    assert main(["disc", str(file)]) == 2
-    assert "`brakes keys disc` lists them" in " ".join(capsys.readouterr().err.split())
-    assert main(["keys", "wheel"]) == 2
-    assert "'vehicle', 'forklift', 'caliper' or 'mechanism'" in capsys.readouterr().err
+    assert "`brakes keys disc` lists them" in " ".join(finished(main(["disc", str(file)]), 2).err.split())
+    assert "'vehicle', 'forklift', 'caliper' or 'mechanism'" in finished(main(["keys", "wheel"]), 2).err
 
 
 def test_tables_that_may_be_left_out_are_said(capsys):

@@ -12,6 +12,7 @@ from beamdyn.analyses.results.of_linear_models import random_csv, response_csv
 from beamdyn.cli import BAD_INPUT, DONE, main
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.modes.modal.model import Model
+from tests.unit.toml_scenes import STRIP_TOML
 
 BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 SCENE = bd.Scene(BEAM, bd.Mount(0.2, np.pi), damping_ratio=0.01)
@@ -228,17 +229,7 @@ def test_a_record_is_interpolated_and_turns():
     assert motion.with_speed(4.0).final_speed == 4.0 and motion.end == 2.0
 
 
-RECORDED = """
-[beam]
-length = "50 mm"
-width = "10 mm"
-thickness = "0.2 mm"
-youngs_modulus = "200 GPa"
-density = "7850 kg/m3"
-[mount]
-radius = "0.2 m"
-[motion]
-"""
+RECORDED = STRIP_TOML + '[mount]\nradius = "0.2 m"\n[motion]\n'
 TRANSLATION = RECORDED + 'kind = "sampled_translation"\nfile = "r.csv"\nrotation = { speed = "30 rpm" }\n'
 ROTATION = RECORDED + 'kind = "sampled"\nfile = "r.csv"\n'
 
@@ -309,12 +300,11 @@ def test_options():
 
 
 @pytest.mark.slow
-def test_the_strain_on_a_rough_road_by_a_command(tmp_path, capsys):
+def test_the_strain_on_a_rough_road_by_a_command(tmp_path, finished):
     paths = {name: tmp_path / f"out.{name}" for name in ("json", "csv")} | {"plot": tmp_path / "out.png"}
     files = [word for name, path in paths.items() for word in (f"--{name}", str(path))]
     arguments = ["random", FILE, "--road", "C", "--velocity", "90 km/h", "--output", "root strain"]
-    assert main([*arguments, *files]) == DONE
-    assert "root mean square" in capsys.readouterr().out
+    assert "root mean square" in finished(main([*arguments, *files]), DONE).out
     scene = bd.load_scene(FILE)
     speed = 25 / scene.motion.rolling_radius
     expected = bd.random_response(scene, speed, bd.RoadRoughness("C"), output="root strain").rms
@@ -323,25 +313,23 @@ def test_the_strain_on_a_rough_road_by_a_command(tmp_path, capsys):
     assert paths["plot"].stat().st_size > 10_000
 
 
-def test_the_commands_response_and_matrices(tmp_path, capsys):
+def test_the_commands_response_and_matrices(tmp_path, finished):
     path = tmp_path / "r.csv"
     assert (
         main(["response", FILE, "--frequencies", "1:1000:50 Hz", "--input", "n2", "--csv", str(path)]) == DONE
     )
     assert len(path.read_text().splitlines()) == 51
-    assert main(["matrices", FILE, "--modes", "2"]) == DONE
-    assert "bending, mode 2" in capsys.readouterr().out
+    assert "bending, mode 2" in finished(main(["matrices", FILE, "--modes", "2"]), DONE).out
 
 
-def test_bad_densities_are_refused_by_the_command(tmp_path, capsys):
+def test_bad_densities_are_refused_by_the_command(tmp_path, capsys, finished):
     path = tmp_path / "psd.csv"
     for content, said in (
         ("f [Hz], psd [m2/s4/Hz]\n5,1\n50,-2\n", "a power spectral density is not negative"),
         ("f [Hz], psd\n5,1\n50,2\n", "expected a unit like [m2/s4/Hz] for psd, found none"),
     ):
         path.write_text(content)
-        assert main(["random", FILE, "--psd", str(path)]) == BAD_INPUT
-        assert said in capsys.readouterr().err
+        assert said in finished(main(["random", FILE, "--psd", str(path)]), BAD_INPUT).err
     assert main(["random", FILE]) == BAD_INPUT
     assert "--psd, --road, --roughness: give one of the three" in capsys.readouterr().err
 

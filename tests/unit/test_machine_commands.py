@@ -164,10 +164,9 @@ def test_heat_of_stops(answer, changed, code, said):
         ("--find", "heat.heated_mass=5:50:9 kg", "--so-that", "hottest = 20 K"),
     ],
 )
-def test_a_design_that_gets_too_hot_says_so(options, tmp_path, capsys):
+def test_a_design_that_gets_too_hot_says_so(options, tmp_path, finished):
     file = tmp_path / "band.toml"
     text = (EXAMPLES / "band.toml").read_text()
     file.write_text(text.replace('force = "200 N"', 'force = "200 N"' + HEAT))
-    assert main(["band", str(file), *options]) == DONE
-    said = " ".join(capsys.readouterr().out.split())
+    said = " ".join(finished(main(["band", str(file), *options]), DONE).out.split())
     assert " of 3: the brake gets hotter than the last temperature" in said

@@ -21,6 +21,7 @@ from beamdyn.common.results.digits import count_sure
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, say_change
 from beamdyn.modes.model_error.reference_modes import shift_eigenvalues
+from tests.conftest import Finished
 
 STRIP = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3)
 OUTWARD = bd.Mount(0.2, math.pi, math.pi / 2)
@@ -355,11 +356,10 @@ def scene_file(tmp_path: Path) -> Path:
     [["modes", "--speed", "100 rad/s"], ["locus", "--speeds", "0, 100 rad/s"], ["critical"]],
 )
 def test_commands_say_it_below_the_table_and_in_json(
-    command: list[str], scene_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    command: list[str], scene_file: Path, tmp_path: Path, finished: Finished
 ) -> None:
     out = tmp_path / "out.json"
-    assert main([command[0], str(scene_file), *command[1:], "--json", str(out)]) == 0
-    said = capsys.readouterr()
+    said = finished(main([command[0], str(scene_file), *command[1:], "--json", str(out)]), 0)
     printed = " ".join(said.out.split())
     assert "left out" in printed
     assert "not modelled: offsets of sections, contact" in printed
@@ -375,9 +375,8 @@ def test_commands_say_it_below_the_table_and_in_json(
         assert "[physics] shear = true includes it, with shear_stiffness or poissons_ratio" in said.err
 
 
-def test_no_warning_below_a_stated_tolerance(scene_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["modes", str(scene_file), "--tolerance", "0.1"]) == 0
-    assert "exceeds" not in capsys.readouterr().err
+def test_no_warning_below_a_stated_tolerance(scene_file: Path, finished: Finished) -> None:
+    assert "exceeds" not in finished(main(["modes", str(scene_file), "--tolerance", "0.1"]), 0).err
 
 
 def test_an_effect_left_out_of_a_blade_whose_axial_stiffness_jumps() -> None:

@@ -34,9 +34,9 @@ from tests.unit.motions import (
     gauss,
     name,
     pieces_of,
-    refused,
     shaken,
 )
+from tests.unit.refusals import refused
 
 # Consistency ----------------------------------------------------------------------------------------
 
@@ -259,6 +259,25 @@ def test_steady_acceleration_broadcasts():
     for motion in (PUBLISHED, SteadyRotation(1.0)):
         assert motion.steady_acceleration(speeds, theta, chi).shape == (3, 4, 5, 3)
     refused(lambda: USER.steady_acceleration(1.0, 0.0, 0.0), "UserMotion", "simulate")
+
+
+@pytest.mark.parametrize(
+    "motion",
+    [
+        beamdyn.PulsatingRotation(50.0, fluctuation=0.1, frequency=5.0),
+        beamdyn.ShakenCarrier(frequency=5.0, along_n1=2.0, rotation=50.0),
+        beamdyn.SampledTranslation([0.0, 1.0, 2.0], along_n2=[0.0, 1.0, 0.0], rotation=50.0),
+    ],
+    ids=lambda motion: type(motion).__name__,
+)
+def test_motions_without_a_steady_state_say_so_and_what_to_do(motion):
+    refused(
+        lambda: motion.steady_acceleration(1.0, 0.0, 0.0),
+        f"a {type(motion).__name__}",
+        "no steady state",
+        "RollingWheel",
+    )
+    assert motion.with_speed(20.0).final_speed == 20.0 and type(motion.with_speed(20.0)) is type(motion)
 
 
 def test_wheel_takes_over_from_its_rotation():

@@ -26,10 +26,10 @@ from tests.unit.motions import (
     acceleration_of,
     angle_of,
     name,
-    refused,
     shaken,
     speed_of,
 )
+from tests.unit.refusals import refused
 
 
 @pytest.mark.parametrize("motion", [TABLE, FUNCTION, USER, RollingWheel(0.3, TABLE)], ids=name)

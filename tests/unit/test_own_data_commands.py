@@ -17,9 +17,8 @@ SCENE = str(EXAMPLES / "tyre_harvester.toml")
 MEASURED = ("--measured", "62.1, 389, 1090 Hz")
 
 
-def test_three_frequencies_and_no_manual(capsys):
-    assert main(["compare", SCENE, *MEASURED]) == 0
-    said = " ".join(capsys.readouterr().out.split())
+def test_three_frequencies_and_no_manual(finished):
+    said = " ".join(finished(main(["compare", SCENE, *MEASURED]), 0).out.split())
     assert "389 Hz is 4.8 % low of 408.792 Hz, outside what the model leaves out (1.1 %)" in said
     assert "beam.thickness = 0.19 mm" in said
     assert "beam.youngs_modulus = 181 GPa" in said
@@ -56,11 +55,24 @@ def test_the_scene_found_is_written_with_its_source_and_its_comments(tmp_path, c
     np.testing.assert_allclose(found.mount.root_stiffness, told.value[0], rtol=1e-9)  # ten digits are written
 
 
-def test_what_is_not_told_is_refused_after_it_is_shown(capsys):
-    assert main(["identify", SCENE, "--free", "youngs_modulus, density", *MEASURED]) == 1
-    said = capsys.readouterr()
+def test_what_is_not_told_is_refused_after_it_is_shown(finished):
+    said = finished(main(["identify", SCENE, "--free", "youngs_modulus, density", *MEASURED]), 1)
     assert "cannot be told apart by these data" in said.out
     assert "the data do not tell beam.youngs_modulus and beam.density" in said.err
+
+
+def test_frequencies_and_uncertainties_may_be_in_radians_a_second(tmp_path):
+    written = {}
+    for name, given in {
+        "Hz": ("62.500000, 390.000000 Hz", "0.5 Hz"),
+        "rad": ("392.699082, 2450.442270 rad/s", "3.14159265 rad/s"),
+    }.items():
+        to = tmp_path / f"{name}.json"
+        words = ["--measured", given[0], "--uncertainty", given[1], "--json", str(to)]
+        assert main(["compare", SCENE, *words]) == 0
+        written[name] = json.loads(to.read_text())
+    for what in ("measured", "allowance"):  # to the digits that are written above
+        np.testing.assert_allclose(written["rad"][what], written["Hz"][what], rtol=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -90,9 +102,8 @@ def test_what_is_not_told_is_refused_after_it_is_shown(capsys):
         ),
     ],
 )
-def test_mistakes_are_refused(words, said, capsys):
-    assert main(words) == 2
-    assert said in " ".join(capsys.readouterr().err.split())
+def test_mistakes_are_refused(words, said, finished):
+    assert said in " ".join(finished(main(words), 2).err.split())
 
 
 def test_numbers_are_put_into_the_text_of_a_scene():

@@ -17,6 +17,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.files.scenes import parse_scene
 from beamdyn.modes.model_error.effect_choice import EffectSizes, choose_by, choose_for_motion
 from beamdyn.scene.physics import PhysicsChoice
+from tests.unit.toml_scenes import STRIP_TOML
 
 LARGE, SHEAR, ROTARY = "large deflection", "shear deformation", "rotary inertia of sections"
 SECOND, STRETCH, CAMBER = "second plane of bending", "stretch", "camber of sections"
@@ -365,18 +366,7 @@ def test_terms_are_those_of_the_plain_beam_and_say_that_analyses_choose() -> Non
 
 # How it is given and kept -------------------------------------------------------------------------
 
-TOML = """
-[beam]
-length = "50 mm"
-width = "10 mm"
-thickness = "0.2 mm"
-youngs_modulus = "200 GPa"
-density = "7850 kg/m3"
-
-[mount]
-radius = "215 mm"
-setting_angle = "45 deg"
-"""
+TOML = STRIP_TOML + '[mount]\nradius = "215 mm"\nsetting_angle = "45 deg"\n'
 
 
 def test_the_word_is_read_from_a_file() -> None:

@@ -9,6 +9,7 @@ import pytest
 from matplotlib import pyplot
 from matplotlib.figure import Figure
 
+from beamdyn.common.plots.curves import plot_along_span
 from beamdyn.common.plots.plots import (
     COLOURS,
     mark_critical,
@@ -224,3 +225,10 @@ def test_existing_picture_is_kept_unless_forced(tmp_path, ax):
 def test_unknown_suffix_is_refused(tmp_path, ax):
     with pytest.raises(ValueError, match=r"unknown suffix '.bmp'; give one of \.png, \.svg, \.pdf"):
         save_figure(ax, tmp_path / "locus.bmp")
+
+
+def test_equal_loads_along_the_span_are_one_curve_and_unknown_ones_hide_none(ax):
+    known = np.array([3.0, 2.0, 1.0])
+    values = np.stack([np.full(3, np.nan), known, known], axis=-1)[None]
+    plot_along_span(np.arange(3.0), values, ["top", "left", "right"], "stress [MPa]", ax=ax)
+    assert legend(ax) == ["top", "left and right"]

@@ -65,7 +65,7 @@ def wait_for(said, stream):
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command[1])
-def test_every_command_says_that_it_is_at_work(on_terminal, monkeypatch, capsys, command):
+def test_every_command_says_that_it_is_at_work(on_terminal, monkeypatch, finished, command):
     terminal = on_terminal()
     program, name, *options = command
     hide = progress._ProgressLine.hide
@@ -75,8 +75,7 @@ def test_every_command_says_that_it_is_at_work(on_terminal, monkeypatch, capsys,
         hide(line)
 
     monkeypatch.setattr(progress._ProgressLine, "hide", hide_when_shown)
-    assert program.main([name.split()[1], *options]) == DONE
-    assert name in terminal.text and capsys.readouterr().out
+    assert finished(program.main([name.split()[1], *options]), DONE).out and name in terminal.text
 
 
 @pytest.mark.parametrize("command", COUNTED, ids=lambda command: command[1])

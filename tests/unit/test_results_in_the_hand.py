@@ -309,7 +309,7 @@ def test_a_label_changes_neither_equality_nor_what_is_stored():
 # Units ----------------------------------------------------------------------------------------------
 
 
-def test_a_file_in_rpm_and_mm_is_answered_in_them(tmp_path, capsys):
+def test_a_file_in_rpm_and_mm_is_answered_in_them(tmp_path, finished):
     text = (EXAMPLES / "rolling_harvester.toml").read_text()
     assert "55 rad/s" in text and "50 mm" in text
     path = tmp_path / "scene.toml"
@@ -321,16 +321,14 @@ def test_a_file_in_rpm_and_mm_is_answered_in_them(tmp_path, capsys):
     assert next(iter(rows_of(response)))[:2] == ["speed_rpm", "amplitude_mm"]
     assert response.plot(Figure().subplots()).get_xlabel() == "angular speed [rpm]"
     assert response.to_dict()["speeds"] == [50.0, 55.0]  # SI
-    assert main(["critical", str(path)]) == 0
-    printed = capsys.readouterr().out
+    printed = finished(main(["critical", str(path)]), 0).out
     speed = bd.critical_speed(scene)
     assert f"{speed * RPM:.6f}" in printed and "rad/s" not in printed
 
 
-def test_the_unit_of_an_option_comes_before_that_of_the_file(capsys):
+def test_the_unit_of_an_option_comes_before_that_of_the_file(finished):
     scene = str(EXAMPLES / "rolling_harvester.toml")
-    assert main(["locus", scene, "--speeds", "0:900:3 rpm", "--modes", "1"]) == 0
-    printed = capsys.readouterr().out
+    printed = finished(main(["locus", scene, "--speeds", "0:900:3 rpm", "--modes", "1"]), 0).out
     assert "speed [rpm]" in printed and re.search(r"^\s+450 ", printed, re.MULTILINE)
 
 

@@ -202,13 +202,12 @@ def test_one_input_makes_all_of_the_variance():
 # Commands -----------------------------------------------------------------------------------------
 
 
-def test_command(tmp_path, capsys):
+def test_command(tmp_path, finished):
     files = {name: tmp_path / f"s.{name}" for name in ("json", "csv", "png", "html")}
     options = [["--json", "json"], ["--csv", "csv"], ["--plot", "png"], ["--report", "html"]]
     asked = [part for option, name in options for part in (option, str(files[name]))]
     given = ["--spread", "beam.thickness=+-2%", "--spread", "mount.radius=+-1 mm", "--samples", "128"]
-    assert main(["study", HARVESTER, *given, "--modes", "2", *asked]) == 0
-    shown = capsys.readouterr().out
+    shown = finished(main(["study", HARVESTER, *given, "--modes", "2", *asked]), 0).out
     assert "beam.thickness matters most" in shown and "+-1 mm" in shown
     assert max(map(len, shown.splitlines())) <= 120
     rows = [*csv.reader(files["csv"].read_text().splitlines())]
@@ -238,9 +237,8 @@ def test_command(tmp_path, capsys):
         (["--seed", "3"], "--seed goes with --spread"),
     ],
 )
-def test_mistakes_of_a_command(given, said, capsys):
-    assert main(["study", HARVESTER, *given]) == 2
-    assert said in capsys.readouterr().err
+def test_mistakes_of_a_command(given, said, finished):
+    assert said in finished(main(["study", HARVESTER, *given]), 2).err
 
 
 def test_torque_of_a_drum_is_proportional_to_its_force(tmp_path, capsys):
@@ -271,9 +269,8 @@ def test_torque_of_a_drum_is_proportional_to_its_force(tmp_path, capsys):
         (["caliper", "eebrake", "--spread", "dimensions.clearance=+-1%"], "give fewer samples"),
     ],
 )
-def test_mistakes_of_a_command_on_brakes(given, said, capsys):
-    assert brakes(given) == 2
-    assert said in capsys.readouterr().err
+def test_mistakes_of_a_command_on_brakes(given, said, finished):
+    assert said in finished(brakes(given), 2).err
 
 
 def test_designs_of_a_named_caliper_go_to_workers():

@@ -142,10 +142,9 @@ def test_the_files_are_written_though_the_tables_cannot_be_printed(run_into, tmp
     assert path.stat().st_size > 0
 
 
-def test_without_standard_error_nothing_is_mixed_into_the_output(monkeypatch, capsys):
+def test_without_standard_error_nothing_is_mixed_into_the_output(monkeypatch, finished):
     monkeypatch.setattr(sys, "stderr", None)
-    assert beams.main(["modes", "nowhere.toml"]) == beams.BAD_INPUT
-    assert capsys.readouterr().out == ""
+    assert finished(beams.main(["modes", "nowhere.toml"]), beams.BAD_INPUT).out == ""
 
 
 def test_head_takes_a_line_and_no_traceback_is_seen():
@@ -159,17 +158,14 @@ def test_head_takes_a_line_and_no_traceback_is_seen():
 # What is read ---------------------------------------------------------------------------------------
 
 
-def test_a_byte_order_mark_is_no_mistake(tmp_path, capsys):
+def test_a_byte_order_mark_is_no_mistake(tmp_path, finished):
     (tmp_path / "scene.toml").write_bytes(b"\xef\xbb\xbf" + Path(SCENE).read_bytes())
-    assert beams.main(["modes", str(tmp_path / "scene.toml")]) == beams.DONE
-    marked = capsys.readouterr().out
-    assert beams.main(["modes", SCENE]) == beams.DONE
-    assert marked == capsys.readouterr().out
+    marked = finished(beams.main(["modes", str(tmp_path / "scene.toml")]), beams.DONE).out
+    assert marked == finished(beams.main(["modes", SCENE]), beams.DONE).out
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-32"])
-def test_another_encoding_is_a_sentence(tmp_path, capsys, encoding):
+def test_another_encoding_is_a_sentence(tmp_path, finished, encoding):
     (tmp_path / "scene.toml").write_text(Path(SCENE).read_text(), encoding=encoding)
-    assert beams.main(["modes", str(tmp_path / "scene.toml")]) == beams.BAD_INPUT
-    err = capsys.readouterr().err
+    err = finished(beams.main(["modes", str(tmp_path / "scene.toml")]), beams.BAD_INPUT).err
     assert "scene.toml" in err and ("UTF-8" in err or "not valid TOML" in err) and err.count("\n") == 1

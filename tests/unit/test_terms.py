@@ -197,10 +197,9 @@ def test_table_and_dictionary() -> None:
     assert np.isfinite([entry.largest for entry in found]).all()
 
 
-def test_command(capsys, tmp_path) -> None:
+def test_command(finished, tmp_path) -> None:
     path = tmp_path / "terms.json"
-    assert main(["terms", "examples/rolling_harvester.toml", "--json", str(path)]) == DONE
-    out = capsys.readouterr().out
+    out = finished(main(["terms", "examples/rolling_harvester.toml", "--json", str(path)]), DONE).out
     assert "centrifugal stiffening" in out and "road + at 7.28319" in out
     written = json.loads(path.read_text())
     assert len(written["entries"]) == 12 and written["left_out"][0]["name"] == "second plane of bending"

@@ -323,7 +323,7 @@ def test_a_hinged_beam_that_turns_freely_has_no_steady_response(damping: float) 
     found = bd.steady_response(scene, [0.0, 60.0], modes=2, harmonics=1, discretization=bd.Ritz(10))
     assert found.status.tolist() == ["turns freely about the root", "stable"]
     assert np.isnan(found.amplitude).tolist() == [True, False]
-    assert found.warnings[0].startswith("turns freely about the root at 1 speed(s), 0 rad/s")
+    assert found.warnings[0].startswith("turns freely about the root at 1 speed, 0 rad/s")
 
 
 # Results ------------------------------------------------------------------------------------------

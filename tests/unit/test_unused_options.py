@@ -64,13 +64,12 @@ def test_a_tolerance_of_crossings_that_are_found_one_by_one_is_refused():
 
 
 @pytest.fixture
-def refusal(capsys, monkeypatch, tmp_path):
+def refusal(finished, monkeypatch, tmp_path):
     """What a command says that ends as bad input."""
     monkeypatch.chdir(tmp_path)
 
     def called(*arguments):
-        assert main([*arguments]) == BAD_INPUT
-        return " ".join(capsys.readouterr().err.split())
+        return " ".join(finished(main([*arguments]), BAD_INPUT).err.split())
 
     return called
 

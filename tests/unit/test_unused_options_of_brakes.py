@@ -8,8 +8,14 @@ from brakes.cli import main
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (("--free-bodies", "b.png"), "--free-bodies = b.png: it is of one design; leave --vary out"),
-        (("--animation", "a.gif"), "--animation = a.gif: it is of one design; leave --vary out"),
+        (
+            ("--free-bodies", "b.png"),
+            "--free-bodies = b.png: it shows one design; leave --vary out",
+        ),
+        (
+            ("--animation", "a.gif"),
+            "--animation = a.gif: it shows one design; leave --vary out",
+        ),
     ],
 )
 @pytest.mark.parametrize("how", [("--vary", "clearance=1:2:3 mm"), ("--spread", "clearance=+-1%")])
@@ -30,8 +36,7 @@ def test_pictures_of_one_design_are_refused_for_many(how, options, said, capsys,
         (("--what", "finger_travel"), "--what = finger_travel: "),
     ],
 )
-def test_the_list_of_calipers_takes_nothing_else(arguments, said, capsys, monkeypatch, tmp_path):
+def test_the_list_of_calipers_takes_nothing_else(arguments, said, finished, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
-    assert main(["caliper", "--list", *arguments]) == 2
-    err = " ".join(capsys.readouterr().err.split())
+    err = " ".join(finished(main(["caliper", "--list", *arguments]), 2).err.split())
     assert said + "--list shows the named calipers alone; leave one of the two out" in err

@@ -18,6 +18,14 @@ HARVESTER = {
     },
     "mount": {"radius": "215 mm"},
 }
+STRIP_TOML = """
+[beam]
+length = "50 mm"
+width = "10 mm"
+thickness = "0.2 mm"
+youngs_modulus = "200 GPa"
+density = "7850 kg/m3"
+"""  # its beam
 BY_STIFFNESS = {
     "beam": {"length": "50 mm", "mass_per_length": "15.7 g/m", "bending_stiffness": "1.3e-3 N m2"},
     "mount": {"radius": "215 mm"},
@@ -29,7 +37,7 @@ ROLLING = {"kind": "rolling", "rolling_radius": "300 mm", "rotation": SPIN_UP}
 
 
 def changed(path, value, scene=HARVESTER):
-    """A copy of a scene with one key set, or deleted where the value is None."""
+    """Copy a scene with one key set, or deleted where the value is None."""
     scene = copy.deepcopy(scene)
     *tables, key = path.split(".")
     inner = scene
@@ -53,7 +61,7 @@ def only_mistake(data):
 
 
 def without_camber(example: str | Path, folder: Path) -> str:
-    """A copy of an example with Poisson's ratio 0: what its sections' camber changes is no part of a test."""
+    """Copy an example with Poisson's ratio 0, so that camber of sections plays no part in a test."""
     text = Path(example).read_text(encoding="utf-8")
     assert "poissons_ratio = 0.3" in text
     copied = folder / Path(example).name

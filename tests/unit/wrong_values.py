@@ -1,4 +1,4 @@
-"""Values of a wrong kind for most arguments, and which of them a call does not refuse as it should."""
+"""Values of a wrong kind for most arguments, and a check that calls refuse them."""
 
 import math
 from decimal import Decimal
@@ -29,11 +29,11 @@ WRONG = {
     "matrix": np.ones((2, 2)),
     "class": float,
 }
-SAID_AS = {"driver": "load"}  # in messages
+SAID_AS = {"driver": "load"}  # names that messages have for arguments
 
 
 def refusals_missing(make, good, name, allowed):
-    """The wrong values of an argument that are not refused by one sentence with its name."""
+    """Return the wrong values of an argument that are not refused by one sentence with its name."""
     missing = {}
     for kind, value in WRONG.items():
         if kind in allowed:

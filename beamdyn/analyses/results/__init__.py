@@ -1,1 +1,1 @@
-"""How results of rotating beams are shown: tables, files, pictures, and cautions beside the numbers."""
+"""Presentation of results of rotating beams: tables, files, pictures, and cautions beside the numbers."""

@@ -1,27 +1,24 @@
-"""What must stand beside the numbers of a result: how its physics was chosen, and a large model error."""
+"""Cautions beside the numbers of a result: on the choice of its physics, and on a large model error."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import beamdyn as bd
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.file_words import word as in_terms
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.display_units import SI_UNITS
+from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import Result
 from beamdyn.common.results.statements import MODEL_ERROR, OUTSIDE, kind_of, of_kind, said_in
 from beamdyn.common.words import Part, worded
 from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR, StatesModelError, say_size
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from beamdyn.modes.critical import CriticalPoint
-    from beamdyn.modes.modes import Modes
-
 
 def warnings_of(result: Any, tolerance: float | None = None, without: str = "") -> list[str]:
-    """Warnings of a result and of its model error past a tolerance, or 1 %, in words and units of files.
+    """Return warnings of a result, and of its model error above a tolerance, or 1 %, in words of files.
 
     Statements of the kind `without` are left out.
     """
@@ -31,10 +28,10 @@ def warnings_of(result: Any, tolerance: float | None = None, without: str = "") 
 
 
 def _words_of(result: Any) -> Callable[[Part], str]:
-    """How parts of texts on a result are worded: in its own way, if it has one, else in words of files."""
+    """Return the function that words parts of texts on a result: by the result itself, or as in files."""
     units = result.display_units if isinstance(result, Result) else SI_UNITS
     own: Callable[[Part], str | None] = getattr(result, "in_own_words", lambda part: None)
-    return lambda part: own(part) or in_terms(part, units)
+    return lambda part: in_files(own(part) or in_terms(part, units))
 
 
 def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str]:
@@ -43,13 +40,16 @@ def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str
 
 
 def describe_choice(result: Result) -> list[str]:
-    """The line on the physics of a result, where that was chosen."""
+    """Return the sentence on how the physics of a result was chosen; empty if it was given."""
     choice = getattr(result, "physics_choice", None)
     return [] if choice is None else [choice.sentence()]
 
 
 def describe_left_out(result: Result) -> list[str]:
-    """The line on what is left out, below tables that do not say it themselves."""
+    """Return the sentence on effects left out, for tables without one.
+
+    Empty if the result states no model error.
+    """
     if not isinstance(result, StatesModelError) or not result.judged_value:
         return []
     said = result.left_out_effects.sentence(result.counted, f"of {result.judged_value}")
@@ -57,7 +57,7 @@ def describe_left_out(result: Result) -> list[str]:
 
 
 def notes_of(result: Any) -> list[str]:
-    """Notes for a picture or a file of numbers: that deflection is large, or which effects are left out."""
+    """Return notes for a picture or a file of numbers: on large deflection, or on effects left out."""
     scene = getattr(result, "scene", None)
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]
@@ -67,27 +67,27 @@ def notes_of(result: Any) -> list[str]:
 
 
 def _first_clause(sentence: str) -> str:
-    """A sentence up to its first semicolon outside brackets."""
+    """Return a sentence up to its first semicolon outside brackets."""
     clause, *more = sentence.split(";")
     while clause.count("(") > clause.count(")"):
         clause += ";" + more.pop(0)
     return clause
 
 
-def critical_label(point: CriticalPoint) -> str:
-    """Label of a critical speed in a picture."""
+def critical_label(point: bd.CriticalPoint) -> str:
+    """Return the label of a critical speed in a picture."""
     return "critical speed, were the beam straight:" if of_kind(point.warnings, OUTSIDE) else "critical speed"
 
 
-def labels_of(modes: Modes) -> list[str]:
-    """Labels of modes, with the model error where that is large."""
+def labels_of(modes: bd.Modes) -> list[str]:
+    """Return the labels of modes, with the model error where that is large."""
     large = modes.model_error > LARGE_MODEL_ERROR
     each = zip(modes.labels(), modes.model_error.tolist(), large.tolist(), strict=True)
     return [f"{label}, model error {say_size(error)}" if it else label for label, error, it in each]
 
 
 def noted(draw: Callable[[], Figure], result: Any) -> Callable[[], Figure]:
-    """A function that draws a figure, with the notes of a result below it."""
+    """Wrap a function that draws a figure, so that notes on a result stand below the figure."""
 
     def made() -> Figure:
         return note_below(draw(), notes_of(result))

@@ -1,30 +1,30 @@
-"""Own data beside a scene, as tables for reading and as columns of files."""
+"""Measured data beside a scene, identified numbers and designs, as tables and as columns of files."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+import beamdyn as bd
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, name_in_heads
-from beamdyn.common.results.digits import percent
+from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.results.pictures import figure_of
+from beamdyn.common.words import InputName
 from beamdyn.studies.beside_data.curve_comparison import say
 from beamdyn.studies.beside_data.single_numbers import say_value
+from beamdyn.studies.designing.target import say_number
 
-if TYPE_CHECKING:
-    from beamdyn.studies.beside_data.curve_comparison import CurveComparison
-    from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
-    from beamdyn.studies.beside_data.identification import Identification
+_DIGITS = 6  # largest number of digits of computed frequencies, as sentences have them
 
 
-def comparison_columns(result: FrequencyComparison) -> Columns:
-    """A row a measured frequency: the computed one, deviation, what may be off, and the verdict."""
+def comparison_columns(result: bd.FrequencyComparison) -> Columns:
+    """Make columns with a row for each measured frequency: computed value, deviation, and verdict."""
     computed = result.computed
     relative = (("uncertainty", result.allowance), ("model error", result.model_error))
     said = [_percents(each / np.where(np.isnan(computed), result.measured, computed)) for _, each in relative]
@@ -33,7 +33,7 @@ def comparison_columns(result: FrequencyComparison) -> Columns:
         Column("label", result.label, words="measured"),
         Column("speed", result.speed, "rad/s"),
         Column("measured", result.measured, "Hz", words="value"),
-        Column("computed", computed, "Hz", error=result.error, beyond=result.model_error),
+        Column("computed", computed, "Hz", error=result.error, beyond=result.model_error, form=_computed),
         Column("mode", result.mode, cells=[str(k) if k else "-" for k in result.mode.tolist()]),
         Column("deviation", result.deviation, cells=_deviations(result.deviation, result.in_digits)),
         Column("allowance", result.allowance, "Hz", words=None),
@@ -48,25 +48,29 @@ def comparison_columns(result: FrequencyComparison) -> Columns:
     )
 
 
+def _computed(value: float, error: float) -> str:
+    return supported(value, error, _DIGITS)
+
+
 def _percents(values: np.ndarray, sign: str = "") -> list[str]:
     return [percent(float(value), sign) if np.isfinite(value) else "-" for value in values]
 
 
 def _deviations(values: np.ndarray, in_digits: np.ndarray) -> list[str]:
-    """Deviations in percent, but of a value that agrees in all digits that it has."""
+    """Word deviations in percent; "in its digits" where all digits of the measured value agree."""
     return ["in its digits" if k else cell for k, cell in zip(in_digits, _percents(values, "+"), strict=True)]
 
 
-def comparison_tables(result: FrequencyComparison) -> Group:
-    """The pairs, and the numbers that alone would come nearest."""
+def comparison_tables(result: bd.FrequencyComparison) -> Group:
+    """Make tables of the pairs of frequencies, and of the numbers that alone would explain deviations."""
     columns = comparison_columns(result)
     parts = [table_of(columns, result.display_units, keys=2)]
     if result.explanations:
         rows = [
             (
-                each.name,
-                in_files(say_value(each.given, each.unit)),
-                in_files(say_value(each.value, each.unit)),
+                in_files(InputName(each.name)),
+                in_files(say_value(each.given, each.unit, units=result.display_units)),
+                in_files(say_value(each.value, each.unit, units=result.display_units)),
                 each.left,
                 "explains all" if each.explains else "does not",
             )
@@ -77,14 +81,14 @@ def comparison_tables(result: FrequencyComparison) -> Group:
     return Group(*parts)
 
 
-def comparison_csv(result: FrequencyComparison) -> Columns:
-    """The pairs alone: columns of numbers."""
+def comparison_csv(result: bd.FrequencyComparison) -> Columns:
+    """Make columns of the pairs of frequencies alone."""
     columns = [column for column in comparison_columns(result).columns if len(column.values)]
     return Columns(*columns)
 
 
-def curve_columns(result: CurveComparison) -> Columns:
-    """A row a curve: its largest values, how far the whole differs, what may be off, and the verdict."""
+def curve_columns(result: bd.CurveComparison) -> Columns:
+    """Make columns with a row for each curve: largest values, deviations, uncertainty and verdict."""
     units = result.unit
 
     def sizes(values: np.ndarray) -> list[str]:
@@ -111,12 +115,15 @@ def curve_columns(result: CurveComparison) -> Columns:
 
 
 def _phase(phase: float) -> str:
-    """A phase in degrees, to a hundredth."""
+    """Word a phase [rad] in degrees, to a hundredth."""
     return f"{round(float(np.degrees(phase)), 2) + 0.0:.3g}"
 
 
-def curve_csv(result: CurveComparison) -> Columns:
-    """A row a time, position or frequency: each curve as measured and computed, and what may be off."""
+def curve_csv(result: bd.CurveComparison) -> Columns:
+    """Make columns of measured and computed curves, with a row for each time, speed, position or frequency.
+
+    Complex ones have columns of magnitude and phase; those of the allowance and the error follow.
+    """
     units = {"time": "s", "speed": "rad/s", "position": "m", "frequency": "Hz"}
     columns = [Column(result.along, result.x, units[result.along])]
     for k, (name, unit) in enumerate(zip(result.name, result.unit, strict=True)):
@@ -131,39 +138,80 @@ def curve_csv(result: CurveComparison) -> Columns:
     return Columns(*columns)
 
 
-def identification_tables(result: Identification) -> Group:
-    """The numbers with their intervals, what is not told, and the data beside the scene found."""
+def identification_tables(result: bd.Identification) -> Group:
+    """Make tables of the numbers with intervals, what is undetermined, and data beside the scene found."""
 
     def said(value: float, unit: str) -> str:
-        return "not told" if np.isnan(value) else in_files(say_value(value, unit))
+        own = say_value(value, unit, units=result.display_units)
+        return "not told" if np.isnan(value) else in_files(own)
 
-    rows = [
-        (name, *(said(float(value), unit) for value in values))
-        for name, unit, *values in zip(
-            result.names, result.units, result.given, result.value, result.low, result.high, strict=True
-        )
-    ]
     heads = "number", "in the scene", "found", "from", "to (95 %)"
     title = f"{result.counted()[:1].upper()}{result.counted()[1:]}, {result.solves} solves"
     notes = (Text(in_files(each, result.display_units)) for each in result.sentences())
     beside = comparison_columns(result.comparison)
     return Group(
-        table(title, heads, rows, (0, 1, 2, 3, 4)),
+        table(title, heads, _numbers(result, said), (0, 1, 2, 3, 4)),
         *notes,
         table_of(Columns(*beside.columns, title="With the numbers found"), result.display_units, keys=2),
     )
 
 
-def identification_csv(result: Identification) -> Columns:
-    """A row a number: its values in SI."""
-    return Columns(
-        Column("number", result.names),
-        Column("unit", result.units),
-        Column("given", result.given),
-        Column("value", result.value),
-        Column("low", result.low),
-        Column("high", result.high),
+def _numbers(
+    result: bd.Identification | bd.FoundDesign, said: Callable[[float, str], str]
+) -> list[tuple[str, ...]]:
+    """Make rows of numbers that were sought: name, value in the scene, value found, and ends of its range."""
+    each = zip(result.names, result.units, result.given, result.value, result.low, result.high, strict=True)
+    return [
+        (in_files(InputName(name)), *(said(float(value), unit) for value in values))
+        for name, unit, *values in each
+    ]
+
+
+def numbers_csv(result: bd.Identification | bd.FoundDesign) -> Columns:
+    """Make columns with a row for each number, in SI."""
+    names = {"number": "names", "unit": "units"} | {n: n for n in ("given", "value", "low", "high")}
+    return Columns(*(Column(head, getattr(result, name)) for head, name in names.items()))
+
+
+def design_tables(result: bd.FoundDesign) -> Group:
+    """Make tables of the numbers of a design, of its targets and answers, and of what limits it."""
+
+    def said(value: float, unit: str) -> str:
+        return "-" if np.isnan(value) else in_files(say_number(value, unit), result.display_units)
+
+    title = f"{'Found' if result.found else 'The nearest'}, {result.solves} solves"
+    rows = [
+        (
+            in_files(target.says, result.display_units),
+            said(float(value), target.kind.unit),
+            f"{error:.1e}",
+            "met" if met else "missed",
+            ", ".join(f"{each:+.4g}" for each in relative),
+        )
+        for target, value, error, met, relative in zip(
+            result.targets, result.reached, result.error, result.met, result.relative, strict=True
+        )
+    ]
+    heads = (
+        "target",
+        "reached",
+        "error",
+        "",
+        f"relative change over that of {', '.join(in_files(InputName(name)) for name in result.names)}",
     )
+    notes = (Text(in_files(each, result.display_units)) for each in result.sentences())
+    return Group(
+        table(title, ("number", "in the scene", "found", "from", "to"), _numbers(result, said), range(5)),
+        table("What was wanted", heads, rows, (0, 1, 2, 3, 4)),
+        *notes,
+    )
+
+
+def design_csv(result: bd.FoundDesign) -> Columns:
+    """Make columns with a row for each number: values in SI, and the derivative of each answer by it."""
+    slopes = zip(result.targets, result.derivative, strict=True)
+    more = (Column("derivative", each, number=name_in_heads(target.name)) for target, each in slopes)
+    return Columns(*numbers_csv(result).columns, *more)
 
 
 VIEWS = {
@@ -177,6 +225,9 @@ VIEWS = {
         lambda result: figure_of(result.plot, (8.5, 2.0 + 3.0 * len(result.name))),
     ),
     "Identification": View(
-        identification_tables, identification_csv, 1, lambda result: figure_of(result.plot, (8.5, 5.5))
+        identification_tables, numbers_csv, 1, lambda result: figure_of(result.plot, (8.5, 5.5))
+    ),
+    "FoundDesign": View(
+        design_tables, design_csv, 1, lambda result: figure_of(result.plot, (8.5, 2.0 + len(result.names)))
     ),
 }

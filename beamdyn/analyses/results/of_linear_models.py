@@ -1,40 +1,36 @@
-"""Responses over frequency and matrices as tables for reading and as rows of CSV files."""
+"""Responses over frequency, random responses and matrices, as tables and as columns of CSV files."""
 
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+import beamdyn as bd
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import rounded_up
 
-if TYPE_CHECKING:
-    from beamdyn.linear.frequency_response import FrequencyResponse
-    from beamdyn.linear.matrices import Matrices
-    from beamdyn.linear.random_response import RandomResponse
-
-_MOST_PEAKS = 8  # peaks of a table
-_NO_WIDTH = "-"  # text in place of a width that a peak does not have
-_DIGITS, _DIGITS_OF_WIDTH = 8, 4  # most digits of a response, and of the width of its peaks
+_MOST_PEAKS = 8  # largest number of peaks in a table
+_NO_WIDTH = "-"  # text of a table for a peak without a width
+_DIGITS, _DIGITS_OF_WIDTH = 8, 4  # largest number of digits of a response, and of the width of a peak
 _MATRICES = ("mass", "damping", "gyroscopic", "stiffness", "stiffness_by_axial_acceleration", "input_matrix")
-_PAIRS = 6  # pairs of poles whose errors the table has
+_PAIRS = 6  # number of pairs of poles whose errors a table has
 
 
-def response_table(result: FrequencyResponse) -> Group:
-    """The resonance peaks, and the largest response at the frequencies given."""
+def response_table(result: bd.FrequencyResponse) -> Group:
+    """Make a table of the resonance peaks, and of the largest response at the given frequencies."""
     speed, peaks, rows = result.display_units.speed_unit().say(result.speed), result.peaks, []
     title = f"{result.output} by {result.input} at {speed}, by {result.provenance.method}"
     answers = peaks.frequency + peaks.harmonic * result.speed / (2 * np.pi)
     for k in sorted(np.argsort(peaks.size)[::-1][:_MOST_PEAKS].tolist()):
         at = supported(float(peaks.frequency[k]), float(peaks.frequency_error[k]), _DIGITS)
         size = supported(float(peaks.size[k]), float(peaks.size_error[k]), _DIGITS)
+        size = size if np.isfinite(peaks.size[k]) else "unbounded"
         width, error = float(peaks.bandwidth[k]), float(peaks.bandwidth_error[k])
         width = _NO_WIDTH if np.isnan(width) else supported(width, error, _DIGITS_OF_WIDTH)
         rows.append((at, f"{answers[k]:.6g}", size, width))
@@ -49,14 +45,14 @@ def response_table(result: FrequencyResponse) -> Group:
     i, j = np.unravel_index(int(size.argmax()), size.shape)
     value = supported(float(size[i, j]), float(result.error[i, j]), _DIGITS)
     where = f"{f[i]:.6g} Hz, phase {np.degrees(np.angle(result.response[i, j])):.1f} deg"
-    largest = f"Largest at those given: {value} {result.unit} at {where}; --csv has all."
+    largest = f"Largest at those given: {value} {result.unit} at {where}; CSV has all."
     heads = "peak at [Hz]", "answers at [Hz]", f"size [{result.unit}]", "half-power bandwidth [Hz]"
     shown = [table(title, heads, rows, ()), Text(note)] if rows else [Text(title), Text(f"No peak at {at}.")]
     return Group(*shown, Text(largest))
 
 
-def response_csv(result: FrequencyResponse) -> Columns:
-    """Real and imaginary part, and error, of each harmonic, a row a frequency."""
+def response_csv(result: bd.FrequencyResponse) -> Columns:
+    """Make columns of real part, imaginary part and error of each harmonic, with a row for each frequency."""
     parts = np.real(result.response), np.imag(result.response), result.error
     each = [Column("frequency", result.frequencies, "Hz")]
     for k, harmonic in enumerate(result.harmonics.tolist()):
@@ -67,8 +63,8 @@ def response_csv(result: FrequencyResponse) -> Columns:
     return Columns(*each)
 
 
-def random_table(result: RandomResponse) -> Group:
-    """Root mean square of input and response, and the size of what is left out."""
+def random_table(result: bd.RandomResponse) -> Group:
+    """Make a table of the root mean squares of input and response, and of the effects left out."""
     unit, parametric = result.unit and f" {result.unit}", result.parametric
     rows = [
         ("root mean square", f"{supported(result.rms, result.rms_error, _DIGITS)}{unit}"),
@@ -80,13 +76,13 @@ def random_table(result: RandomResponse) -> Group:
         ("which would raise it by some", f"{parametric.rms_change:.2g}, relative"),
     ]
     speed = result.display_units.speed_unit().say(result.speed)
-    note = f"By {result.provenance.method}; --csv has the density over frequency."
+    note = f"By {result.provenance.method}; CSV has the density over frequency."
     title = f"{result.output} by random {result.input} at {speed}"
     return Group(table(title, ("quantity", "value"), rows), Text(note))
 
 
-def random_csv(result: RandomResponse) -> Columns:
-    """Density of the response and its error, a row a frequency."""
+def random_csv(result: bd.RandomResponse) -> Columns:
+    """Make columns of the spectral density of the response and its error, with a row for each frequency."""
     unit = f"{squared(result.unit)} per Hz"
     return Columns(
         Column("frequency", result.frequencies, "Hz"),
@@ -96,7 +92,7 @@ def random_csv(result: RandomResponse) -> Columns:
 
 
 def squared(unit: str) -> str:
-    """The square of a unit of the project, a product of names with powers: "m2/s4" of "m/s2"."""
+    """Return the square of a unit that is a product of names with powers: "m2/s4" for "m/s2"."""
 
     def square(factor: str) -> str:
         name = factor.rstrip("0123456789")
@@ -105,13 +101,13 @@ def squared(unit: str) -> str:
     return "/".join(" ".join(map(square, part.split())) for part in unit.split("/"))
 
 
-def matrices_table(result: Matrices) -> Group:
-    """Table of the coordinates, with the diagonals of mass and stiffness."""
+def matrices_table(result: bd.Matrices) -> Group:
+    """Make a table of the coordinates, with the diagonals of mass and stiffness."""
     speed = result.display_units.speed_unit().say(result.speed)
     lowest = result.error[: 2 * _PAIRS : 2].tolist()
     of_pairs = ", ".join(rounded_up(each) if isfinite(each) else "not known" for each in lowest)
     errors = f"Relative errors of the lowest poles, pair by pair: {of_pairs}."
-    inputs = f"{errors} Inputs: {', '.join(result.inputs)}. --json and --csv have the matrices."
+    inputs = f"{errors} Inputs: {', '.join(result.inputs)}. JSON and CSV have the matrices."
     columns = Columns(
         Column("row", range(1, len(result.coordinates) + 1)),
         Column("coordinate", result.coordinates),
@@ -123,8 +119,8 @@ def matrices_table(result: Matrices) -> Group:
     return table_of(columns, result.display_units)
 
 
-def matrices_csv(result: Matrices) -> Columns:
-    """Every entry of every matrix, a row an entry; rows and columns count from 1."""
+def matrices_csv(result: bd.Matrices) -> Columns:
+    """Make columns with a row for every entry of every matrix; indices count from 1."""
     parts = {name: getattr(result, name) for name in _MATRICES}
     parts |= {name: getattr(result, name)[:, None] for name in ("static_load", "error")}
     rows = (

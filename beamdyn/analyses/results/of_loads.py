@@ -1,4 +1,4 @@
-"""Tables and CSV rows of loads along the span."""
+"""Loads along the span, as tables and as columns of CSV files."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+import beamdyn as bd
 from beamdyn.common.edge.tables import table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
@@ -18,24 +19,19 @@ from beamdyn.common.results.display_units import SI_UNITS
 from beamdyn.common.results.statements import said_in
 from beamdyn.equations.effects import words_of_directions
 from beamdyn.loads.span_loads import REMEDIES
-from beamdyn.loads.stations import UNITS
+from beamdyn.loads.stations import SHOWN, UNITS
 
 if TYPE_CHECKING:
-    from beamdyn.loads.cycles import LoadCycles
-    from beamdyn.loads.random_loads import RandomLoads
-    from beamdyn.loads.span_loads import LargestLoad, SpanLoads
-    from beamdyn.loads.static_loads import StaticLoads
-    from beamdyn.loads.steady_loads import SteadyLoads
     from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads
 
 _MOST_DIGITS = 7
-_DIGITS_EXPECTED = 3  # digits of the largest that are expected: statistics have no more
-_CLASSES = 10  # number of classes of ranges of cycles
-_SCALES = {"strain": (1e6, "1e-6"), "stress": (1e-6, "MPa"), "force": (1.0, "N"), "moment": (1.0, "N m")}
+_DIGITS_EXPECTED = 3  # significant digits of the largest expected values, as statistics are not more exact
+_CLASSES = 10  # number of classes of cycles by their range
+_QUANTITIES = "strain", "stress", "force", "moment"  # in the order of tables
 
 
-def static_loads_table(result: StaticLoads) -> Group:
-    """Loads along the span at each speed."""
+def static_loads_table(result: bd.StaticLoads) -> Group:
+    """Make a table of the loads along the span for each speed."""
     unit = result.display_units.speed_unit()
     made = (
         _table(result, f"Loads in equilibrium at {unit.say(speed, 10)}, by {result.provenance.method}", case)
@@ -44,8 +40,8 @@ def static_loads_table(result: StaticLoads) -> Group:
     return Group(*made, *_largest_lines(result))
 
 
-def steady_loads_table(result: SteadyLoads) -> Group:
-    """Largest magnitudes along the span at the speed at which they are largest."""
+def steady_loads_table(result: bd.SteadyLoads) -> Group:
+    """Make a table of the largest magnitudes along the span, at the speed with the largest moment."""
     stable = result.response.stable.any()
     case = int(np.nanargmax(result.moment.max(axis=(1, 2)))) if stable else 0
     speed = result.display_units.speed_unit().say(result.speeds[case], 10)
@@ -55,7 +51,7 @@ def steady_loads_table(result: SteadyLoads) -> Group:
 
 
 def transient_loads_table(result: TransientLoads, window: tuple[float, float] | None = None) -> Group:
-    """Largest values along the span within a window, or the whole run."""
+    """Make a table of the largest values along the span, within a window or the whole run."""
     start, end = window or (result.run.path.start, result.run.path.end)
     title = f"Loads of largest magnitude from {start:g} to {end:g} s, by {result.provenance.method}"
     peaks = result.path.outputs.split(result.path.peaks(start, end)[0])
@@ -63,18 +59,19 @@ def transient_loads_table(result: TransientLoads, window: tuple[float, float] | 
 
 
 def _table(
-    result: SpanLoads, title: str, case: int | None, values: Mapping[str, np.ndarray] | None = None
+    result: bd.SpanLoads, title: str, case: int | None, values: Mapping[str, np.ndarray] | None = None
 ) -> Group:
-    """Rows of stations: axial and shear forces, moments, and the strain and stress that are largest there."""
+    """Make rows of stations: axial and shear forces, moments, and the largest strain and stress."""
     columns = [_positions(result)]
-    for name in _SCALES:
+    for name in _QUANTITIES:
         found = result.values(name)[case] if values is None else values[name]
         error = result.error_of(name) if case is None else result.error_of(name)[case]
         if name not in ("strain", "stress"):
             heads = _heads(result, name)
             columns += (_load(name, head, found[:, k], error[:, k]) for k, head in enumerate(heads))
         elif found.shape[1] and np.isfinite(found).any():
-            k = np.nan_to_num(np.abs(found), nan=-1.0).argmax(axis=1)[:, None]  # the largest of the points
+            # Strain and stress at the point of the section where they are largest.
+            k = np.nan_to_num(np.abs(found), nan=-1.0).argmax(axis=1)[:, None]
             at_largest = (np.take_along_axis(each, k, 1)[:, 0] for each in (found, error))
             columns.append(_load(name, name, *at_largest))
     return table_of(Columns(*columns, title=title), result.display_units)
@@ -85,21 +82,21 @@ def _supported(value: float, error: float) -> str:
 
 
 def _load(quantity: str, head: str, values: np.ndarray, errors: np.ndarray, form: Any = _supported) -> Column:
-    """A column of a load in the unit for people."""
-    scale, unit = _SCALES[quantity]
+    """Make a column of a load in the unit of tables."""
+    scale, unit = SHOWN[quantity]
     return Column(head, scale * values, unit, error=scale * errors, form=form)
 
 
-def _heads(result: SpanLoads, quantity: str) -> list[str]:
-    """Heads of forces or moments: those across the beam in each direction, if there are two."""
+def _heads(result: bd.SpanLoads, quantity: str) -> list[str]:
+    """Return the heads of columns of forces or moments, one for each direction of bending."""
     words = [f"{word} ".lstrip() for word in words_of_directions(result.scene) or ("",)]
     if quantity == "moment":
         return [f"{word}moment" for word in words]
     return ["axial force", *(f"{word}shear" for word in words)]
 
 
-def _positions(result: SpanLoads) -> Column:
-    """Positions; those with two sides with the side."""
+def _positions(result: bd.SpanLoads) -> Column:
+    """Make the column of positions; where loads jump, "-" or "+" names the side."""
     x, unit = result.x, result.display_units.length_unit()
     jumps = np.flatnonzero(np.diff(x) == 0)
     twice = np.isin(np.arange(len(x)), [*jumps, *(jumps + 1)])
@@ -109,19 +106,19 @@ def _positions(result: SpanLoads) -> Column:
 
 
 def _largest_lines(result: Any, **window: float) -> list[Text]:
-    """A sentence on the largest of each quantity that has values."""
+    """Word the largest value of each quantity that has values."""
     return _lines(result, lambda name: _say_largest(result, result.largest(name, **window)))
 
 
-def _lines(result: SpanLoads, say: Callable[[str], str]) -> list[Text]:
-    """A sentence on each quantity that has values, and what strains need where there are none."""
-    known = [name for name in _SCALES if np.isfinite(result.values(name)).any()]
+def _lines(result: bd.SpanLoads, say: Callable[[str], str]) -> list[Text]:
+    """Word a sentence for each quantity that has values, and what strains need where they have none."""
+    known = [name for name in _QUANTITIES if np.isfinite(result.values(name)).any()]
     lacking = [] if "strain" in known else [f"No strains: {REMEDIES['strain']}."]
     return [*map(Text, (*map(say, reversed(known)), *lacking))]
 
 
-def _say_largest(result: SpanLoads, found: LargestLoad) -> str:
-    (scale, unit), case, units = _SCALES[found.quantity], result.case, result.display_units
+def _say_largest(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
+    (scale, unit), case, units = SHOWN[found.quantity], result.case, result.display_units
     value = supported(scale * found.value, scale * found.error, _MOST_DIGITS)
     is_speed = case.name == "speed"
     in_case = units.speed_unit().say(found.case) if is_speed else f"{found.case:.6g} {case.unit}"
@@ -129,8 +126,8 @@ def _say_largest(result: SpanLoads, found: LargestLoad) -> str:
     return f"Largest {found.quantity} ({what}): {value} {unit}, at {place}, at {in_case}."
 
 
-def _say_component(result: SpanLoads, found: LargestLoad) -> str:
-    """The direction, or the point of the section with its coordinates there."""
+def _say_component(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
+    """Word the direction of a component, or the point of the section with its coordinates."""
     named = result.components(found.quantity)[found.component]
     if found.quantity not in ("strain", "stress"):
         return f"shear, {named}" if found.quantity == "force" and found.component else named
@@ -139,8 +136,8 @@ def _say_component(result: SpanLoads, found: LargestLoad) -> str:
     return f"{named} of the section, {y:.6g} mm from its centre along the first direction{second}"
 
 
-def random_loads_table(result: RandomLoads) -> Group:
-    """Root mean squares and the largest expected along the span, and the largest of all with its parts."""
+def random_loads_table(result: bd.RandomLoads) -> Group:
+    """Make a table of root mean squares and largest expected values along the span, and of the largest."""
     units, at, columns = result.display_units, np.arange(len(result.x)), [_positions(result)]
     for name in ("moment", "strain", "stress"):
         values = result.values(name)[0]
@@ -148,7 +145,7 @@ def random_loads_table(result: RandomLoads) -> Group:
             continue
         if name == "moment":
             shown = [(np.full(len(values), k), head) for k, head in enumerate(_heads(result, name))]
-        else:  # the load of the point that is largest there
+        else:  # strains and stresses, at the point of the section where they are largest
             shown = [(np.nan_to_num(values, nan=-1.0).argmax(axis=1), name)]
         for k, head in shown:
             rms, error = (each(name)[at, k] for each in (result.rms, result.rms_error))
@@ -170,14 +167,14 @@ _ESTIMATE = (
 
 
 def _expected(value: float, error: float = 0.0) -> str:
-    """A number of statistics, with three digits and no positive exponent; "0 ± error" if none is sure."""
+    """Word a statistical number with three digits, without a positive exponent; "0 ± error" if uncertain."""
     text = supported(value, error, _DIGITS_EXPECTED)
     return f"{float(text):.0f}" if "e+" in text and "±" not in text else text
 
 
-def _say_expected(result: RandomLoads, found: LargestLoad) -> str:
-    """The largest of a quantity, what it is the sum of, and what is passed in one case of a hundred."""
-    name, (scale, unit) = found.quantity, _SCALES[found.quantity]
+def _say_expected(result: bd.RandomLoads, found: bd.LargestLoad) -> str:
+    """Word the largest expected value of a quantity, its parts, and the value exceeded in 1 % of cases."""
+    name, (scale, unit) = found.quantity, SHOWN[found.quantity]
     place = result.station_of(found), found.component
     value = _expected(scale * found.value, scale * found.error)
     mean, gravity, rms, quantile = (
@@ -195,9 +192,9 @@ def _say_expected(result: RandomLoads, found: LargestLoad) -> str:
 # Cycles -------------------------------------------------------------------------------------------------
 
 
-def cycles_table(cycles: LoadCycles) -> Group:
-    """Cycles by their range, in equal classes up to the largest."""
-    scale, unit = _SCALES.get(cycles.quantity, (1.0, "1/m"))
+def cycles_table(cycles: bd.LoadCycles) -> Group:
+    """Make a table of cycles by range, in equal classes up to the largest."""
+    scale, unit = SHOWN[cycles.quantity]
     edges = np.linspace(0, scale * float(cycles.ranges.max(initial=0.0)) or 1.0, _CLASSES + 1)
     counts, _ = np.histogram(scale * cycles.ranges, edges, weights=cycles.counts)
     place = cycles.display_units.length_unit().say(cycles.x)
@@ -210,9 +207,9 @@ def cycles_table(cycles: LoadCycles) -> Group:
 
 
 def equivalents_table(equivalents: Sequence[EquivalentRange]) -> Group:
-    """Ranges of equal cycles of one quantity that do the damage of those counted, by the Woehler exponent."""
+    """Make a table of ranges of equal cycles that do the counted damage, for each Woehler exponent."""
     quantity, number = equivalents[0].quantity, equivalents[0].cycles
-    scale, unit = _SCALES.get(quantity, (1.0, "1/m"))
+    scale, unit = SHOWN[quantity]
     ranges, errors = scale * np.array([(each.range, each.error) for each in equivalents]).T
     columns = Columns(
         Column("Woehler exponent", [each.exponent for each in equivalents], form="g"),
@@ -222,8 +219,8 @@ def equivalents_table(equivalents: Sequence[EquivalentRange]) -> Group:
     return table_of(columns, SI_UNITS)
 
 
-def cycles_csv(result: LoadCycles) -> Columns:
-    """Range, mean and count of each cycle."""
+def cycles_csv(result: bd.LoadCycles) -> Columns:
+    """Make columns of range, mean and count, with a row for each cycle."""
     unit = UNITS[result.quantity]
     return Columns(
         Column(f"range_of_{result.quantity}", result.ranges, unit),
@@ -235,8 +232,8 @@ def cycles_csv(result: LoadCycles) -> Columns:
 # Columns of files -------------------------------------------------------------------------------------
 
 
-def loads_csv(result: SpanLoads) -> Columns:
-    """A row a case and station: the place, all loads, strains and stresses, and their errors."""
+def loads_csv(result: bd.SpanLoads) -> Columns:
+    """Make columns with a row for each case and station: place, loads, strains, stresses and errors."""
     values = np.concatenate([result.values(name) for name in UNITS], axis=-1)
     errors = np.concatenate([result.error_of(name) for name in UNITS], axis=-1)
     cases, stations, _ = values.shape
@@ -249,21 +246,21 @@ def loads_csv(result: SpanLoads) -> Columns:
     )
 
 
-def _places(result: SpanLoads, times: int = 1) -> tuple[Column, Column]:
-    """Position and side of each station, some times over."""
+def _places(result: bd.SpanLoads, times: int = 1) -> tuple[Column, Column]:
+    """Make columns of position and side of each station, repeated a number of times."""
     sides = np.where(result.inboard, "inboard", "outboard")
     return Column("position", np.tile(result.x, times), "m"), Column("side", np.tile(sides, times))
 
 
-def _of_components(result: SpanLoads, part: str, values: np.ndarray) -> Iterator[Column]:
-    """A column for each component of all quantities, from values (rows, components)."""
+def _of_components(result: bd.SpanLoads, part: str, values: np.ndarray) -> Iterator[Column]:
+    """Yield a column for each component of all quantities, from values (rows, components)."""
     named = ((name, unit) for name, unit in UNITS.items() for name in _components(result, name))
     for (name, unit), column in zip(named, values.T, strict=True):
         yield Column(f"{part}{name}", column, unit)
 
 
-def random_loads_csv(result: RandomLoads) -> Columns:
-    """A row a station: the place, and of each component the largest expected and what it is made of."""
+def random_loads_csv(result: bd.RandomLoads) -> Columns:
+    """Make columns with a row for each station: place, and each component's largest value with its parts."""
     parts = {
         "largest": lambda name: result.values(name)[0],
         "error_of_largest": lambda name: result.error_of(name)[0],
@@ -278,8 +275,8 @@ def random_loads_csv(result: RandomLoads) -> Columns:
     return Columns(*_places(result), *each)
 
 
-def _components(result: SpanLoads, quantity: str) -> list[str]:
-    """Names of the components of a quantity in files."""
+def _components(result: bd.SpanLoads, quantity: str) -> list[str]:
+    """Return the names that the components of a quantity have in files."""
     if quantity in ("strain", "stress"):
         return [f"{quantity}_{k + 1}" for k in range(result.points.shape[1])]
     both = result.scene.physics.planes == 2

@@ -1,4 +1,4 @@
-"""Natural modes, critical speeds, equilibria, terms and the rotor, as tables for reading and as columns."""
+"""Natural modes, critical speeds, equilibria, terms and the rotor, as tables and as columns of files."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+import beamdyn as bd
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import set_apart, table, table_of
 from beamdyn.common.edge.views import View
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
 from beamdyn.common.results.digits import supported, supported_or_range
 from beamdyn.common.results.statements import OUTSIDE, of_kind
@@ -22,74 +24,64 @@ from beamdyn.modes.model_error.left_out_effects import where_worst
 
 if TYPE_CHECKING:
     from beamdyn.common.results.result import Result
-    from beamdyn.equations.terms import Terms
-    from beamdyn.modes.backbone import Backbone
-    from beamdyn.modes.bounds import FrequencyBounds
-    from beamdyn.modes.critical import CriticalPoint
-    from beamdyn.modes.equilibria import Equilibrium, EquilibriumBranches
-    from beamdyn.modes.locus import Locus
-    from beamdyn.modes.modes import Modes
-    from beamdyn.modes.setting_angles import SettingAngleLimits
-    from beamdyn.scene.rotor import RotorDrawing
-    from beamdyn.scene.scene import Scene
-    from beamdyn.steady.response import SteadyResponse
-    from beamdyn.transient.sweep import Sweep
 
-Cell: TypeAlias = "str | Text"  # cell of a table
-_MOST_ROWS = 16  # rows of a printed table, besides peaks and changes of status
-_ROUNDING = 1e-9  # relative: a model error below it is not told from rounding
-_CRITICAL_DIGITS = 12  # most digits of a critical speed
-_FEW = 4  # modes of a locus whose frequencies have all digits
-_DIGITS, _DIGITS_OF_MANY = 10, 7  # most digits of a frequency of few modes, and of more
-_AXES = "b1", "b2", "b3"  # along the beam at rest, in the direction of bending, and across
+Cell: TypeAlias = "str | Text"  # content of a table's cell
+# Largest number of evenly spread rows of a printed table; peaks and changes of status come in addition.
+_MOST_ROWS = 16
+_ROUNDING = 1e-9  # relative model error below which the error counts as rounding
+_CRITICAL_DIGITS = 12  # largest number of digits of a critical speed
+_FEW = 4  # largest number of modes of a locus whose frequencies are shown with all digits
+# Largest number of digits of a frequency: in a locus of few modes, and in one of more modes.
+_DIGITS, _DIGITS_OF_MANY = 10, 7
+_AXES = "b1", "b2", "b3"  # axes along the beam at rest, in the direction of bending, and across
 
 
 # Parts of tables of all kinds -------------------------------------------------------------------------
 
 
 def said_of_model(result: Result, sentence: str) -> str:
-    """What is said of a result's model, in words and units of files."""
+    """Word a sentence about the model of a result with the names and units that files have."""
     return in_files(sentence, result.display_units)
 
 
-def said_over_speeds(result: Locus | SteadyResponse | Sweep, what: str = "") -> str:
-    """What stands below a table over speeds on its model, with the place of each effect."""
+def said_over_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, what: str = "") -> str:
+    """Word the sentence below a table over speeds: effects left out, each with its worst speed."""
     effects, speeds = result.left_out_effects, result.left_out_speeds
     return said_of_model(result, effects.sentence(what, where_worst(effects, speeds), speeds))
 
 
-def between_speeds(result: Locus | SteadyResponse | Sweep, error: np.ndarray) -> np.ndarray:
-    """Model errors (S,) at all speeds, from those (k,) where they are computed; the nearest outside these."""
+def between_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, error: np.ndarray) -> np.ndarray:
+    """Interpolate model errors (k,) to all speeds (S,); outside, the nearest one holds."""
     known = result.left_out_speeds
     return np.interp(result.speeds, known, error) if len(known) else np.full(len(result.speeds), np.nan)
 
 
 def rows_worth_showing(status: np.ndarray, *more: np.ndarray) -> np.ndarray:
-    """Indices of rows to print: some that are evenly spread, others, and both sides of changes of status."""
-    count = len(status)
-    spread = np.linspace(0, count - 1, min(count, _MOST_ROWS)).round().astype(int)
+    """Return indices of rows to print: evenly spread, given ones, and both sides of changes of status."""
+    spread = evenly_spread(len(status), _MOST_ROWS)
     changed = status[1:] != status[:-1]
     change = np.flatnonzero(changed if status.ndim == 1 else changed.any(axis=1))[:_MOST_ROWS]
     return np.unique(np.concatenate([spread, *(each[:_MOST_ROWS] for each in more), change, change + 1]))
 
 
 def selection_note(shown: np.ndarray, every: np.ndarray) -> str:
-    """How many of all speeds a table has, if not all."""
+    """Word how many of all speeds a table has; empty if it has all."""
     few = len(shown) < len(every)
     return f" ({len(shown)} of {len(every)} speeds; CSV and JSON have all)" if few else ""
 
 
-def csv_directions(scene: Scene) -> tuple[str, ...]:
-    """Names of the two directions in heads of files, at any bending angle; none where there is one."""
+def csv_directions(scene: bd.Scene) -> tuple[str, ...]:
+    """Return the names of the two directions in heads of files; empty if one direction is modelled."""
     return ("bending", "across") if scene.physics.planes == 2 else ()
 
 
 # Modes ------------------------------------------------------------------------------------------------
 
 
-def modes_columns(result: Modes) -> Columns:
-    """Frequency, errors, growth rate and status of each mode, and in which way it deforms the beam."""
-    size, rate = np.abs(result.eigenvalue) * result.error, result.growth_rate  # absolute errors
+def modes_columns(result: bd.Modes) -> Columns:
+    """Make columns of the modes: frequency, errors, growth rate, status, and how each deforms the beam."""
+    # Errors in units of the eigenvalue.
+    size, rate = np.abs(result.eigenvalue) * result.error, result.growth_rate
     count, effects = len(size), result.left_out_effects
     model_errors = [_say_model_error(float(each), effects.lack_data) for each in effects.total]
     beyond = result.model_error * np.abs(result.frequency)
@@ -108,8 +100,8 @@ def modes_columns(result: Modes) -> Columns:
     )
 
 
-def _circuit(result: Modes | Locus) -> str:
-    """With which circuit a harvester's natural modes are: none of them has the load."""
+def _circuit(result: bd.Modes | bd.Locus) -> str:
+    """Word the circuit for which a harvester's modes hold, which has no load resistance; else empty."""
     electrodes = result.scene.beam.electrodes
     if electrodes is None:
         return ""
@@ -122,8 +114,8 @@ def _say_frequency(frequency: float, error: float) -> str:
     return supported_or_range(frequency, error).replace("none", "-")
 
 
-def _kinds(result: Modes) -> Iterator[Column]:
-    """The share of each of two planes, of which tables have one, that is drawn; and what deforms."""
+def _kinds(result: bd.Modes) -> Iterator[Column]:
+    """Yield columns of the shares of two planes, of which tables show one, and of the kinds of the modes."""
     drawn, words = first_drawn(result.scene), words_of_directions(result.scene)
     for k, direction in enumerate(csv_directions(result.scene)):
         shown = f"share of {words[k]}" if k == drawn else None
@@ -133,13 +125,13 @@ def _kinds(result: Modes) -> Iterator[Column]:
 
 
 def _say_model_error(size: float, lacks_data: bool) -> str:
-    """A relative model error with one digit; with a question mark where the beam lacks data."""
+    """Word a relative model error with one digit; with "+ ?" where the beam lacks data."""
     more = " + ?" if lacks_data else ""
     return "not known" if math.isnan(size) else f"{size if size >= _ROUNDING else 0.0:.0e}{more}"
 
 
-def locus_table(result: Locus) -> Group:
-    """Table of a locus at some of its speeds: frequencies, or growth rates of unstable modes.
+def locus_table(result: bd.Locus) -> Group:
+    """Make a table of a locus at some of its speeds: frequencies, or growth rates of unstable modes.
 
     Where two planes are modelled, a letter behind each frequency tells in which the mode mostly bends; that
     of a mode which does not mostly bend tells what deforms.
@@ -175,14 +167,14 @@ def _say_largest(model_errors: np.ndarray, lacks_data: bool) -> str:
     return _say_model_error(float(model_errors.max()), lacks_data) if len(model_errors) else "-"
 
 
-def model_error_at(result: Locus, indices: np.ndarray) -> np.ndarray:
-    """Model error (k, m) at speeds of some indices, linear between those where it is computed."""
+def model_error_at(result: bd.Locus, indices: np.ndarray) -> np.ndarray:
+    """Return the model error (k, m) at speeds of given indices, by linear interpolation."""
     each = (between_speeds(result, error)[indices] for error in result.model_error.T)
     return np.stack([*each], axis=1)
 
 
-def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int, model_error: float) -> Cell:
-    """Frequency of a mode at speed s, or its status and growth rate.
+def _locus_cell(result: bd.Locus, size: np.ndarray, s: int, mode: int, model_error: float) -> Cell:
+    """Word the frequency of a mode at speed s, or its status and growth rate.
 
     Digits beyond the model error [Hz] are dimmed.
     """
@@ -196,13 +188,13 @@ def _locus_cell(result: Locus, size: np.ndarray, s: int, mode: int, model_error:
     return Text(" ").join((set_apart(frequency, model_error), *(Text(word[0]) for word in told)))
 
 
-def _other_kinds(result: Locus) -> list[str]:
-    """Kinds of its modes beside bending."""
+def _other_kinds(result: bd.Locus) -> list[str]:
+    """Return the kinds of modes in a locus other than bending."""
     return [kind for kind in map(str, np.unique(result.kind)) if kind != BENDING]
 
 
-def locus_csv(result: Locus) -> Columns:
-    """Frequency, errors, growth rate, status, confidence and kind of each mode, a row a speed."""
+def locus_csv(result: bd.Locus) -> Columns:
+    """Make columns of frequency, errors, growth rate, status, confidence and kind of each mode over speed."""
     of_modes = {
         ("frequency", "Hz"): result.frequency,
         ("relative_error", ""): result.error,
@@ -228,8 +220,8 @@ def locus_csv(result: Locus) -> Columns:
 # Critical speeds, limits, bounds ------------------------------------------------------------------------
 
 
-def critical_answer(result: CriticalPoint) -> Group:
-    """The sentence on the critical speed, or how far it was looked where none was found, and on the model."""
+def critical_answer(result: bd.CriticalPoint) -> Group:
+    """Word the critical speed, or up to which speed there is none, and what the model leaves out."""
     unit = result.display_units.speed_unit()
     if math.isinf(result.none_below) and math.isinf(result.speed):
         said = Text(f"no critical speed: {in_files(result.reason)}")
@@ -238,7 +230,8 @@ def critical_answer(result: CriticalPoint) -> Group:
         found = f"no critical speed found; there is certainly none below {bound}"
         said = Text(found if result.error else f"no critical speed below {bound}: {result.reason}")
     elif not result.speed:
-        said = Text(f"critical speed: 0 {unit.name}; the beam is unstable at every speed: {result.reason}")
+        where = "at rest already" if result.of_bent_beam else "at every speed"
+        said = Text(f"critical speed: 0 {unit.name}; the beam is unstable {where}: {result.reason}")
     else:
         speed = unit.of(result.speed)
         value = supported_or_range(speed, result.error * speed, _CRITICAL_DIGITS)
@@ -249,14 +242,14 @@ def critical_answer(result: CriticalPoint) -> Group:
     return Group(said, Text(said_of_model(result, result.left_out_effects.sentence(""))))
 
 
-def critical_csv(result: CriticalPoint) -> Columns:
-    """Critical speed, its error, and the speed below which there is none."""
+def critical_csv(result: bd.CriticalPoint) -> Columns:
+    """Make columns of the critical speed, its error, and the speed below which there is none."""
     heads = ("speed", "rad/s"), "relative_error", ("none_below", "rad/s"), "reason"
     return columns_of_rows(heads, [(result.speed, result.error, result.none_below, result.reason)])
 
 
-def limits_columns(result: SettingAngleLimits) -> Columns:
-    """Both limits with their error and the top speed of the second."""
+def limits_columns(result: bd.SettingAngleLimits) -> Columns:
+    """Make columns of both limits of the setting angle, with their error, and the top speed of the second."""
     top = result.display_units.speed_unit().say(result.top_speed, 10)
     return Columns(
         Column("limit", ("first", "second")),
@@ -269,8 +262,8 @@ def limits_columns(result: SettingAngleLimits) -> Columns:
     )
 
 
-def bounds_columns(result: FrequencyBounds) -> Columns:
-    """Lower and upper bound of each frequency, and how they are guaranteed."""
+def bounds_columns(result: bd.FrequencyBounds) -> Columns:
+    """Make columns of the lower and upper bound of each frequency, and the way each is guaranteed."""
     count = len(result.lower)
     return Columns(
         Column("mode", range(1, count + 1)),
@@ -283,8 +276,8 @@ def bounds_columns(result: FrequencyBounds) -> Columns:
     )
 
 
-def backbone_table(result: Backbone) -> Group:
-    """Frequency of small vibration, and how it changes with the amplitude."""
+def backbone_table(result: bd.Backbone) -> Group:
+    """Make a table of the frequency of small vibration, and of its change with the amplitude."""
     rows = [
         ("frequency f0 of small vibration", f"{result.frequency:.8g} Hz"),
         ("coefficient k", supported(result.coefficient, result.error, 8)),
@@ -295,8 +288,8 @@ def backbone_table(result: Backbone) -> Group:
     return Group(table(title, ("", ""), rows), Text(note))
 
 
-def backbone_csv(result: Backbone) -> Columns:
-    """Frequency of small vibration and coefficient, with its error."""
+def backbone_csv(result: bd.Backbone) -> Columns:
+    """Make columns of the frequency of small vibration, and of the coefficient with its error."""
     heads = ("speed", "rad/s"), "mode", ("frequency", "Hz"), "coefficient", "error"
     row = result.speed, result.mode, result.frequency, result.coefficient, result.error
     return columns_of_rows(heads, [row])
@@ -305,8 +298,8 @@ def backbone_csv(result: Backbone) -> Columns:
 # Equilibria ---------------------------------------------------------------------------------------------
 
 
-def equilibrium_table(result: Equilibrium) -> Group:
-    """Position and slope of the tip, and whether the beam stays there."""
+def equilibrium_table(result: bd.Equilibrium) -> Group:
+    """Make a table of the tip's position and slope, and of the stability of the equilibrium."""
     length, unit = result.scene.beam.length, result.display_units.length_unit()
     rows = [
         (f"tip along {axis}", supported(unit.of(x), unit.of(result.error)), f"{x / length:.4f}")
@@ -319,15 +312,15 @@ def equilibrium_table(result: Equilibrium) -> Group:
     return table(title, ("", f"[{unit.name}]", "over the length"), rows)
 
 
-def equilibrium_csv(result: Equilibrium) -> Columns:
-    """Position of the tip, stability and growth rate."""
+def equilibrium_csv(result: bd.Equilibrium) -> Columns:
+    """Make columns of the position of the tip, stability and growth rate."""
     heads = ("speed", "rad/s"), "branch", *((f"tip_{axis}", "m") for axis in _AXES)
     row = result.speed, result.branch, *result.tip.tolist(), result.stable, result.growth_rate
     return columns_of_rows((*heads, "stable", ("growth_rate", "1/s")), [row])
 
 
-def branches_table(result: EquilibriumBranches) -> Group:
-    """From where to where each branch goes, and where it is stable."""
+def branches_table(result: bd.EquilibriumBranches) -> Group:
+    """Make a table of the range of speeds of each branch, and of the speeds at which it is stable."""
     unit, rows = result.display_units.speed_unit(), []
     for branch in result.branches:
         speeds, stable = unit.of(branch.speeds), branch.stable
@@ -342,8 +335,8 @@ def branches_table(result: EquilibriumBranches) -> Group:
     return table(title, ("branch", *heads), rows, (0, 3))
 
 
-def branches_csv(result: EquilibriumBranches) -> Columns:
-    """Speed, position of the tip and stability along each branch."""
+def branches_csv(result: bd.EquilibriumBranches) -> Columns:
+    """Make columns of speed, position of the tip and stability along each branch."""
     rows = (
         (branch.name, float(speed), *tip.tolist(), bool(stable))
         for branch in result.branches
@@ -356,24 +349,24 @@ def branches_csv(result: EquilibriumBranches) -> Columns:
 # The scene itself ---------------------------------------------------------------------------------------
 
 
-def terms_table(result: Terms) -> Group:
-    """All terms, which of them are there and why, and what the model leaves out."""
+def terms_table(result: bd.Terms) -> Group:
+    """Make a table of all terms, of which are present and why, and of what the model leaves out."""
     heads = "", "term", "symbol", "largest", "reason"
     shown = table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4))
     left_out = (f"Left out: {effect.name}: {in_files(effect.reason)}." for effect in result.left_out)
     return Group(shown, *map(Text, (result.excited(), *left_out)))
 
 
-def terms_csv(result: Terms) -> Columns:
-    """One row a term."""
+def terms_csv(result: bd.Terms) -> Columns:
+    """Make columns with a row for each term."""
     rows = (
         (t.name, t.symbol, " ".join(t.fields), t.quantity, t.present, t.largest, t.reason) for t in result
     )
     return columns_of_rows(("term", "symbol", "fields", "quantity", "present", "largest", "reason"), rows)
 
 
-def rotor_table(result: RotorDrawing) -> Group:
-    """Lengths and angles as drawn, and how much depth and width are drawn larger."""
+def rotor_table(result: bd.RotorDrawing) -> Group:
+    """Make a table of lengths and angles as drawn, and of the magnification of depth and width."""
     unit = result.display_units.length_unit()
     lengths = {"radius r of the root": result.radius, "length L of the beam": result.length}
     angles = {
@@ -389,8 +382,8 @@ def rotor_table(result: RotorDrawing) -> Group:
     return table("Rotor as drawn: undeformed, turned by 180 deg", ("", "value", "unit"), rows, (0, 2))
 
 
-def rotor_csv(result: RotorDrawing) -> Columns:
-    """Edge of the beam as drawn, in the plane of rotation, and how much its depth is drawn larger."""
+def rotor_csv(result: bd.RotorDrawing) -> Columns:
+    """Make columns of the beam's edge as drawn in the plane of rotation, and of its depth's magnification."""
     rows = ((x, y, result.magnification) for x, y in result.outline.tolist())
     return columns_of_rows((("x", "m"), ("y", "m"), "depth_magnification"), rows)
 

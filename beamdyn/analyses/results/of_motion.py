@@ -1,34 +1,30 @@
-"""Motion in time, steady response and resonances, as tables for reading and as columns of files."""
+"""Motion in time, steady response, harvests and resonances, as tables and as columns of files."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+import beamdyn as bd
 from beamdyn.analyses.results import of_modes
 from beamdyn.common.edge.tables import set_apart, table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.digits import supported
+from beamdyn.common.results.pictures import Figure, figure_of
 from beamdyn.common.results.statements import said_in
 from beamdyn.equations.effects import modelled_directions, words_of_directions
+from beamdyn.scene.motion import RollingWheel
 
-if TYPE_CHECKING:
-    from beamdyn.steady.crossings import Crossings
-    from beamdyn.steady.harvest import Harvest
-    from beamdyn.steady.response import SteadyResponse
-    from beamdyn.transient.harvested_energy import TransientHarvest
-    from beamdyn.transient.sweep import Sweep
-    from beamdyn.transient.transient import Transient
-
-_DIGITS = 6  # most digits of a deflection, which the modal truncation error allows
-_ASSUMED_ERROR = 5e-4  # relative error assumed for the digits of a deflection whose error is not estimated
+_DIGITS = 6  # largest number of digits of a deflection, which the modal truncation error allows
+# Relative error that is assumed for the digits of a deflection whose error is not estimated.
+_ASSUMED_ERROR = 5e-4
 _WHERE_COMPUTED = "model_error_where_computed"
 _LARGEST = "largest tip deflection"
 _WORDS = {"amplitude": _LARGEST, "largest_deflection": _LARGEST, "sum_of_lines": "sum of the lines"}
@@ -37,8 +33,8 @@ _WORDS = {"amplitude": _LARGEST, "largest_deflection": _LARGEST, "sum_of_lines":
 # Transients -------------------------------------------------------------------------------------------
 
 
-def transient_table(run: Transient, window: tuple[float, float] | None = None) -> Group:
-    """Table of a transient: its largest deflections and errors, and what the model leaves out."""
+def transient_table(run: bd.Transient, window: tuple[float, float] | None = None) -> Group:
+    """Make a table of a transient: largest deflections, their errors, and what the model leaves out."""
     end, unit, names = run.path.end, run.display_units.length_unit(), modelled_directions(run.scene)
     windows = {"whole run": (run.path.start, end)}
     if window is not None:
@@ -65,9 +61,9 @@ def transient_table(run: Transient, window: tuple[float, float] | None = None) -
 
 
 def time_of_peak(
-    run: Transient, start: float, end: float, direction: int | None = None
+    run: bd.Transient, start: float, end: float, direction: int | None = None
 ) -> tuple[float, float]:
-    """Time of the largest tip deflection in a window, and its uncertainty, the sampling interval [s].
+    """Return the time of the largest tip deflection in a window, and its uncertainty, the sampling step [s].
 
     Of a window with less than two samples, its middle and half its length.
     """
@@ -79,8 +75,8 @@ def time_of_peak(
     return float(run.t[index]), float(np.diff(run.t[inside]).max())
 
 
-def _peak_cells(run: Transient, start: float, end: float, direction: int | None) -> tuple[Text, Text, str]:
-    """Largest tip deflection in a window, over the length, and its time [s]."""
+def _peak_cells(run: bd.Transient, start: float, end: float, direction: int | None) -> tuple[Text, Text, str]:
+    """Make cells of the largest tip deflection in a window, of its ratio to the length, and its time [s]."""
     size, per_si = run.peak(start, end, direction), run.display_units.length_unit().per_si
     error = _ASSUMED_ERROR * size if math.isnan(run.time_error) else run.time_error
     error += run.mode_error * run.largest if math.isfinite(run.mode_error) else 0.0
@@ -92,8 +88,8 @@ def _peak_cells(run: Transient, start: float, end: float, direction: int | None)
     return deflection, ratio, supported(*time_of_peak(run, start, end, direction)) if size else "-"
 
 
-def transient_csv(run: Transient) -> Columns:
-    """Tip deflection over time, in both directions where two are modelled, and the largest's model error."""
+def transient_csv(run: bd.Transient) -> Columns:
+    """Make columns of the tip deflection over time, by direction if two are modelled, and the model error."""
     names = [f"tip_deflection_{direction}" for direction in of_modes.csv_directions(run.scene)]
     tips = zip(names or ["tip_deflection"], (run.tip, run.tip_across), strict=False)
     error = np.full(len(run.t), float(f"{float(run.model_error):.2g}"))
@@ -107,8 +103,8 @@ def transient_csv(run: Transient) -> Columns:
 # Deflections over speed -------------------------------------------------------------------------------
 
 
-def _table_over_speeds(result: SteadyResponse | Sweep, columns: Columns, peaks_at: np.ndarray) -> Group:
-    """The columns at some speeds, the peaks included, which the status names."""
+def _table_over_speeds(result: bd.SteadyResponse | bd.Sweep, columns: Columns, peaks_at: np.ndarray) -> Group:
+    """Make a table of columns at some speeds and at all peaks, which the status names."""
     shown, high = of_modes.rows_worth_showing(np.array(result.status), peaks_at), {*peaks_at.tolist()}
     states = [f"{result.status[s]}, peak" if s in high else str(result.status[s]) for s in shown.tolist()]
     status = Column("status", states)
@@ -117,8 +113,10 @@ def _table_over_speeds(result: SteadyResponse | Sweep, columns: Columns, peaks_a
     return table_of(Columns(*columns.at(shown).columns, status, title=title, note=note), result.display_units)
 
 
-def _deflections(result: SteadyResponse | Sweep, error: np.ndarray, **sizes: np.ndarray) -> Iterator[Column]:
-    """Speeds, and deflections by the name in files; digits beyond the model error are dimmed."""
+def _deflections(
+    result: bd.SteadyResponse | bd.Sweep, error: np.ndarray, **sizes: np.ndarray
+) -> Iterator[Column]:
+    """Yield columns of speeds and deflections; digits beyond the model error are dimmed."""
     words = dict(zip(of_modes.csv_directions(result.scene), words_of_directions(result.scene), strict=True))
     yield Column("speed", result.speeds, "rad/s", form=".8g")
     beyond, form = of_modes.between_speeds(result, result.model_error), partial(supported, most=_DIGITS)
@@ -127,28 +125,28 @@ def _deflections(result: SteadyResponse | Sweep, error: np.ndarray, **sizes: np.
         yield Column(name, size, "m", "", error, beyond * np.abs(size), form, words=head)
 
 
-def _by_direction(result: SteadyResponse | Sweep, sizes: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
-    """Largest deflections by the name in files, where two directions are modelled."""
+def _by_direction(result: bd.SteadyResponse | bd.Sweep, sizes: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
+    """Return largest deflections in each direction by their names in files; empty if one is modelled."""
     return {
         f"largest_{name}": size
         for name, size in zip(of_modes.csv_directions(result.scene), sizes, strict=False)
     }
 
 
-def steady_table(result: SteadyResponse) -> Group:
-    """Table of a steady response at some of its speeds, the peaks included."""
+def steady_table(result: bd.SteadyResponse) -> Group:
+    """Make a table of a steady response at some of its speeds, peaks included."""
     with np.errstate(divide="ignore"):
         peaks_at = peaks(np.log(result.amplitude), np.log(3))
     return _table_over_speeds(result, steady_columns(result), peaks_at)
 
 
-def largest_by_direction(result: SteadyResponse) -> list[np.ndarray]:
-    """Largest tip deflection in the direction of bending and across, where both are modelled."""
+def largest_by_direction(result: bd.SteadyResponse) -> list[np.ndarray]:
+    """Return the largest tip deflection in the direction of bending and across, if two are modelled."""
     return [result.largest_tip(direction) for direction in range(len(words_of_directions(result.scene)))]
 
 
-def steady_columns(result: SteadyResponse) -> Columns:
-    """Steady amplitude, also by direction where two are modelled, growth rate, errors, status over speed."""
+def steady_columns(result: bd.SteadyResponse) -> Columns:
+    """Make columns of the steady amplitude, by direction if two are modelled, with errors and status."""
     error, each = result.error * result.bound, _by_direction(result, largest_by_direction(result))
     return Columns(
         *_deflections(result, error, amplitude=result.amplitude, **each, sum_of_lines=result.bound),
@@ -161,13 +159,13 @@ def steady_columns(result: SteadyResponse) -> Columns:
     )
 
 
-def sweep_table(result: Sweep) -> Group:
-    """Table of a sweep at some of its speeds, the peaks included."""
+def sweep_table(result: bd.Sweep) -> Group:
+    """Make a table of a sweep at some of its speeds, peaks included."""
     return _table_over_speeds(result, sweep_columns(result), sweep_peaks(result))
 
 
-def sweep_columns(result: Sweep) -> Columns:
-    """Largest deflection, where two directions are modelled also in each, and its errors."""
+def sweep_columns(result: bd.Sweep) -> Columns:
+    """Make columns of the largest deflection, also in each direction if two are modelled, and its errors."""
     (start, end), each = result.window, _by_direction(result, result.peaks_by_direction.T)
     return Columns(
         *_deflections(result, result.peak_error, largest_deflection=result.peaks, **each),
@@ -178,29 +176,32 @@ def sweep_columns(result: Sweep) -> Columns:
     )
 
 
-def sweep_peaks(result: Sweep) -> np.ndarray:
-    """Find the indices of the peaks of a sweep, more prominent than a quarter of its largest deflection."""
+def sweep_peaks(result: bd.Sweep) -> np.ndarray:
+    """Find the indices of the peaks of a sweep with a prominence of a quarter of its largest deflection."""
     return peaks(result.peaks, 0.25 * np.nanmax(result.peaks, initial=0.0))
 
 
 def peaks(values: np.ndarray, prominence: float) -> np.ndarray:
-    """Find the indices of local maxima of at least a prominence; values that are not finite are skipped."""
+    """Find the indices of local maxima of at least a prominence, their height over the higher valley beside.
+
+    Values that are not finite are skipped.
+    """
     from scipy.signal import find_peaks
 
     known = np.flatnonzero(np.isfinite(values))
     return known[find_peaks(values[known], prominence=prominence)[0]]
 
 
-def _model_error_of(result: SteadyResponse | Sweep) -> np.ndarray:
-    """Model error at each speed (S,); nan where it is not computed."""
+def _model_error_of(result: bd.SteadyResponse | bd.Sweep) -> np.ndarray:
+    """Return the model error at each speed (S,); nan where it is not computed."""
     at = np.isin(result.speeds, result.left_out_speeds)
     found = np.full(len(result.speeds), np.nan)
     found[at] = result.model_error if at.any() else np.nan
     return found
 
 
-def harvest_columns(result: Harvest) -> Columns:
-    """Power, efficiency, voltage, current and strain over speed, with their errors."""
+def harvest_columns(result: bd.Harvest) -> Columns:
+    """Make columns of power, efficiency, voltage, current and strain over speed, with their errors."""
     of_power = result.error * np.abs(result.power)
     limit, electrodes = result.strain_limit, result.scene.beam.electrodes
     resistance = math.nan if electrodes is None else electrodes.resistance
@@ -214,16 +215,61 @@ def harvest_columns(result: Harvest) -> Columns:
         Column("current", result.current, "A", error=result.error * result.current),
         Column("strain", result.strain, error=result.strain_error),
         Column("largest_deflection", result.amplitude, "m", error=result.error * result.amplitude),
+        *(replace(each, words=None) for each in _road_columns(result)),
         Column("input_power", result.input_power, "W", words=None),
         Column("relative_error", result.error, words=None),
+        *_velocity(result),
         Column("status", result.status),
         title=f"Harvested with {resistance:.6g} ohm, by harmonic balance with {result.provenance.method}",
         note=f"Resonances: {resonant or 'none'} in this range.{bears}",
     )
 
 
-def harvest_over_time(result: TransientHarvest) -> Columns:
-    """Voltage, current, power, harvested energy and strain of the layers over time."""
+def _velocity(result: bd.Harvest) -> Iterator[Column]:
+    """Yield the column of the vehicle's velocity, if its wheel rolls."""
+    if isinstance(wheel := result.scene.motion, RollingWheel):
+        yield Column("velocity", 3.6 * wheel.rolling_radius * result.speeds, "km/h", words=None)
+
+
+def _road_columns(result: bd.Harvest) -> tuple[Column, ...]:
+    """Make the columns that a random road adds; empty without a road."""
+    if (road := result.road) is None:
+        return ()
+    of_rms = road.error / 2
+    return (
+        Column("road_power", road.power, "W", error=road.error * road.power, words="mean power"),
+        Column("road_voltage_rms", road.voltage, "V", error=of_rms * road.voltage, words="rms voltage"),
+        Column("road_current_rms", road.current, "A", error=of_rms * road.current, words="rms current"),
+        Column("road_strain_rms", road.strain, error=road.strain_error, words="rms strain"),
+        Column(
+            "road_deflection_rms",
+            road.deflection,
+            "m",
+            error=road.deflection_error,
+            words="rms deflection",
+        ),
+    )
+
+
+def _harvest_tables(result: bd.Harvest) -> Group:
+    """Make the tables of steady motion, and of a random road, at some speeds with that of most power."""
+    shown = of_modes.rows_worth_showing(result.status, np.flatnonzero(result.speeds == result.best[0]))
+    tables = [harvest_columns(result)]
+    if result.road is not None:
+        speed = Column("speed", result.speeds, "rad/s", form=".8g")
+        title = f"On a random road, {result.road.roughness.words}, besides"
+        tables.append(Columns(speed, *_road_columns(result), title=title))
+    few = of_modes.selection_note(shown, result.speeds)
+    return Group(*(table_of(each.at(shown), result.display_units, each.title + few) for each in tables))
+
+
+def _panels(result: bd.Harvest) -> Figure:
+    """Draw the picture of a harvest, in panels."""
+    return figure_of(result.plot_panels, result.picture_size())
+
+
+def harvest_over_time(result: bd.TransientHarvest) -> Columns:
+    """Make columns of voltage, current, power, harvested energy and strain of the layers over time."""
     return Columns(
         Column("time", result.t, "s"),
         Column("voltage", result.voltage, "V"),
@@ -238,8 +284,8 @@ def harvest_over_time(result: TransientHarvest) -> Columns:
 # Resonances ---------------------------------------------------------------------------------------------
 
 
-def crossings_columns(result: Crossings) -> Columns:
-    """Resonance speeds, one row each, with the plane of each mode where two are modelled."""
+def crossings_columns(result: bd.Crossings) -> Columns:
+    """Make columns of resonance speeds, with the planes of the modes if two are modelled."""
     speed, frequency, error = (
         np.array([getattr(c, name) for c in result]) for name in ("speed", "frequency", "error")
     )
@@ -266,8 +312,8 @@ def crossings_columns(result: Crossings) -> Columns:
     )
 
 
-def _shares(result: Crossings) -> Iterator[Column]:
-    """Shares of both planes in each mode; tables have them in one column, in percent."""
+def _shares(result: bd.Crossings) -> Iterator[Column]:
+    """Yield columns of the shares of both planes in each mode; tables show them in one column, in percent."""
     head: str | None = f"{', '.join(words_of_directions(result.scene))} [%]"
     known = [[s for s in (c.plane_share, c.second_plane_share) if s is not None] for c in result]
     cells = [" and ".join(f"{100 * a:.0f}, {100 * b:.0f}" for a, b in shares) for shares in known]
@@ -280,7 +326,8 @@ def _shares(result: Crossings) -> Iterator[Column]:
 
 VIEWS = {
     "Crossings": View(None, crossings_columns, 1),
-    "Harvest": View(None, harvest_columns, 1),
+    "BestResistance": View(_harvest_tables, harvest_columns, 1, _panels),
+    "Harvest": View(_harvest_tables, harvest_columns, 1, _panels),
     "SteadyResponse": View(steady_table, steady_columns, 1),
     "Sweep": View(sweep_table, sweep_columns, 1),
     "TransientHarvest": View(None, harvest_over_time, 1),

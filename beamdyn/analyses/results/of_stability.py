@@ -1,32 +1,39 @@
-"""Stability in periodic motion, as tables for reading and as columns of files."""
+"""Stability in periodic motion, as tables and as columns of files."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Group
 
+import beamdyn as bd
+from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
+from beamdyn.common.evenly_spread import evenly_spread
+from beamdyn.common.inputs.designs import VariedInput
 from beamdyn.common.results.columns import Column, Columns, column_named, name_in_heads
 from beamdyn.common.results.digits import supported_or_range
+from beamdyn.common.words import InputName
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED
 
-if TYPE_CHECKING:
-    from beamdyn.studies.floquet.point import FloquetMultipliers
-    from beamdyn.studies.floquet.stability_chart import StabilityChart
-    from beamdyn.studies.floquet.stability_limits import StabilityLimits
-
-_FEW_POINTS = 7  # of a curve in a table
-_MOST_ROWS = 21  # values of the first number in a table
+_FEW_POINTS = 7  # number of points of each curve in a table
+_MOST_ROWS = 21  # largest number of values of the first number in a table
 _SI: Mapping[str, tuple[str, float]] = {}
 
 
-def multiplier_columns(result: FloquetMultipliers) -> Columns:
-    """A row a multiplier: size, angle, error and sign."""
+def multiplier_columns(result: bd.FloquetMultipliers) -> Columns:
+    """Make columns with a row for each multiplier: size, angle, error and sign; or of the exponent."""
+    if not len(result.multipliers):
+        rate, error = np.array([result.growth_rate]), np.array([result.growth_rate_error])
+        return Columns(
+            Column("growth_rate", rate, "1/s", error=error, words="growth rate"),
+            Column("growth_rate_error", error, "1/s", form=".1e", words="error"),
+            title=f"{result.status}, by {result.provenance.method}",
+            note=f"The modes left out change it by {result.mode_error:.1g} 1/s.",
+        )
     size, value = np.abs(result.multipliers), result.multipliers
     errors = result.growth_rate_error, result.mode_error
     rate = supported_or_range(result.growth_rate, sum(errors), 6)
@@ -42,12 +49,12 @@ def multiplier_columns(result: FloquetMultipliers) -> Columns:
     )
 
 
-def _multiplier_table(result: FloquetMultipliers) -> Group:
+def _multiplier_table(result: bd.FloquetMultipliers) -> Group:
     return table_of(multiplier_columns(result), result.display_units)
 
 
-def chart_table(result: StabilityChart, units: Mapping[str, tuple[str, float]] = _SI) -> Group:
-    """Where free motion is not stable along the second number, at some values of the first.
+def chart_table(result: bd.StabilityChart, units: Mapping[str, tuple[str, float]] = _SI) -> Group:
+    """Make a table of where free motion is unstable along the second number, for values of the first.
 
     Parameters
     ----------
@@ -56,11 +63,11 @@ def chart_table(result: StabilityChart, units: Mapping[str, tuple[str, float]] =
     units : mapping, optional
         By input: the unit in which its values are shown, and that unit in SI; others are shown in SI.
     """
-    names = [(each.name, *units.get(each.name, (each.unit, 1.0))) for each in result.inputs]
+    names = [(_words(each), *units.get(each.name, (each.unit, 1.0))) for each in result.inputs]
     (first, *_), (second, *_) = heads = [(f"{n} [{u}]" if u else n, u, size) for n, u, size in names]
     values = [each.values / size for each, (*_, size) in zip(result.inputs, heads, strict=True)]
     number = len(values[0])
-    shown = np.linspace(0, number - 1, min(number, _MOST_ROWS)).round().astype(int)
+    shown = evenly_spread(number, _MOST_ROWS)
     rows = [
         (
             f"{values[0][k]:.6g}",
@@ -74,8 +81,13 @@ def chart_table(result: StabilityChart, units: Mapping[str, tuple[str, float]] =
     return table(title, (first, f"not stable at {second}", "largest growth rate [1/s]", "error"), rows, (1,))
 
 
+def _words(varied: VariedInput) -> str:
+    """Name an input as files and commands do, on a form as the form does."""
+    return in_files(InputName(varied.name))
+
+
 def _where(status: np.ndarray, values: np.ndarray) -> str:
-    """Ranges of values without stability, in words."""
+    """Word the ranges of values without stability."""
     said = []
     for state, group in groupby(zip(status.tolist(), values.tolist(), strict=True), lambda pair: pair[0]):
         within = [value for _, value in group]
@@ -85,8 +97,8 @@ def _where(status: np.ndarray, values: np.ndarray) -> str:
     return ", ".join(said) or "-"
 
 
-def chart_columns(result: StabilityChart) -> Columns:
-    """A row a point: the two numbers, the verdict, growth rate, its error, and the largest multiplier."""
+def chart_columns(result: bd.StabilityChart) -> Columns:
+    """Make columns with a row for each point: both numbers, verdict, growth rate and largest multiplier."""
     grids = np.meshgrid(*(each.values for each in result.inputs), indexing="ij")
     numbers = (
         column_named(name_in_heads(each.name), grid.ravel(), each.unit, words=each.name)
@@ -102,10 +114,10 @@ def chart_columns(result: StabilityChart) -> Columns:
     )
 
 
-def limit_columns(result: StabilityLimits) -> Columns:
-    """A row a point: its curve, the two numbers, the error and the multiplier that leaves the circle."""
+def limit_columns(result: bd.StabilityLimits) -> Columns:
+    """Make columns with a row for each point: curve, both numbers, error, and critical multiplier."""
     numbers = (
-        column_named(name_in_heads(each.name), values, each.unit, words=each.name, form=".9g")
+        column_named(name_in_heads(each.name), values, each.unit, words=_words(each), form=".9g")
         for each, values in zip(result.chart.inputs, result.place.T, strict=True)
     )
     kinds = ", ".join(f"{k}: {kind}" for k, kind in enumerate(result.kinds, 1))
@@ -120,10 +132,10 @@ def limit_columns(result: StabilityLimits) -> Columns:
     )
 
 
-def _limit_table(result: StabilityLimits) -> Group:
-    """Some of the points, those of each curve evenly spread."""
+def _limit_table(result: bd.StabilityLimits) -> Group:
+    """Make a table of some points of each curve, evenly spread."""
     rows = [np.flatnonzero(result.curve == k) for k in np.unique(result.curve)]
-    few = [each[np.unique(np.linspace(0, len(each) - 1, _FEW_POINTS).round().astype(int))] for each in rows]
+    few = [each[evenly_spread(len(each), _FEW_POINTS)] for each in rows]
     shown = np.concatenate([np.zeros(0, dtype=int), *few])
     return table_of(limit_columns(result).at(shown), result.display_units)
 

@@ -1,4 +1,4 @@
-"""Studies, sensitivities, trade-offs and Campbell diagrams, as tables for reading and as columns of files."""
+"""Studies, sensitivities, trade-offs and Campbell diagrams, as tables and as columns of files."""
 
 from __future__ import annotations
 
@@ -10,12 +10,13 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+import beamdyn as bd
 from beamdyn.analyses.results.of_data import VIEWS as OF_DATA
-from beamdyn.analyses.results.of_design import VIEWS as OF_DESIGN
 from beamdyn.analyses.results.of_stability import VIEWS as OF_STABILITY
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.results.columns import (
     Column,
     Columns,
@@ -25,38 +26,37 @@ from beamdyn.common.results.columns import (
     name_in_heads,
 )
 from beamdyn.common.results.digits import supported
-from beamdyn.common.results.pictures import figure_of
+from beamdyn.common.results.display_units import ShownUnit
+from beamdyn.common.results.pictures import Figure, figure_of
+from beamdyn.common.words import InputName
 from beamdyn.equations.effects import first_drawn
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from beamdyn.studies.campbell.diagram import Campbell
-    from beamdyn.studies.sensitivities.sensitivity_result import Sensitivities
-    from beamdyn.studies.study_result import Study
     from beamdyn.studies.tradeoffs.measurements import Diagram
-    from beamdyn.studies.tradeoffs.tradeoff import Tradeoff
 
-_MOST_ROWS = 30  # rows of a table of a study
-_DIGITS = 10  # most digits of a speed or frequency
-_DIGITS_OF_DERIVATIVES, _BESIDE = 7, 4  # most digits, and answers beside one another
-_RPM = 30 / np.pi  # revolutions per minute in a rad/s
-_NEAR = 1e-3  # relative distance of a frequency from its upper bound, which is close
+_MOST_ROWS = 30  # largest number of rows in a table of a study
+_DIGITS = 10  # largest number of digits of a speed or frequency
+# Largest number of digits of a derivative, and of answers in columns side by side.
+_DIGITS_OF_DERIVATIVES, _BESIDE = 7, 4
+_RPM = 30 / np.pi  # revolutions per minute in one rad/s
+# Relative distance of a frequency from its upper bound, below which the frequency counts as close to it.
+_NEAR = 1e-3
 _MEASUREMENT = "family", "setting", "size", "relative_error", ("time", "s"), "in_front"
 
 
 # Studies ----------------------------------------------------------------------------------------------
 
 
-def study_table(result: Study) -> Group:
-    """Inputs, in the units that were typed, and answers of some designs, spread evenly."""
+def study_table(result: bd.Study) -> Group:
+    """Make a table of some designs, evenly spread: inputs in the units as typed, and answers."""
     columns, number, inputs = study_columns(result).columns, result.designs.count, len(result.inputs)
-    shown = np.linspace(0, number - 1, min(number, _MOST_ROWS)).round().astype(int)
-    in_units = {name: (unit.per_si, unit.name) for name, unit in result.typed_units.items()}
-    given = (column.times(*in_units.get(column.words or "", (1.0, ""))) for column in columns[:inputs])
+    shown = evenly_spread(number, _MOST_ROWS)
+    typed = (result.typed_units.get(each.name, ShownUnit("", 1.0)) for each in result.inputs)
+    pairs = zip(columns[:inputs], typed, strict=True)
+    given = (column.times(unit.per_si, unit.name) for column, unit in pairs)
     known = np.where(np.isfinite(result.value), result.error, np.nan).reshape(number, -1)
     errors = ["-" if np.isnan(each).all() else f"{np.nanmax(each):.1g}" for each in known]
-    notes = [f"{len(shown)} of {number} designs are shown; --csv has all."] if len(shown) < number else []
+    notes = [f"{len(shown)} of {number} designs are shown; CSV has all."] if len(shown) < number else []
     if judged := len(result.left_out_places):
         where = f"at the worst of {judged} design{'s' * (judged > 1)}"
         what = "number" * (len(result.labels) > 1)
@@ -73,8 +73,11 @@ def study_table(result: Study) -> Group:
     return table_of(made.at(shown), result.display_units, keys=inputs + (len(result.labels) or 1))
 
 
-def study_columns(result: Study) -> Columns:
-    """Inputs in SI, answers, relative errors and states, a row a design; the last input changes fastest."""
+def study_columns(result: bd.Study) -> Columns:
+    """Make columns with a row for each design: inputs in SI, answers, errors, statuses.
+
+    The last varies fastest.
+    """
     parts = (result.value, result.error, result.status)
     value, error, status = (each.reshape(result.designs.count, -1).T for each in parts)
     there = np.isfinite(value)
@@ -88,7 +91,7 @@ def study_columns(result: Study) -> Columns:
     word = kind.replace(" ", "_")
     return Columns(
         *(
-            column_named(name.replace(".", "_"), each, units[name], words=name)
+            column_named(name.replace(".", "_"), each, units[name], words=in_files(InputName(name)))
             for name, each in result.designs.columns().items()
         ),
         *(
@@ -101,19 +104,19 @@ def study_columns(result: Study) -> Columns:
 
 
 def _without(value: np.ndarray, status: np.ndarray) -> list[str | None]:
-    """Why there is no answer, of the designs that have none."""
+    """Return the status of each design that has no answer, which tells why; None for others."""
     pairs = zip(value, status, strict=True)
     return [None if np.isfinite(number) else str(state) for number, state in pairs]
 
 
 def _plain_name(label: str) -> str:
-    """A label as a part of a head: a mode by its number, signs of combination frequencies in words."""
+    """Return a label as part of a head: a mode by its number, signs of combination frequencies in words."""
     label = label.replace("+", " plus ").replace("-", " minus ")
     return name_in_heads(label.removeprefix("mode "))
 
 
-def sensitivities_table(result: Sensitivities) -> Group:
-    """For each number its value, and of each answer the derivative and the relative change over its own."""
+def sensitivities_table(result: bd.Sensitivities) -> Group:
+    """Make a table of the numbers: values, derivatives of each answer, and their relative changes."""
     values = [f"{a} {v:.6g} {result.unit}" for a, v in zip(result.answers, result.value, strict=True)]
     said = f"{'; '.join(values)}. Derivatives: in {result.unit} over the SI unit of the input."
     numbers = np.array([each.value for each in result.inputs])[:, None]
@@ -132,16 +135,16 @@ def sensitivities_table(result: Sensitivities) -> Group:
 
 
 def _rows(
-    result: Sensitivities, value: np.ndarray, error: np.ndarray, shown: slice
+    result: bd.Sensitivities, value: np.ndarray, error: np.ndarray, shown: slice
 ) -> Iterator[Sequence[str]]:
-    """Rows of inputs with numbers of some answers."""
+    """Yield a row for each input, with numbers of some answers."""
     for each, numbers, errors in zip(result.inputs, value[:, shown], error[:, shown], strict=True):
         cells = map(supported, numbers, errors, [_DIGITS_OF_DERIVATIVES] * len(numbers))
-        yield each.name, f"{each.value:.6g} {each.unit}".rstrip(), *cells
+        yield in_files(InputName(each.name)), f"{each.value:.6g} {each.unit}".rstrip(), *cells
 
 
-def sensitivities_csv(result: Sensitivities) -> Columns:
-    """A row for each number and answer: values in SI, derivative, its error, relative change."""
+def sensitivities_csv(result: bd.Sensitivities) -> Columns:
+    """Make columns with a row for each number and answer: values in SI, derivative, relative change."""
     rows = []
     for k, each in enumerate(result.inputs):
         columns = (result.answers, result.value, result.derivative[k], result.error[k], result.relative[k])
@@ -154,11 +157,11 @@ def sensitivities_csv(result: Sensitivities) -> Columns:
 # Trade-offs -------------------------------------------------------------------------------------------
 
 
-_TIES = 3  # ties that are named
+_TIES = 3  # largest number of named settings whose times equal the least one within their scatter
 
 
 def diagram_table(diagram: Diagram) -> Group:
-    """Cost of each digit, the Pareto front, and the reference of the errors."""
+    """Make a table of the cost of each digit, with the Pareto front and the reference of the errors."""
     rows = [
         (
             f"{d.error:.0e}",
@@ -170,14 +173,7 @@ def diagram_table(diagram: Diagram) -> Group:
         )
         for i, d in enumerate(diagram.per_digit)
     ]
-    heads = (
-        "error",
-        "cheapest",
-        "setting",
-        "time [ms]",
-        "over the digit before",
-        "as fast, within the scatter",
-    )
+    heads = "error", "cheapest", "setting", "time [ms]", "over the digit before"
     sentences = (
         f"Pareto front: {diagram.summary}.",
         f"Error: of {diagram.error_of}.",
@@ -186,16 +182,18 @@ def diagram_table(diagram: Diagram) -> Group:
         "",
     )
     title = diagram.title[:1].upper() + diagram.title[1:]
-    return Group(table(title, heads, rows, (1, 2, 5)), *map(Text, sentences))
+    return Group(
+        table(title, (*heads, "as fast, within the scatter"), rows, (1, 2, 5)), *map(Text, sentences)
+    )
 
 
 def diagram_csv(diagram: Diagram) -> Columns:
-    """The measurements of one diagram, one row each."""
+    """Make columns of the measurements of one diagram."""
     return columns_of_rows(_MEASUREMENT, _measurements(diagram))
 
 
-def tradeoff_csv(result: Tradeoff) -> Columns:
-    """All measurements, one row each."""
+def tradeoff_csv(result: bd.Tradeoff) -> Columns:
+    """Make columns of all measurements, with the diagram of each."""
     rows = ((each.title, *row) for each in result.diagrams for row in _measurements(each))
     return columns_of_rows(("diagram", *_MEASUREMENT), rows)
 
@@ -205,8 +203,8 @@ def _measurements(diagram: Diagram) -> Iterator[Sequence[object]]:
         yield m.family, m.setting, m.size, m.error, m.time, m in diagram.front
 
 
-def _tradeoff_figure(result: Tradeoff) -> Figure:
-    """All diagrams, two in a row."""
+def _tradeoff_figure(result: bd.Tradeoff) -> Figure:
+    """Draw all diagrams, two in a row."""
     rows = -(-len(result.diagrams) // 2)
     return figure_of(result.plot, (6.5 * min(2, len(result.diagrams)), 4.5 * rows))
 
@@ -214,19 +212,19 @@ def _tradeoff_figure(result: Tradeoff) -> Figure:
 # Campbell diagrams ------------------------------------------------------------------------------------
 
 
-def campbell_tables(result: Campbell) -> Group:
-    """Tables of the crossings, of the margins and of the bounds, those that there are."""
+def campbell_tables(result: bd.Campbell) -> Group:
+    """Make tables of the crossings, of the margins and of the bounds, as far as there are any."""
     parts = crossings_columns(result), *_margins(result), *_bounds(result)
     return Group(*(table_of(columns, result.display_units) for columns in parts))
 
 
-def _scenes(result: Campbell, labels: Sequence[str]) -> Column:
-    """The scene of each row, which tables have if there are several."""
+def _scenes(result: bd.Campbell, labels: Sequence[str]) -> Column:
+    """Make the column of the scene of each row, which tables show if there are several scenes."""
     return Column("scene", labels, words="" if len(result.labels) > 1 else None)
 
 
-def crossings_columns(result: Campbell) -> Columns:
-    """Crossings, one row each; tables have the share of the direction that is drawn."""
+def crossings_columns(result: bd.Campbell) -> Columns:
+    """Make columns of the crossings; tables have the share of the direction that is drawn."""
     found, number = result.crossings, len(result.crossings)
     speed, frequency, error = (
         np.array(attributes(found, name), dtype=float) for name in ("speed", "frequency", "error")
@@ -234,6 +232,7 @@ def crossings_columns(result: Campbell) -> Columns:
     model_error = result.model_error if found else np.zeros(0)
     top = result.display_units.speed_unit().say(result.loci[0].speeds[-1])
     operating = ["yes" if c.operating else "no" for c in found]
+    words = None if result.operating is None else ""
     return Columns(
         _scenes(result, attributes(found, "label")),
         Column("line", attributes(found, "line.name")),
@@ -246,19 +245,14 @@ def crossings_columns(result: Campbell) -> Columns:
         Column("relative_error", error, words=None),
         Column("tracking_confidence", attributes(found, "confidence"), form=".2f", words="tracking"),
         *_shares(result),
-        Column(
-            "operating",
-            attributes(found, "operating"),
-            cells=operating,
-            words=None if result.operating is None else "",
-        ),
+        Column("operating", attributes(found, "operating"), cells=operating, words=words),
         title=f"{number or 'No'} crossing{'s' * (number != 1)} up to {top}, by {result.provenance.method}",
         note=result.left_out_effects.sentence("crossing" if number > 1 else ""),
     )
 
 
-def _shares(result: Campbell) -> Iterator[Column]:
-    """The share of each plane; tables have that of the direction that is drawn, where two are modelled."""
+def _shares(result: bd.Campbell) -> Iterator[Column]:
+    """Yield columns of the shares of both planes; tables have that of the direction that is drawn."""
     scenes = [result.loci[result.labels.index(c.label)].scene for c in result.crossings]
     cells = [
         f"{c.plane_share[first_drawn(scene)]:.3f}" if scene.physics.planes == 2 else "-"
@@ -271,7 +265,7 @@ def _shares(result: Campbell) -> Iterator[Column]:
     yield Column("share_across", [c.plane_share[1] for c in result.crossings], words=None)
 
 
-def _margins(result: Campbell) -> Iterator[Columns]:
+def _margins(result: bd.Campbell) -> Iterator[Columns]:
     if found := result.margins:
         sizes = [f"{100 * m.margin:+.1f} %" if m.margin else "crossed" for m in found]
         yield Columns(
@@ -286,7 +280,7 @@ def _margins(result: Campbell) -> Iterator[Columns]:
         )
 
 
-def _bounds(result: Campbell) -> Iterator[Columns]:
+def _bounds(result: bd.Campbell) -> Iterator[Columns]:
     if result.bounds:
         each = [(label, found.speed, high) for label, found in result.bounds for high in found.upper]
         low, high, width = (
@@ -304,8 +298,8 @@ def _bounds(result: Campbell) -> Iterator[Columns]:
         )
 
 
-def _name_below(result: Campbell, label: str, speed: float, high: float) -> str:
-    """Name of the mode whose frequency at a speed is at an upper bound; "-" where none is near."""
+def _name_below(result: bd.Campbell, label: str, speed: float, high: float) -> str:
+    """Return the name of the mode whose frequency at a speed is close to an upper bound; "-" if none is."""
     i = result.labels.index(label)
     locus = result.loci[i]
     distance = np.abs(locus.frequency[np.abs(locus.speeds - speed).argmin()] / high - 1)
@@ -313,8 +307,8 @@ def _name_below(result: Campbell, label: str, speed: float, high: float) -> str:
     return result.names[i][near[distance[near].argmin()]] if near.size else "-"
 
 
-def campbell_csv(result: Campbell) -> Columns:
-    """Natural frequencies of all scenes over speed, one row a speed."""
+def campbell_csv(result: bd.Campbell) -> Columns:
+    """Make columns of the natural frequencies of all scenes over speed."""
     names = [
         f"{label}: {name}" if label else name
         for label, modes in zip(result.labels, result.names, strict=True)
@@ -331,7 +325,7 @@ def campbell_csv(result: Campbell) -> Columns:
     )
 
 
-VIEWS = OF_DATA | OF_DESIGN | OF_STABILITY | {
+VIEWS = OF_DATA | OF_STABILITY | {
     "Campbell": View(campbell_tables, campbell_csv, 1, lambda result: figure_of(result.plot, (8.5, 6.0))),
     "Diagram": View(diagram_table, diagram_csv),
     "Sensitivities": View(sensitivities_table, sensitivities_csv, 1),

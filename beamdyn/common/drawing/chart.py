@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from itertools import count
 from typing import Any
 
-_MOST_POINTS = 400  # points of a curve on the page: more are not seen, and take time to send
+# Largest number of points of a curve on the page: more cannot be seen, and take time to send.
+_MOST_POINTS = 400
 
 
 @dataclass(frozen=True)
@@ -34,13 +35,13 @@ class ChartAxis:
 
     @property
     def title(self) -> str:
-        """Name and unit."""
+        """Name and unit of the axis."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
 @dataclass(frozen=True, eq=False)
 class ChartCurve:
-    """A curve.
+    """A curve of a chart.
 
     Parameters
     ----------
@@ -69,7 +70,7 @@ class ChartCurve:
 
 @dataclass(frozen=True)
 class ChartPoints:
-    """Points with a text each.
+    """Points of a chart, each with a text.
 
     Parameters
     ----------
@@ -150,13 +151,13 @@ class Chart:
 
     @property
     def colour_numbers(self) -> list[int | None]:
-        """Number of the colour of each curve, counted from 0; None for those that are pale."""
+        """Number of each curve's colour, counted from 0; None for pale curves."""
         numbers = count()
         return [None if curve.pale else next(numbers) for curve in self.curves]
 
     @property
     def words(self) -> str:
-        """Description for screen readers."""
+        """Description of the chart for screen readers."""
         names = ", ".join(each.name for each in (*self.curves, *self.points))
         marks = "; ".join(mark.text.replace("\n", " ") for mark in self.marks)
         over = f"{self.y.title} over {self.x.title}"

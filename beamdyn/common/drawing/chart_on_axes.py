@@ -1,26 +1,23 @@
-"""Charts on matplotlib's axes, for files."""
+"""Drawing of charts on matplotlib's axes, for files."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.strokes import ink
-from beamdyn.common.results.pictures import COLOURS
+from beamdyn.common.results.pictures import COLOURS, Axes, Figure
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_LETTERS, _TITLE = 9, 11  # sizes of letters [pt]
-_OF_LABEL = 16  # letters in a line of the label of a low chart
+_LETTERS, _TITLE = 9, 11  # sizes of letters, of texts and of the title [pt]
+_OF_LABEL = 16  # largest number of letters in a line of a low chart's label
 _PALE, _CURSOR = "0.6", "0.4"
-_GAP = 0.01  # between the foot of the axes and a text, over the height of the axes
+_GAP = 0.01  # distance of a text from the foot of the axes, over their height
 _BESIDE: dict[str, Any] = {"va": "bottom"}
 _ALONG: dict[str, Any] = {"ha": "right", "va": "top", "rotation": 90}
-_BEHIND_LEGEND = 0.92  # height of texts at the top of marks, over that of the axes
+# Height of texts at the top of marks where a legend stands above, over that of the axes.
+_BEHIND_LEGEND = 0.92
 
 
 def plot_chart(ax: Axes, chart: Chart) -> Axes:
@@ -29,7 +26,7 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
     Parameters
     ----------
     ax : Axes
-        Where to draw.
+        Axes on which to draw the chart.
     chart : Chart
         The chart.
 
@@ -47,7 +44,7 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
         ax.plot(x, y, "o", color=ink(points.role).line, markerfacecolor="white", label=points.name)
     colour_of = {curve.name: colour for curve, colour in zip(chart.curves, colours, strict=True)}
     across = ax.get_xaxis_transform()
-    for mark in chart.marks:  # a vertical line, with its text beside it at the foot or along it at the top
+    for mark in chart.marks:  # a vertical line, with a text beside its foot or along its top
         colour = colour_of.get(mark.curve, _CURSOR)
         ax.axvline(mark.at, color=colour, linewidth=1.2, linestyle=":" if mark.at_foot else "-.")
         height, place = (_GAP, _BESIDE) if mark.at_foot else (_BEHIND_LEGEND, _ALONG)
@@ -91,7 +88,8 @@ def plot_charts_of_one_x(
     for row, chart in enumerate(charts):
         ax = plot_chart(figure.add_subplot(cells[row, 0]), chart)
         ax.set_title("")
-        ax.set_ylabel(fill(chart.y.title, _OF_LABEL))  # no longer than the axes are high
+        # Wrapped, so that the label is not longer than the axes are high.
+        ax.set_ylabel(fill(chart.y.title, _OF_LABEL))
         if row < len(charts) - 1:
             ax.set_xlabel("")
             ax.tick_params(labelbottom=False)

@@ -15,22 +15,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-_CELL = 2.5  # size of a cell of the grid [pt]
-_APART = 2.0  # least distance of two texts [pt]
+_CELL = 2.5  # side of a cell of the grid [pt]
+_APART = 2.0  # least distance between two texts [pt]
 _GAP = 5.0  # distance from an anchor to its label [pt]
-FAR = 18.0  # distance from which on a line leads from the label to its anchor [pt]
-_STEPS = np.array([0.0, 5.0, 12.0, 22.0, 36.0, 54.0, 78.0, 110.0, 150.0])  # distances beyond the gap [pt]
-_TURNS = 12  # directions around an anchor
+FAR = 18.0  # distance of a label from its anchor, from which on a line connects them [pt]
+# Distances of candidates beyond the gap [pt].
+_STEPS = np.array([0.0, 5.0, 12.0, 22.0, 36.0, 54.0, 78.0, 110.0, 150.0])
+_TURNS = 12  # number of directions around an anchor
 _TURNED = 9.0  # cost of a direction at a right angle to the wanted one [pt]
-_NEXT = 5.0  # cost of each further anchor [pt]
-_COVERED = 120.0  # cost of a label whose whole area covers lines [pt]
-_FIRST = 40  # candidates that are tried before the rest
-_TRIED = 30  # candidates for which another label may be displaced
+_NEXT = 5.0  # cost of placing a label at the next of its anchors in place of the one before [pt]
+_COVERED = 120.0  # cost of a candidate place whose whole area covers lines of the drawing [pt]
+_FIRST = 40  # number of a label's cheapest candidate places that are tried before all others
+_TRIED = 30  # number of a label's candidate places for which another label may be moved away
 
 
 @dataclass(frozen=True, eq=False)
 class LabelRequest:
-    """A label for which a place is to be found, on paper: y points down, all lengths in [pt].
+    """A label that needs a place on paper, where y points down and lengths are in [pt].
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ class LabelRequest:
 
 
 class Place(NamedTuple):
-    """Where a label stands: centre (2,), its anchor (2,), distance to it, and cost [pt]."""
+    """The place of a label: its centre (2,), its anchor (2,), their distance, and the cost [pt]."""
 
     centre: np.ndarray
     anchor: np.ndarray
@@ -61,7 +62,7 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Obstacles:
-    """What is drawn already, and the frame, on paper: y points down, all lengths in [pt].
+    """Drawn lines and symbols, and the frame, on paper, where y points down and lengths are in [pt].
 
     Parameters
     ----------
@@ -72,7 +73,7 @@ class Obstacles:
     points : ndarray, shape (m, 2)
         Centres of symbols, and ends of lines, that labels must not cover.
     reach : float
-        Radius around these points that must stay free.
+        Radius around the points that must stay free.
     """
 
     frame: tuple[float, float, float, float]
@@ -82,9 +83,10 @@ class Obstacles:
 
     @cached_property
     def _covered(self) -> np.ndarray:
-        """Sums from the upper left corner over cells with lines, shape (rows + 1, columns + 1)."""
+        """Summed-area table of cells with lines, from the upper left: shape (rows + 1, columns + 1)."""
         start, way = self.lines[:, :2], self.lines[:, 2:] - self.lines[:, :2]
-        counts = np.ceil(np.hypot(*way.T) / _CELL).astype(int) + 1  # points along each, at most a cell apart
+        # Number of points along each line, at most a cell apart.
+        counts = np.ceil(np.hypot(*way.T) / _CELL).astype(int) + 1
         which = np.repeat(np.arange(len(way)), counts)
         step = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
         part = step / np.maximum(counts[which] - 1, 1)
@@ -92,7 +94,10 @@ class Obstacles:
 
     @cached_property
     def _forbidden(self) -> np.ndarray:
-        """Sums from the upper left corner over cells with symbols or ends of lines, like `_covered`."""
+        """Summed-area table of cells within `reach` of symbols or ends of lines, shaped like `_covered`.
+
+        Labels are not placed on these cells.
+        """
         side = np.linspace(-self.reach, self.reach, 2 * int(np.ceil(self.reach / _CELL)) + 1)
         dx, dy = (d.ravel() for d in np.meshgrid(side, side))
         around = self.points[:, None] + np.stack([dx, dy], axis=-1)[np.hypot(dx, dy) <= self.reach + 0.5]
@@ -112,7 +117,7 @@ class Obstacles:
         return cells.cumsum(axis=0, out=cells).cumsum(axis=1, out=cells)
 
     def judge(self, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Share of boxes (k, 4) that lines cover; whether they lie in the frame and cover no symbol."""
+        """Compute the share of boxes (k, 4) that lines cover, and whether the boxes are free of symbols."""
         x0, y0, x1, y1 = boxes.T
         return self._over(self._covered, boxes) * _CELL**2 / ((x1 - x0) * (y1 - y0)), self.is_free(boxes)
 
@@ -123,7 +128,7 @@ class Obstacles:
         return inside & (self._over(self._forbidden, boxes) == 0)
 
     def _over(self, sums: np.ndarray, boxes: np.ndarray) -> np.ndarray:
-        """Sums over boxes (k, 4), from those at their corners."""
+        """Compute sums over boxes (k, 4) from a summed-area table, by its values at their corners."""
         low = np.clip(((boxes[:, :2] - self.frame[:2]) / _CELL).astype(np.intp), 0, self._cells)
         high = np.clip(((boxes[:, 2:] - self.frame[:2]) / _CELL).astype(np.intp) + 1, 0, self._cells)
         (c0, r0), (c1, r1) = low.T, high.T
@@ -134,7 +139,8 @@ class Obstacles:
 class _Candidates:
     """Candidates of a label, the cheapest first: boxes (k, 4), anchors (k, 2), distances and costs (k,).
 
-    Of all labels at first, by anchor: boxes (n, k, 4), anchors (n, 2), distances and costs (n, k).
+    Before they are sorted, one object holds those of all labels, for n pairs of label and anchor: boxes (n,
+    k, 4), anchors (n, 2), distances and costs (n, k).
     """
 
     boxes: np.ndarray
@@ -156,15 +162,16 @@ class _Candidates:
 _ANGLES = 2 * np.pi * np.arange(_TURNS) / _TURNS
 _WAYS = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=-1)
 _SPREAD = 1 / np.abs(_WAYS).clip(1e-9)
-_CORNERS = np.array([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])  # corners of a box
+# Directions of a box's corners from its centre.
+_CORNERS = np.array([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])
 _AWAY = np.concatenate([_WAYS, _CORNERS / np.sqrt(2.0)])
 _BESIDE = np.repeat(
     [0.0, 12.0], [_TURNS, len(_CORNERS)]
-)  # cost of standing beside where it should stand on [pt]
+)  # cost, by direction, of standing beside a point on which the label should stand [pt]
 
 
 def _candidates(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[_Candidates]:
-    """Candidates of all labels: around each anchor by direction and distance."""
+    """Make the candidates of all labels: around each anchor, by direction and distance."""
     counts = [len(request.anchors) for request in requests]
     anchors = np.concatenate([request.anchors for request in requests])
     half = np.repeat([request.size for request in requests], counts, axis=0) / 2
@@ -186,7 +193,7 @@ def _candidates(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[
 
 
 def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Candidates of a label around each of n anchors, in s steps by t directions.
+    """Place candidates around each of n anchors, in s steps by t directions.
 
     Parameters
     ----------
@@ -203,7 +210,8 @@ def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray
         From the anchor to the edge of the label.
     """
     on_it = on_it[:, None, None]
-    reach = (half[:, None] * _SPREAD).min(axis=2)  # from the centre to the edge of the box, (anchors, turns)
+    # Distance from the centre to the edge of the box, (anchors, turns).
+    reach = (half[:, None] * _SPREAD).min(axis=2)
     out = np.where(on_it, _STEPS[:, None], _GAP + _STEPS[:, None] + reach[:, None])
     distances = np.where(on_it, np.maximum(out - reach[:, None], 0.0), _STEPS[:, None])
     aside = np.broadcast_to(_STEPS[:, None], (len(half), len(_STEPS), len(_CORNERS)))
@@ -213,7 +221,7 @@ def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates:
-    """The free candidates of one label, the cheapest first, of those of all, by anchor (n, k)."""
+    """Select one label's free candidates, the cheapest first, from those of all labels (n, k)."""
     which = np.flatnonzero(free[part])
     cost = every.costs[part].ravel()[which]
     order = np.argsort(cost, kind="stable")
@@ -223,7 +231,7 @@ def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates
 
 
 class _Chosen:
-    """The labels that have a place, and the index of the candidate that each has taken."""
+    """The labels that have a place so far, with the index of the candidate that each has taken."""
 
     def __init__(self, candidates: Sequence[_Candidates]) -> None:
         self._of = candidates
@@ -243,7 +251,7 @@ class _Chosen:
         self._boxes[label] = self._leaders[label] = np.nan
 
     def in_the_way(self, label: int, count: int | None) -> np.ndarray:
-        """Labels (n,) with which the first candidates (k,) of a label collide, shape (k, n)."""
+        """Decide with which labels (n,) the first candidates (k,) of a label collide, shape (k, n)."""
         of = self._of[label]
         boxes = of.boxes[:count]
         found = np.zeros((len(boxes), len(self._boxes)), dtype=bool)
@@ -258,7 +266,7 @@ class _Chosen:
         return found
 
     def best(self, label: int, before: int | None = None) -> int | None:
-        """The cheapest free candidate of a label, among those before a given one; None if none is free."""
+        """Return a label's cheapest free candidate, among the first `before` or all; None if none is free."""
         for count in (_FIRST, None) if before is None else (before,):
             free = ~self.in_the_way(label, count).any(axis=1)
             if free.any():
@@ -267,14 +275,14 @@ class _Chosen:
 
 
 def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Whether boxes (k, 4) and others (n, 4) overlap, shape (k, n)."""
+    """Decide whether boxes (k, 4) overlap others (n, 4), shape (k, n)."""
     x0, y0, x1, y1 = boxes.T[..., None]
     left, top, right, bottom = others.T[:, None]
     return (x0 < right) & (left < x1) & (y0 < bottom) & (top < y1)
 
 
 def _crossing(segments: np.ndarray, boxes: np.ndarray) -> np.ndarray:
-    """Whether segments (k, 4) pass through boxes (n, 4), shape (k, n)."""
+    """Decide whether segments (k, 4) cross boxes (n, 4), shape (k, n)."""
     ax, ay, bx, by = segments.T[..., None]
     left, top, right, bottom = boxes.T[:, None]
     across, down = (np.where(way == 0, 1e-12, way) for way in (bx - ax, by - ay))
@@ -310,7 +318,7 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
             chosen.take(label, best)
         else:
             _displace(label, chosen, candidates)
-    for label in order:  # those before it have moved, perhaps
+    for label in order:  # labels before this one may have moved since
         now = chosen.choice.get(label, 0)
         if now and (best := chosen.best(label, now)) is not None:
             chosen.take(label, best)
@@ -322,12 +330,12 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
 def keep_places(
     before: Sequence[Place | None], requests: Sequence[LabelRequest], obstacles: Obstacles
 ) -> list[Place | None] | None:
-    """Places beside the anchors as before, while the anchors move.
+    """Keep labels at their offsets while their anchors move; None if that makes any of them collide.
 
     Parameters
     ----------
     before : sequence of Place
-        Where the labels stood.
+        Places at which the labels stood before.
     requests : sequence of LabelRequest
         Labels as they are now.
     obstacles : Obstacles
@@ -339,7 +347,7 @@ def keep_places(
         None if all places have to be found anew: a label had none, or its place is not free any more.
     """
     pairs = zip(before, requests, strict=True)
-    places = []  # each with the offset from the anchor that is now nearest to its earlier one
+    places = []  # each label keeps the offset from the anchor that is now nearest to its earlier one
     for place, request in pairs:
         if place is not None:
             anchor = request.anchors[np.hypot(*(request.anchors - place.anchor).T).argmin()]
@@ -359,7 +367,7 @@ def keep_places(
 
 
 def _displace(label: int, chosen: _Chosen, candidates: Sequence[_Candidates]) -> None:
-    """Give a label the place of another one, if that finds a new place; else leave it without."""
+    """Give a label the place of another, if the other finds a new place; else leave the label without."""
     found = chosen.in_the_way(label, None)
     for candidate in np.flatnonzero(found.sum(axis=1) == 1)[:_TRIED]:
         other = int(found[candidate].argmax())

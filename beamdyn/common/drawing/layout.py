@@ -12,20 +12,21 @@ from beamdyn.common.drawing.label_places import FAR, LabelRequest, Obstacles, Pl
 from beamdyn.common.drawing.shapes import NORMAL, Disc, Drawing, Label, Outline, Symbol, arc, points_of_shape
 from beamdyn.common.drawing.text_width import LINE_HEIGHT, line_width, text_size, wrapped
 
-Frame = tuple[float, float, float, float]  # left, top, right, bottom
-_HEADING = 11.0  # size of the title's letters
-_SMALL = 8.5  # size of the key's letters
-_EDGE = 4.0  # between the frame and texts
-_MARGINS = (14.0, 36.0, 60.0, 90.0)  # between the frame and what is drawn, tried one by one
-_CROWDED = 30.0  # a label farther than this from its point asks for a larger margin
-_SWATCH, _SPACE = 16.0, 14.0  # length of a line in the key, and what follows its text
-_BAR = 0.22  # longest scale bar over the width of the frame
-_SMALL_DISC = 30.0  # radius up to which labels should not stand on it
-# Points that cover the handle of a point that can be moved, relative to it: 16 px of the page across.
+Frame = tuple[float, float, float, float]  # left, top, right and bottom on paper [pt]
+_HEADING = 11.0  # size of the title's letters [pt]
+_SMALL = 8.5  # size of the letters in the key [pt]
+_EDGE = 4.0  # distance between the frame and texts [pt]
+# Distances between the frame and the drawing, tried one after the other [pt].
+_MARGINS = (14.0, 36.0, 60.0, 90.0)
+_CROWDED = 30.0  # distance of a label from its point that asks for a larger margin [pt]
+_SWATCH, _SPACE = 16.0, 14.0  # length of a sample line in the key, and distance after its text [pt]
+_BAR = 0.22  # longest scale bar, over the width of the frame
+_SMALL_DISC = 30.0  # radius of a disc up to which labels stand beside it, not on it [pt]
+# Points that cover the handle of a movable point, relative to it: 16 px across on the page.
 _HANDLE = np.vstack([np.zeros((1, 2)), arc((0, 0), 4.5, 0, 2 * np.pi, 9)])
 # Points that cover the symbol of the ground below its point, over half its width and its height.
 _MARKS = np.array([(0.0, 0.0), (0.0, -2 / 17), (0.0, 0.5), (-0.7, 0.9), (0.0, 0.9), (0.7, 0.9)])
-_PADDING = (4.0, 1.0)  # around the measured text: letters are drawn with hints, and slanted
+_PADDING = (4.0, 1.0)  # room around a measured text [pt], as letters are drawn with hinting and slant
 
 
 @dataclass(frozen=True)
@@ -45,16 +46,16 @@ class Fit:
     top: float
 
     def to_paper(self, points: Any) -> np.ndarray:
-        """Points (..., 2) on paper."""
+        """Convert points (..., 2) of the drawing to paper."""
         return np.asarray(points, dtype=float) * (self.scale, -self.scale) + (self.left, self.top)
 
     def from_paper(self, places: Any) -> np.ndarray:
-        """Points (..., 2) in the drawing's coordinates."""
+        """Convert points (..., 2) on paper to the drawing's coordinates."""
         return (np.asarray(places, dtype=float) - (self.left, self.top)) / (self.scale, -self.scale)
 
     @classmethod
     def of(cls, low: np.ndarray, high: np.ndarray, frame: Frame, margin: float) -> Fit:
-        """The largest scale at which a rectangle of the drawing lies in the middle of a frame."""
+        """Fit a rectangle of the drawing into the middle of a frame, as large as a margin allows."""
         left, top, right, bottom = frame
         room = np.array([right - left, bottom - top])
         margin = min(margin, 0.3 * float(room.min()))
@@ -76,13 +77,13 @@ class Text(NamedTuple):
 
     @property
     def box(self) -> np.ndarray:
-        """Left, top, right, bottom."""
+        """Left, top, right and bottom of the box."""
         half = np.array(self.size) / 2
         return np.concatenate([self.centre - half, self.centre + half])
 
     @property
     def baselines(self) -> list[float]:
-        """Height of each line."""
+        """Height of each line's baseline on paper."""
         height = self.letters * LINE_HEIGHT
         first = float(self.centre[1]) - height * len(self.lines) / 2 + 0.5 * height + 0.36 * self.letters
         return [first + height * i for i in range(len(self.lines))]
@@ -98,7 +99,7 @@ class Rule(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """A drawing with a place for everything.
+    """A drawing with a place for everything in it.
 
     Parameters
     ----------
@@ -141,20 +142,22 @@ def arrange(drawing: Drawing, frame: Frame, fit: Fit | None = None) -> Layout:
     """
     inner, tries = _inner(drawing, frame), []
     low, high = drawing.extent()
-    for margin in _MARGINS[1:] if drawing.points else _MARGINS:  # points need room to be moved outwards
+    # Movable points need room outside the drawing.
+    for margin in _MARGINS[1:] if drawing.points else _MARGINS:
         found = fit or Fit.of(low, high, inner, margin)
         requests = [_request(label, found) for label in drawing.labels]
         places = place_labels(requests, _obstacles(drawing, inner, found))
         far = [1e3 if place is None else max(place.distance - _CROWDED, 0.0) for place in places]
         tries.append((sum(far), found, places))
-        if fit is not None or sum(far) == 0:  # else a larger margin, until no label is far from its point
+        # Otherwise a larger margin is tried, until no label is far from its point.
+        if fit is not None or sum(far) == 0:
             break
     _, chosen, places = min(tries, key=lambda each: each[0])
     return _composed(drawing, frame, chosen, places, fit)
 
 
 def follow(drawing: Drawing, frame: Frame, before: Layout) -> Layout:
-    """Lay out a drawing that has changed a little: its scale stays, and its labels keep their offsets.
+    """Lay out a slightly changed drawing at the same scale, with labels at their earlier offsets.
 
     All places are found anew only if a label would cover another one, a symbol or the frame.
     """
@@ -167,7 +170,7 @@ def follow(drawing: Drawing, frame: Frame, before: Layout) -> Layout:
 
 
 def _inner(drawing: Drawing, frame: Frame) -> Frame:
-    """The part of a frame that title and key leave free: colours, and a line more for scales."""
+    """Return the part of a frame that title and key leave free."""
     left, top, right, bottom = frame
     below = top + heading(drawing.title, right - left, bottom - top).height
     rows = bool(drawing.unit or drawing.newton) + len(_lines_of_key(drawing, frame, 0.0))
@@ -177,7 +180,7 @@ def _inner(drawing: Drawing, frame: Frame) -> Frame:
 def _composed(
     drawing: Drawing, frame: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> Layout:
-    """The layout of a drawing whose labels have these places."""
+    """Make the layout of a drawing whose labels have given places."""
     inner = _inner(drawing, frame)
     numbered, texts, rules, fit = _with_list(drawing, inner, fit, places, held)
     key_texts, key_rules = _key(drawing, frame, fit, inner[3])
@@ -199,7 +202,7 @@ def _request(label: Label, fit: Fit) -> LabelRequest:
 
 
 def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
-    """Lines that labels should not cover, and points that they must not cover."""
+    """Return the lines that labels should not cover, and the points that they must not cover."""
     segments, points = [np.empty((0, 4))], [np.empty((0, 2))]
     for shape in drawing.shapes:
         along = fit.to_paper(points_of_shape(shape))
@@ -212,7 +215,7 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
             heights = np.linspace(-0.8, 0.8, 9) * r
             half = np.sqrt(r**2 - heights**2)
             chords = np.stack([x - half, y + heights, x + half, y + heights], axis=-1)
-            segments.append(chords[: None if r < _SMALL_DISC else 0])  # labels stand beside a small one
+            segments.append(chords[: None if r < _SMALL_DISC else 0])  # labels stand beside a small disc
         closed = isinstance(shape, Outline) and shape.closed
         pairs = np.vstack([along, along[:1]]) if closed else along
         lines = np.concatenate([pairs[:-1], pairs[1:]], axis=1)
@@ -225,7 +228,7 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
     within = (left + _EDGE, top + _EDGE, right - _EDGE, bottom - _EDGE)
     lines, reach = np.vstack(segments), 3 * max(right - left, bottom - top)
     middle = np.tile([(left + right) / 2, (top + bottom) / 2], 2)
-    near = (np.abs(lines - middle) < reach).all(axis=1)  # not where a point has been moved far outside
+    near = (np.abs(lines - middle) < reach).all(axis=1)  # leaves out points that were moved far outside
     return Obstacles(within, lines[near], np.vstack(points))
 
 
@@ -233,7 +236,7 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
 
 
 class _Listed(NamedTuple):
-    """Indices of the labels in the list, the height at which it begins, fit and places of the drawing."""
+    """Layout with a list of labels: their indices, the height at which the list begins, fit and places."""
 
     labels: list[int]
     bottom: float
@@ -244,12 +247,12 @@ class _Listed(NamedTuple):
 def _with_list(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[tuple[str, ...], list[Text], list[Rule], Fit]:
-    """Texts and leaders of the labels; those without a place get a number, and a list at the bottom."""
+    """Make texts and leaders of labels; those without a place get a number, and a list at the bottom."""
     listed, bottom, fit, places = _make_room(drawing, inner, _Listed([], inner[3], fit, places), held)
     numbers = {i: f"({number})" for number, i in enumerate(listed, 1)}
     texts, rules = [], []
     for i, (label, place) in enumerate(zip(drawing.labels, places, strict=True)):
-        if place is None:  # a number for which there is no room either stands in the list alone
+        if place is None:  # a number for which there is no room, either, stands in the list alone
             continue
         shown = Label(numbers[i], label.anchors, label.role, size=_SMALL) if i in numbers else label
         size, lines = text_size(shown.text, shown.size, shown.symbol), tuple(shown.text.split("\n"))
@@ -264,9 +267,9 @@ def _with_list(
 
 
 def _make_room(drawing: Drawing, inner: Frame, first: _Listed, held: Fit | None) -> _Listed:
-    """Make the drawing smaller, so that a list of the labels without a place fits below it.
+    """Shrink the drawing until a list of the labels without a place fits below it.
 
-    In the smaller drawing further labels may be without a place: the list is made again with these.
+    In the smaller drawing further labels may lose their place: the list is made again until it has them all.
     """
     listed, bottom, fit, places = first
     more = [i for i, place in enumerate(places) if place is None]
@@ -277,7 +280,8 @@ def _make_room(drawing: Drawing, inner: Frame, first: _Listed, held: Fit | None)
         inside = (*inner[:3], bottom)
         fit = held or Fit.of(*drawing.extent(), inside, _MARGINS[-1])
         requests = [_request(label, fit) for label in drawing.labels]
-        for number, i in enumerate(listed, 1):  # a number in brackets takes the place of each that is listed
+        # In the drawing, a number in brackets stands for each label in the list.
+        for number, i in enumerate(listed, 1):
             width, height = text_size(f"({number})", _SMALL)
             requests[i] = LabelRequest((width + 2, height), requests[i].anchors, requests[i].towards, 10)
         places = place_labels(requests, _obstacles(drawing, inside, fit))
@@ -286,7 +290,7 @@ def _make_room(drawing: Drawing, inner: Frame, first: _Listed, held: Fit | None)
 
 
 def _list_lines(said: Sequence[str], inner: Frame, size: float) -> list[str]:
-    """Lines of the list, as many as fit on half the frame's height."""
+    """Break the list of labels into lines, as many as fit on half the frame's height."""
     words = "; ".join(f"({i}) {text}" for i, text in enumerate((s.replace("\n", ", ") for s in said), 1))
     lines = wrapped(words, inner[2] - inner[0] - 2 * _EDGE - _PADDING[0], size)
     most = max(1, int((inner[3] - inner[1]) / 2 / (size * LINE_HEIGHT)))
@@ -294,7 +298,7 @@ def _list_lines(said: Sequence[str], inner: Frame, size: float) -> list[str]:
 
 
 def _rows(lines: Sequence[str], left: float, top: float, size: float, role: str) -> Iterator[Text]:
-    """Lines of text below one another, from the left."""
+    """Yield lines of text below one another, aligned at the left."""
     for i, line in enumerate(lines):
         width, height = text_size(line, size)
         yield Text(
@@ -306,7 +310,7 @@ def _rows(lines: Sequence[str], left: float, top: float, size: float, role: str)
 
 
 class Heading(NamedTuple):
-    """Lines of a title, the size of their letters, and the height that they take."""
+    """Lines of a title, the size of their letters, and the height that they take [pt]."""
 
     lines: tuple[str, ...]
     letters: float
@@ -314,7 +318,7 @@ class Heading(NamedTuple):
 
 
 def heading(title: str, width: float, height: float) -> Heading:
-    """A title in a frame of this width, on a third of its height at most [pt]."""
+    """Fit a title into a frame's width [pt], on a third of its height at most."""
     if not title:
         return Heading((), NORMAL, 0.0)
     room = width - 2 * _EDGE - 2 * _PADDING[0]
@@ -347,18 +351,18 @@ def _entries(drawing: Drawing, frame: Frame, scale: float) -> list[_KeyItem]:
 
 
 def round_below(value: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten that is not above; its reciprocal is one of these, too."""
+    """Return the largest number 1, 2 or 5 times a power of ten that is not above a value."""
     power = 10.0 ** np.floor(np.log10(value))
     return float(power * max(factor for factor in (1, 2, 5) if factor * power <= value * (1 + 1e-9)))
 
 
 def length_text(size: float) -> str:
-    """A length [m] with its unit, in metres or millimetres."""
+    """Word a length [m] in metres or millimetres."""
     return f"{size:.4g} m" if size >= 1 else f"{1e3 * size:.4g} mm"
 
 
 def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tuple[float, _KeyItem]]]:
-    """Entries of each line of the key with their places from the left."""
+    """Break the key into lines: entries with their places from the left."""
     room = frame[2] - frame[0] - 2 * _EDGE
     lines: list[list[tuple[float, _KeyItem]]] = []
     at = np.inf
@@ -373,7 +377,7 @@ def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tup
 
 
 def _key(drawing: Drawing, frame: Frame, fit: Fit, top: float) -> tuple[list[Text], list[Rule]]:
-    """Texts and lines of the key below the drawing: meaning of colours, scales of lengths and forces."""
+    """Make texts and lines of the key below the drawing: meaning of colours, scales of lengths and forces."""
     texts, rules = [], []
     height = _SMALL * LINE_HEIGHT + 3
     for row, line in enumerate(_lines_of_key(drawing, frame, fit.scale)):

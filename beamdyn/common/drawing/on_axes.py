@@ -1,4 +1,4 @@
-"""Drawings on matplotlib's axes."""
+"""Drawings on matplotlib's axes, for files."""
 
 from __future__ import annotations
 
@@ -12,16 +12,14 @@ from beamdyn.common.drawing.shapes import Drawing
 from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
 from beamdyn.common.drawing.strokes import GROUND, HALO, Letters, Stroke, colour, letters_of, strokes_of
 from beamdyn.common.drawing.text_width import LINE_HEIGHT
-from beamdyn.common.results.pictures import new_figure
+from beamdyn.common.results.pictures import Axes, Figure, new_figure
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from matplotlib.patches import Patch
     from matplotlib.path import Path
 
-_INCH = 72.0  # [pt]
-_EDGE = 4.0  # between the frame and the title
+_INCH = 72.0  # length of an inch [pt]
+_EDGE = 4.0  # distance between the frame and the title [pt]
 
 
 def figure_of(rows: Rows, paper: Paper | None = None) -> Figure:
@@ -45,7 +43,7 @@ def figure_of(rows: Rows, paper: Paper | None = None) -> Figure:
 
 
 def draw_in(figure: Figure, box: tuple[float, float, float, float], drawing: Drawing) -> Axes:
-    """Draw in a part of a figure.
+    """Draw a drawing in a part of a figure.
 
     Parameters
     ----------
@@ -65,7 +63,7 @@ def draw_in(figure: Figure, box: tuple[float, float, float, float], drawing: Dra
 
 
 def draw_on(ax: Axes, drawing: Drawing, fit: Fit | None = None) -> Axes:
-    """Draw on axes, whose place in their figure must be final: labels are placed for their size.
+    """Draw a drawing on axes, whose place in their figure must be final: labels are placed for their size.
 
     Parameters
     ----------
@@ -96,26 +94,26 @@ def _fill(ax: Axes, layout: Layout) -> Axes:
                  pad=-_EDGE, va="top", linespacing=LINE_HEIGHT)  # fmt: skip
     for stroke in strokes_of(layout):
         _draw(ax, stroke, fit)
-    for text in layout.texts[len(above.lines) :]:  # the title's come first
+    for text in layout.texts[len(above.lines) :]:  # the first texts are those of the title
         for line in letters_of(text):
             _write(ax, line, fit)
     return ax
 
 
 def frame_of(ax: Axes) -> Frame:
-    """The frame (0, 0, width, height) of axes on paper [pt]."""
+    """Return the frame (0, 0, width, height) of axes on paper [pt]."""
     figure: Any = ax.figure
     width, height = ax.get_position().size * figure.figure.get_size_inches() * _INCH
     return 0.0, 0.0, float(width), float(height)
 
 
 def _literal(text: str) -> str:
-    """A text in which matplotlib reads no formula."""
+    """Escape a text, so that matplotlib reads no formula in it."""
     return text.replace("$", r"\$")
 
 
 def _draw(ax: Axes, stroke: Stroke, fit: Fit) -> Patch:
-    """Draw a path or a circle, whose points are taken from the paper to the axes."""
+    """Draw a path or a circle, whose points are converted from paper to the axes."""
     from matplotlib.colors import to_rgba
     from matplotlib.patches import Circle, PathPatch
 

@@ -1,4 +1,4 @@
-"""Elements of a drawing: outlines, discs, symbols, arrows and labels, in the coordinates of the machine."""
+"""Elements of a drawing: outlines, discs, symbols, arrows and labels, in the machine's coordinates."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-NORMAL = 9.0  # size of letters [pt]
+NORMAL = 9.0  # size of letters where a drawing asks for no other size [pt]
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class Outline:
 
 @dataclass(frozen=True, eq=False)
 class Disc:
-    """A circle; parameters as of `Outline`."""
+    """A circle; its parameters are as for `Outline`."""
 
     centre: Any
     radius: float
@@ -79,7 +79,7 @@ class Symbol:
 
 @dataclass(frozen=True, eq=False)
 class Arrow:
-    """An arrow.
+    """An arrow of a drawing.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class Arrow:
 
     @property
     def vector(self) -> np.ndarray:
-        """From foot to tip."""
+        """Vector from foot to tip."""
         return np.subtract(self.tip, self.foot)
 
 
@@ -140,7 +140,7 @@ class Label:
 
     @property
     def said(self) -> str:
-        """Symbol and text."""
+        """Symbol and text of the label."""
         return f"{self.symbol.replace('_', '')} {self.text}".strip()
 
 
@@ -149,7 +149,7 @@ DrawnShape = Outline | Disc | Symbol | Arrow
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """A drawing.
+    """A drawing: shapes and labels in the machine's coordinates.
 
     Parameters
     ----------
@@ -191,17 +191,20 @@ class Drawing:
 
     @property
     def legend(self) -> dict[str, str]:
-        """Meaning of the roles that are drawn."""
+        """Meaning of each role that is drawn."""
         drawn = {shape.role for shape in self.shapes}
         return {role: words for role, words in self.key.items() if role in drawn}
 
     @property
     def arrows(self) -> dict[str, np.ndarray]:
-        """Vectors of named arrows, in the drawing's unit."""
+        """Vectors of named arrows, in the drawing's unit, by name."""
         return {s.name: s.vector for s in self.shapes if isinstance(s, Arrow) and s.name}
 
     def extent(self) -> tuple[np.ndarray, np.ndarray]:
-        """Least and greatest coordinates (2,) of shapes and `room`; a unit square if there are none."""
+        """Compute least and greatest coordinates (2,) of shapes and `room`.
+
+        Of a unit square if there are none.
+        """
         room = np.reshape(np.asarray(self.room, dtype=float), (-1, 2))
         points = np.vstack([room, *map(points_of_shape, self.shapes)])
         points = points[np.isfinite(points).all(axis=1)]
@@ -211,7 +214,7 @@ class Drawing:
 
 
 def points_of_shape(shape: DrawnShape) -> np.ndarray:
-    """Points along a shape, shape (k, 2)."""
+    """Return points (k, 2) along a shape."""
     if isinstance(shape, Outline):
         return np.asarray(shape.points, dtype=float).reshape(-1, 2)
     if isinstance(shape, Disc):
@@ -222,6 +225,6 @@ def points_of_shape(shape: DrawnShape) -> np.ndarray:
 
 
 def arc(centre: Any, radius: float, start: float, end: float, count: int = 41) -> np.ndarray:
-    """Points (count, 2) of an arc between two angles from x towards y [rad]."""
+    """Return points (count, 2) of an arc between two angles from x towards y [rad]."""
     angle = np.linspace(start, end, count)
     return np.asarray(centre, dtype=float) + radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)

@@ -1,4 +1,4 @@
-"""Drawings beside one another, row by row, and the size of their paper; lengths in [pt]."""
+"""Sheets: drawings beside one another, row by row, and the size of their paper; lengths in [pt]."""
 
 from __future__ import annotations
 
@@ -10,44 +10,44 @@ from beamdyn.common.drawing.layout import Fit, Frame, Layout, arrange, follow
 from beamdyn.common.drawing.shapes import Drawing
 
 Rows = Sequence[Sequence[Drawing]]
-WIDTH = 680.0  # width of a sheet
-_LOWEST, _HIGHEST = 300.0, 600.0  # heights of a row
+WIDTH = 680.0  # width of a sheet [pt]
+_LOWEST, _HIGHEST = 300.0, 600.0  # least and largest height of a row [pt]
 _DETAIL = 0.65  # width of a detail over that of a drawing beside it
-_AROUND = 100.0  # room for title, key and labels around what is drawn
-_SQUARE = 320.0  # side of a drawing of its own [pt]
+_AROUND = 100.0  # room for title, key and labels around a drawing [pt]
+_SQUARE = 320.0  # side of a square for a single drawing [pt]
 
 
 @dataclass(frozen=True)
 class Paper:
-    """Width of a sheet, and the height of each of its rows."""
+    """Width of a sheet, and the height of each of its rows [pt]."""
 
     width: float
     heights: tuple[float, ...]
 
     @property
     def height(self) -> float:
-        """Height of all rows together."""
+        """Height of all rows together [pt]."""
         return sum(self.heights)
 
     @classmethod
     def of(cls, rows: Rows, width: float = WIDTH) -> Paper:
-        """Paper for drawings, with the height of each row chosen by its drawings, within bounds."""
+        """Make paper for drawings; the height of each row follows from its drawings, within bounds."""
         return cls(width, tuple(_height(row, width) for row in rows))
 
     @classmethod
     def of_squares(cls, rows: Rows) -> Paper:
-        """Paper with a square for each drawing, as for free-body diagrams."""
+        """Make paper with a square for each drawing, as for free-body diagrams."""
         return cls(_SQUARE * max(map(len, rows)), (_SQUARE,) * len(rows))
 
 
 def _widths(row: Sequence[Drawing], width: float) -> list[float]:
-    """Widths of the drawings of a row: even, but for details beside others."""
+    """Divide the width among the drawings of a row: evenly, but less for details beside others."""
     parts = [_DETAIL if drawing.own_scale else 1.0 for drawing in row]
     return [width * part / sum(parts) for part in parts]
 
 
 def _height(row: Sequence[Drawing], width: float) -> float:
-    """Height of a row of drawings on paper of this width."""
+    """Compute the height of a row of drawings on paper of a width."""
     highest = 0.0
     for drawing, own in zip(row, _widths(row, width), strict=True):
         low, high = drawing.extent()
@@ -57,13 +57,13 @@ def _height(row: Sequence[Drawing], width: float) -> float:
 
 
 def frames_of(row: Sequence[Drawing], paper: Paper, number: int) -> list[Frame]:
-    """Frames of the drawings of the row of this number, beside one another [pt]."""
+    """Return the frames of the drawings of row `number`, beside one another [pt]."""
     top, ends = sum(paper.heights[:number]), [0.0, *accumulate(_widths(row, paper.width))]
     return [(left, top, right, top + paper.heights[number]) for left, right in pairwise(ends)]
 
 
 def lay_out(rows: Rows, paper: Paper, before: Layout | None = None) -> list[Layout]:
-    """Layouts of drawings on paper; those of a row have one scale, but for details.
+    """Lay out drawings on paper; those of a row have one scale, except for details.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def lay_out(rows: Rows, paper: Paper, before: Layout | None = None) -> list[Layo
 
 
 def _at_scale(layout: Layout, scale: float) -> Layout:
-    """A layout at another scale, about the same middle of the drawing."""
+    """Lay out a drawing again at another scale, about the same middle."""
     low, high = layout.drawing.extent()
     middle = (low + high) / 2
     x, y = layout.fit.to_paper(middle)

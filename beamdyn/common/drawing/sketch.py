@@ -1,4 +1,4 @@
-"""Sketches that show what symbols mean: lengths, angles and forces marked on a schematic drawing."""
+"""Sketches that explain symbols: lengths, angles and forces marked on a schematic drawing."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Out
 from beamdyn.common.drawing.sheet import Paper, Rows
 from beamdyn.common.drawing.text_width import typeset
 
-Sketcher = Callable[[Mapping[str, str]], Rows]  # entries of a form in, drawings out
+Sketcher = Callable[[Mapping[str, str]], Rows]  # a function from the entries of a form to rows of drawings
 
-WIDTH = 272.0  # width of the paper [pt]: a form's, with letters about as large as its own
+WIDTH = 272.0  # width of the paper [pt], that of a form, so that letters are about as large as the form's
 _LETTERS = 11.0
-_LOWEST, _HIGHEST, _AROUND = 84.0, 200.0, 32.0  # heights of a row, and room around what is drawn [pt]
+# Least and largest height of a row, and room around the drawing [pt].
+_LOWEST, _HIGHEST, _AROUND = 84.0, 200.0, 32.0
 _THIN, _DASHED = 0.8, (4.0, 2.5)
-_ALONG = np.array([0.5, 0.36, 0.64, 0.24, 0.76])  # places beside a length where its symbol may stand
+_ALONG = np.array([0.5, 0.36, 0.64, 0.24, 0.76])  # shares of a length beside which its symbol may stand
 
 Point = tuple[float, float] | np.ndarray
 
@@ -39,33 +40,33 @@ class Sketch:
         self.room: list[Point] = []
 
     def add(self, *shapes: DrawnShape) -> None:
-        """Draw shapes."""
+        """Add shapes to the sketch."""
         self.shapes += shapes
 
     def say(self, symbol: str, at: Any, towards: Point = (0.0, 0.0), role: str = "text") -> None:
-        """Write a symbol, such as "alpha1", at one of some points."""
+        """Write a symbol, such as "alpha1", at one of several points."""
         way = float(towards[0]), float(towards[1])
         self.labels.append(Label("", at, role, way, typeset(symbol), priority=1, size=_LETTERS))
 
     def dashed(self, *points: Point) -> None:
-        """Draw a thin dashed line."""
+        """Draw a thin dashed line through points."""
         self.add(Outline(np.array(points, dtype=float), "axis", _THIN, _DASHED))
 
     def length(self, symbol: str, start: Point, end: Point, towards: Point) -> None:
-        """Mark the length between two points; its symbol stands beside it."""
+        """Mark the length between two points, with its symbol beside it."""
         ends = np.array([start, end], dtype=float)
         self.add(Arrow(ends[0], ends[1], "dimension", symbol, 1.0, both=True))
         self.say(symbol, ends[0] + _ALONG[:, None] * (ends[1] - ends[0]), towards)
 
     def angle(self, symbol: str, centre: Point, radius: float, start: float, end: float) -> None:
-        """Mark an angle from `start` to `end` [rad]; its symbol stands outside the arc."""
+        """Mark an angle from `start` to `end` [rad], with its symbol outside the arc."""
         way = arc(centre, radius, start, end)
         self.add(Outline(way[:-5], "dimension", 1.0), Arrow(way[-8], way[-1], "dimension", symbol, 1.0))
         middle = arc(centre, radius, start + 0.5 * (end - start), start + 0.3 * (end - start), 2)
         self.say(symbol, middle, middle[0] - np.asarray(centre, dtype=float))
 
     def arrow(self, symbol: str, foot: Point, tip: Point, role: str = "load") -> None:
-        """Draw a force or a direction of motion; its symbol stands at its free end."""
+        """Draw a force or a direction of motion, with its symbol at the free end."""
         ends = np.array([foot, tip], dtype=float)
         self.add(Arrow(ends[0], ends[1], role, symbol, 1.8))
         self.say(symbol, np.stack([ends[0], ends.mean(axis=0)]), ends[0] - ends[1], role)
@@ -77,16 +78,16 @@ class Sketch:
         self.say(symbol, way[[20, 12, 28]], way[20] - np.asarray(centre, dtype=float), role)
 
     def axis(self, at: Point) -> None:
-        """Mark an axis that is seen from its end."""
+        """Mark an axis that is seen along its direction."""
         self.add(Symbol("cross", at, "axis", 9.0))
 
     def drawing(self, title: str, words: str) -> Drawing:
-        """The drawing, with a title and what it shows in words."""
+        """Make the drawing, with a title and a description for screen readers."""
         return Drawing(tuple(self.shapes), tuple(self.labels), title, words, unit="", room=self.room)
 
 
 def wall(middle: Point, half: Point, back: Point) -> list[DrawnShape]:
-    """A wall through a point, hatched on one side: `half` is half of it, `back` a line of the hatching."""
+    """Draw a wall through a point, hatched on one side; `half` is half of it, `back` a hatching line."""
     at, way, behind = (np.asarray(each, dtype=float) for each in (middle, half, back))
     ends = np.array([at - way, at + way])
     ticks = ends[0] + np.linspace(0, 1, 6)[:, None] * (ends[1] - ends[0])
@@ -94,12 +95,12 @@ def wall(middle: Point, half: Point, back: Point) -> list[DrawnShape]:
 
 
 def symbols_in(rows: Rows) -> set[str]:
-    """The symbols that are written in drawings, as `typeset` makes them."""
+    """Return the symbols that are written in drawings, as `typeset` makes them."""
     return {label.symbol for row in rows for drawing in row for label in drawing.labels if label.symbol}
 
 
 def sketch_paper(rows: Rows) -> Paper:
-    """Paper for sketches: as wide as a form, and no higher than is needed."""
+    """Make paper for sketches, as wide as a form and no higher than needed."""
     return Paper(WIDTH, tuple(_height(row, WIDTH / len(row)) for row in rows))
 
 

@@ -1,6 +1,7 @@
-"""What is drawn of a layout: paths, circles and letters on paper, and their colours, for every kind of file.
+"""Strokes of a layout (paths, circles and letters on paper) and their colours, for every kind of file.
 
-Lengths are in [pt], from the top left of the paper.  A file writes these; it knows no shape of a machine.
+Lengths are in [pt], from the top left of the paper.  Writers of files draw these strokes, and know no shapes
+of machines.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ BLUE = Ink("#0072b2", "#62b8ee", "#0072b2", "#62b8ee")
 VERMILION = Ink("#c65000", "#ff9350", "#c65000", "#ff9350")
 GREEN = Ink("#00805c", "#3ecfa0", "#00805c", "#3ecfa0")
 GREY = Ink("#4d4d4d", "#c4c4c4", "#4d4d4d", "#c4c4c4")
-AREA = 0.7  # opacity of areas: what lies behind is seen
+AREA = 0.7  # opacity of areas, so that what lies behind can be seen
 INKS = {
     "paper": Ink("#ffffff", "#16191d", "#ffffff", "#16191d"),
     "text": Ink("#333333", "#dddddd"),
@@ -66,26 +67,26 @@ INKS = {
 
 
 def ink(role: str) -> Ink:
-    """Colours of a role; raises ValueError for one that is not known."""
+    """Return the colours of a role; raise ValueError for an unknown one."""
     if role not in INKS:
         raise ValueError(f"role is {role!r}; it must be one of {', '.join(INKS)}")
     return INKS[role]
 
 
 def colour(name: str) -> str:
-    """A colour on light ground: of a role's lines by its name, of its areas by "ROLE-area"."""
+    """Return a colour on light ground: of a role's lines by its name, of its areas by "ROLE-area"."""
     role = name.removesuffix("-area")
     return ink(role).line if name == role else ink(role).area
 
 
 GROUND = "paper-area"
-HALO = 2.6  # width of the ground's colour around letters
-_HEAD, _HALF = 9.0, 3.3  # length and half width of an arrow's head
-_THIN = 1.2  # lines of symbols
+HALO = 2.6  # width of the ground's colour around letters [pt]
+_HEAD, _HALF = 9.0, 3.3  # length and half width of an arrow's head [pt]
+_THIN = 1.2  # width of the lines of symbols [pt]
 
 
 class Pen(NamedTuple):
-    """How a line is drawn, and what is within it: names of colours (see `style.colour`), "" for nothing."""
+    """How a line is drawn and an area filled: names of colours (see `colour`), "" for nothing."""
 
     line: str = ""
     width: float = 1.0
@@ -105,7 +106,7 @@ class Polylines:
 
 @dataclass(frozen=True, eq=False)
 class Circle:
-    """A circle about a point."""
+    """A circle on paper."""
 
     centre: np.ndarray
     radius: float
@@ -127,7 +128,7 @@ Stroke = Polylines | Circle
 
 
 def strokes_of(layout: Layout) -> Iterator[Stroke]:
-    """All lines and areas, the lowest first."""
+    """Yield all lines and areas of a layout, the lowest first."""
     for shape in layout.drawing.shapes:
         yield from _SHAPES[type(shape)](shape, layout.fit)
     for rule in layout.rules:
@@ -135,7 +136,7 @@ def strokes_of(layout: Layout) -> Iterator[Stroke]:
 
 
 def letters_of(text: Text) -> list[Letters]:
-    """The lines of a text that have letters."""
+    """Return the lines of a text that have letters."""
     lines = zip(text.lines, text.baselines, strict=True)
     made = [
         Letters(text.symbol if i == 0 else "", line, float(text.centre[0]), y, text.letters, text.role)
@@ -145,7 +146,7 @@ def letters_of(text: Text) -> list[Letters]:
 
 
 def _pen(shape: Outline | Disc) -> Pen:
-    """The pen of a shape: a disc, which stands before what it carries, hides that."""
+    """Return the pen of a shape; discs are opaque, and hide what they carry."""
     line, fill = shape.role if shape.width else "", f"{shape.role}-area" if shape.filled else ""
     return Pen(line, shape.width, shape.dash, fill, AREA if isinstance(shape, Outline) else 1.0)
 
@@ -190,7 +191,7 @@ _ROUND: dict[str, Callable[[str], Pen]] = {
     "pin": lambda line: Pen(line, _THIN, fill=f"{line}-area"),
     "dot": lambda line: Pen(fill=line),
 }
-# Lines of the other symbols, of half width 1, whether these are closed, and their pen.
+# Symbols of straight lines, for half width 1: their points, whether the line is closed, and the pen.
 _ANGULAR: dict[str, tuple[Any, bool, Callable[[str], Pen]]] = {
     "ground": ([[(0, 0), (1, 1.7), (-1, 1.7)]], True, lambda line: Pen(fill=line)),
     "cross": ([[(-1, 0), (1, 0)], [(0, -1), (0, 1)]], False, lambda line: Pen(line, _THIN)),

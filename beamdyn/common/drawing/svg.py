@@ -18,7 +18,7 @@ _DARK = "@media (prefers-color-scheme: dark)"
 
 
 def svg_of(rows: Rows, paper: Paper | None = None) -> str:
-    """Drawings as the text of an SVG file, whose colours follow the reader's preference for light or dark.
+    """Return drawings as the text of an SVG file, with colours for the reader's preference, light or dark.
 
     Parameters
     ----------
@@ -38,13 +38,13 @@ def svg_of(rows: Rows, paper: Paper | None = None) -> str:
 
 
 def as_file(made: str) -> str:
-    """The text of a file with an SVG element, with colours of its own."""
+    """Return the text of a file with an SVG element, with its own colours."""
     style = f"<style>{page_colours('.machine')}{_DARK}{{{page_colours('.machine', dark=True)}}}</style>"
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{made.replace("<desc", f"{style}<desc", 1)}\n'
 
 
 def element(layouts: Sequence[Layout], paper: Paper) -> str:
-    """Layouts as an SVG element, in colours of the page: see `page_colours`."""
+    """Write layouts as an SVG element, in the colours of the page: see `page_colours`."""
     body = "".join(part for layout in layouts for part in _parts(layout))
     name = f"d{crc32(body.encode()):08x}"
     grips = "".join(_grip(name, *point, layouts[0].fit) for point in layouts[0].drawing.points.items())
@@ -61,14 +61,14 @@ def element(layouts: Sequence[Layout], paper: Paper) -> str:
 
 
 def _grip(name: str, point: str, at: Any, fit: Fit) -> str:
-    """An invisible circle around a point that can be moved."""
+    """Write an invisible circle around a movable point."""
     x, y = fit.to_paper(at)
     known = f"{name}-{'-'.join(point.split())}"
     return f'<circle id="{escape(known)}" class="grip" cx="{x:.4f}" cy="{y:.4f}" r="7" fill="none"/>'
 
 
 def page_colours(selector: str, dark: bool = False) -> str:
-    """Style rules that set the colours of the drawings in the elements of a CSS selector."""
+    """Write style rules that set the colours of the drawings in the elements of a CSS selector."""
     values = [
         (role, (i.dark_line, i.dark_area) if dark else (i.line, i.area)) for role, i in strokes.INKS.items()
     ]
@@ -77,7 +77,7 @@ def page_colours(selector: str, dark: bool = False) -> str:
 
 
 def _paint(name: str) -> str:
-    """A colour, as a variable of the page or file; where that is not set, the one on light ground."""
+    """Write a colour as a variable of the page or file, with its value on light ground as default."""
     return f"var(--{name},{strokes.colour(name)})"
 
 
@@ -108,7 +108,7 @@ def _stroke(stroke: strokes.Stroke) -> str:
 
 
 def _pen(pen: strokes.Pen) -> str:
-    """Attributes of a line and of what is within it."""
+    """Write the SVG attributes of a line, and of the area within it."""
     opacity = f' fill-opacity="{pen.opacity}"' if pen.fill and pen.opacity < 1 else ""
     dash = f' stroke-dasharray="{" ".join(f"{d:g}" for d in pen.dash)}"' if pen.dash else ""
     line = f' stroke="{_paint(pen.line)}" stroke-width="{pen.width:g}"{dash}' if pen.line else ""
@@ -120,7 +120,7 @@ def _pairs(points: np.ndarray) -> str:
 
 
 def _letters(line: strokes.Letters) -> str:
-    """A line of letters, drawn as wide as it was measured, whatever font there is."""
+    """Write a line of letters, with the width as measured, whatever the font."""
     symbol, words = line.symbol, line.words
     gap = " " if symbol and words else ""
     width = (symbol_width(symbol) + line_width(f"{gap}{words}")) * line.size

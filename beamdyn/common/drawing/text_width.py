@@ -33,7 +33,7 @@ def typeset(symbol: str) -> str:
 
 
 def symbol_html(symbol: str) -> str:
-    """A symbol, or a product of some such as "rho A", as HTML."""
+    """Return a symbol, or a product of symbols such as "rho A", as HTML."""
     return " ".join(map(_html, symbol.split(" ")))
 
 
@@ -43,15 +43,15 @@ def _html(symbol: str) -> str:
 
 
 FAMILY = "'DejaVu Sans', Verdana, sans-serif"
-LINE_HEIGHT = 1.22  # over the size of the letters
+LINE_HEIGHT = 1.22  # height of a line over the size of its letters
 SUBSCRIPT = 0.7  # size of a subscript over that of the letters
-_EM = 2048  # units of the font in the size of its letters
+_EM = 2048  # number of the font's units of length in the size of its letters
 
 
 @cache
 def _font() -> Any:
-    """The font, as large as its own units."""
-    from matplotlib import get_data_path  # here, because it is slow to import
+    """Load the font, in the size of its own units."""
+    from matplotlib import get_data_path  # imported here, because it is slow to import
     from matplotlib.ft2font import FT2Font
 
     font = FT2Font(f"{get_data_path()}/fonts/ttf/DejaVuSans.ttf")
@@ -61,25 +61,25 @@ def _font() -> Any:
 
 @cache
 def _letter_width(letter: str) -> float:
-    """Width of a letter over its size; one that the font lacks is as wide as high."""
+    """Return the width of a letter over its size; 1 for a letter that the font lacks."""
     known = _font().get_char_index(ord(letter))
     return _font().load_char(ord(letter)).linearHoriAdvance / 65536 / _EM if known else 1.0
 
 
 @lru_cache(maxsize=4096)
 def line_width(text: str) -> float:
-    """Width of a line over the size of its letters, without kerning."""
+    """Compute the width of a line over the size of its letters, without kerning."""
     return sum(map(_letter_width, text))
 
 
 def symbol_width(symbol: str) -> float:
-    """Width of a symbol such as "N_1", whose part behind the underscore is a subscript."""
+    """Compute the width of a symbol such as "N_1", whose part behind the underscore is a subscript."""
     letter, _, index = symbol.partition("_")
     return line_width(letter) + SUBSCRIPT * line_width(index)
 
 
 def text_size(text: str, size: float, symbol: str = "") -> tuple[float, float]:
-    """Width and height of a text of one or more lines, behind a symbol in the first.
+    """Compute width and height of a text of one or more lines, with a symbol before the first.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def text_size(text: str, size: float, symbol: str = "") -> tuple[float, float]:
     size : float
         Size of its letters [pt].
     symbol : str
-        Symbol before it.
+        Symbol written before the words.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def text_size(text: str, size: float, symbol: str = "") -> tuple[float, float]:
 
 
 def wrapped(text: str, width: float, size: float) -> list[str]:
-    """Lines of a text that are no wider than `width` [pt]; a word that is wider is cut.
+    """Break a text into lines no wider than `width` [pt]; a word that is wider is cut.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def wrapped(text: str, width: float, size: float) -> list[str]:
 
 
 def shortened(text: str, width: float, size: float) -> str:
-    """A text, cut to a width [pt] with dots at its end if it is longer, in letters of a size [pt]."""
+    """Cut a text with dots at its end if it is wider than a width [pt], in letters of a size [pt]."""
     if size * line_width(text) <= width:
         return text
     dots = line_width("…")

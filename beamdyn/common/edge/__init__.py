@@ -1,1 +1,1 @@
-"""Shared by files, commands and screens: units, descriptions of inputs, tables, HTML reports, exit codes."""
+"""Parts shared by files, commands and screens: units, descriptions of inputs, tables, reports, exit codes."""

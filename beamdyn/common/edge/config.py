@@ -1,4 +1,4 @@
-"""Files with units: TOML in, core objects out, all mistakes in one message."""
+"""Reading of TOML files with units into core objects; all mistakes are reported in one message."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pydantic import BaseModel, ValidationError, model_validator
 from pydantic_core import ErrorDetails
 
 from beamdyn.common.edge.file_words import say
-from beamdyn.common.edge.inputs import Section, describe
+from beamdyn.common.edge.inputs import Input, Section, describe
 from beamdyn.common.edge.units import InvalidInput, quantity, show, unit_as_written
 from beamdyn.common.edge.wording import in_millimetres
 from beamdyn.common.inputs.checks import InvalidValue
@@ -29,7 +29,7 @@ Model = TypeVar("Model", bound=BaseModel)
 
 
 class ConfigError(ValueError):
-    """A TOML file with mistakes: all of them in one message.
+    """Raised for a TOML file with mistakes; the message lists all of them.
 
     Parameters
     ----------
@@ -61,30 +61,30 @@ class ConfigError(ValueError):
 
 
 class MissingValue(InvalidValue):
-    """A value that must be given and is not: only `field` and `bound` are said."""
+    """Raised for a value that must be given and is not; the message names field and bound."""
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """The message, as a medium words it."""
+        """Return the message, in the words of a medium."""
         return f"{self.field}: missing; {worded(self.bound, word)}"
 
 
 class CoreSection(Section):
-    """A table that stands for a core object; what the core refuses is a mistake in the table."""
+    """A table of a file that stands for a core object; what the core refuses is a mistake in the table."""
 
     @cached_property
     def core(self) -> Any:
-        """The core object."""
+        """Make the core object."""
         raise NotImplementedError
 
     @model_validator(mode="after")
     def _core_accepts(self) -> CoreSection:
-        with np.errstate(all="ignore"):  # numpy's warnings are no message for a mistyped exponent
+        with np.errstate(all="ignore"):  # numpy's warnings would not help a person who mistyped an exponent
             self.core  # noqa: B018
         return self
 
 
 def read(path: str | PathLike[str]) -> str:
-    """Text of a file.
+    """Read the text of a file.
 
     Raises
     ------
@@ -95,17 +95,18 @@ def read(path: str | PathLike[str]) -> str:
     """
     file = as_path("path", path, "a TOML file")
     try:
-        return file.read_text(encoding="utf-8-sig")  # with or without the mark that editors prepend
+        # With or without the byte order mark that some editors prepend.
+        return file.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise ConfigError(str(path), ["there is no such file; check the name and the folder"]) from None
     except OSError as error:
         raise ConfigError(str(path), [f"it cannot be read ({error.strerror}); give a TOML file"]) from None
-    except ValueError:  # not UTF-8, or a name that no file can have
+    except ValueError:  # the content is not UTF-8, or the name is none that a file can have
         raise ConfigError(str(path), ["it is not text in UTF-8; give a TOML file"]) from None
 
 
 def parse(text: str, source: str) -> dict[str, Any]:
-    """Tables of TOML text.
+    """Parse TOML text into tables.
 
     Raises
     ------
@@ -152,8 +153,8 @@ def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model
         raise ConfigError(source, [*mistakes], [*mistakes.values()]) from None
 
 
-_MOST_KEYS = 24  # known keys that a message lists
-_LONGEST_KEY = 60  # length of the longest key that is shown whole
+_MOST_KEYS = 24  # largest number of known keys that a message lists
+_LONGEST_KEY = 60  # length of the longest key that a message shows whole
 _WORDS = {
     "bool_type": "give true or false",
     "dict_type": "give a table",
@@ -163,7 +164,7 @@ _WORDS = {
 
 
 def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
-    """One mistake as a sentence, and the path of the input that it is about."""
+    """Word one mistake as a sentence, and return the path of the input that it is about."""
     loc, context, given = error["loc"], error.get("ctx", {}), error["input"]
     place, path = _path(loc), _path(loc, indices=False)
     match error["type"]:
@@ -173,7 +174,7 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
                 (f"give the {i.help.removeprefix('the ')}" for i in known if i.path == path),
                 "give as many values as stations",
             )
-            how = f"give a table [{path}]" if any(i.path.startswith(f"{path}.") for i in known) else how
+            how = _missing_table(path, known) or how
             return str(MissingValue(place, None, how)), path
         case "extra_forbidden":
             return _unknown(model, loc), path
@@ -195,8 +196,20 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
     return str(InvalidInput(place, given, bound)), path
 
 
+def _missing_table(path: str, known: Sequence[Input]) -> str:
+    """Word that a table is missing, with the keys that it needs if it is of one kind; "" for a key."""
+    keys = [each for each in known if each.path.startswith(f"{path}.")]
+    needed = [each.name for each in keys if each.required and each.path == f"{path}.{each.name}"]
+    of_one_kind = needed and len({each.section for each in keys}) == 1
+    with_keys = f" with {', '.join(needed)}" if of_one_kind else ""
+    return f"give a table [{path}]{with_keys}" if keys else ""
+
+
 def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: Any) -> tuple[str, str]:
-    """The refusal of a number or a core object, in terms of the file's keys and as the file writes it."""
+    """Word the refusal of a number or a core object with the file's keys and value.
+
+    Return the input's path.
+    """
     if isinstance(reason, InvalidInput) and not reason.field:
         return say(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
@@ -207,7 +220,7 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
 
 
 def _place_in(field: str, key: str) -> str:
-    """The path of an input with what a field of the core adds to it: ".values[1]", or which of several."""
+    """Return the path of an input with what a core field's name adds to it, such as ".values[1]"."""
     parts = (field.removeprefix(name) for name in _wholes(field) if f".{key}".endswith(f".{name}"))
     if (part := next(parts, None)) is not None:
         return key + part
@@ -215,14 +228,14 @@ def _place_in(field: str, key: str) -> str:
 
 
 def _wholes(field: str) -> Iterator[str]:
-    """The field and what it is a part of: "width.values[1]", "width.values" and "width"."""
+    """Yield a field and the wholes it is part of: "width.values[1]", "width.values" and "width"."""
     yield field
     if (cut := max(field.rfind("."), field.rfind("["))) > 0:
         yield from _wholes(field[:cut])
 
 
 def _found(given: Any, place: str) -> Any:
-    """The entry at a place of a table, such as "width.values[1]"; None if there is nothing."""
+    """Return the entry at a place of a table, such as "width.values[1]"; None if there is nothing."""
     for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", place):
         try:
             given = given[int(index) if index else key]
@@ -233,7 +246,7 @@ def _found(given: Any, place: str) -> Any:
 
 @contextmanager
 def in_words_of_file(model: type[BaseModel], tables: Mapping[str, Any], source: str) -> Iterator[None]:
-    """Within it, a refusal by the core of a value that a file gives names its key, and the value as written.
+    """Reword refusals by the core of values that a file gives: with the key, and the value as written.
 
     Raises
     ------
@@ -249,14 +262,14 @@ def in_words_of_file(model: type[BaseModel], tables: Mapping[str, Any], source: 
 
 
 def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
-    """The message of a refusal by the core, with the place in a file and the value as the file has it."""
+    """Word a refusal by the core, with the place in a file and the value as the file has it."""
     kind = type(refusal) if isinstance(refusal, InvalidInput | MissingValue) else InvalidInput
     said: dict[str, Any] = vars(refusal if given is not None else in_millimetres(refusal)) | {"field": place}
     return say(_as_written(kind(**said), given))
 
 
 def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
-    """The refusal with the value as the file writes it, and the limit in the same unit."""
+    """Return the refusal with the value as the file writes it, and the limit in the same unit."""
     value, unit = refusal.value, refusal.unit
     if isinstance(given, list) and isinstance(value, tuple | list):
         return replace(refusal, value=given)
@@ -264,19 +277,19 @@ def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
         return refusal
     try:
         if not math.isclose(abs(quantity(given, unit)), abs(value), rel_tol=1e-9):
-            return refusal  # about another number, which was made from this one
-    except InvalidInput:  # such as a length that stands for a fraction
+            return refusal  # the refusal is about another number, which was computed from the one in the file
+    except InvalidInput:  # other units, such as a length that stands for a fraction
         return replace(refusal, value=given)
     return replace(refusal.in_unit(*unit_as_written(given, unit)), value=given)
 
 
 def _without_indices(field: str) -> str:
-    """The field as inputs are described, the same for each table of a list: "point_mass.mass"."""
+    """Return a field as inputs are described, without indices of tables in a list: "point_mass.mass"."""
     return re.sub(r"\[\d+\]", "", field)
 
 
 def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
-    """The path of the input that an error of the core is about; empty if it is about no single one.
+    """Return the path of the input that an error of the core is about; empty if there is no single one.
 
     Parameters
     ----------
@@ -294,7 +307,7 @@ def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
 
 
 def _path_ending(field: str, paths: list[str], table: str) -> str:
-    """The one path within a table that ends with a field; empty if there are none or several."""
+    """Return the only path within a table that ends with a field; empty if there are none or several."""
     exact = f"{table}.{field}".lstrip(".")
     ends = {path for path in paths if field and f".{path}".endswith(f".{field}")}
     inside = {path for path in ends if path.startswith(table and f"{table}.")}
@@ -302,16 +315,16 @@ def _path_ending(field: str, paths: list[str], table: str) -> str:
 
 
 def _path(loc: Iterable[int | str], indices: bool = True) -> str:
-    """A TOML path; pydantic's tags of alternatives, in angle brackets, are left out."""
+    """Return a TOML path; pydantic's tags of alternatives, in angle brackets, are left out."""
     keys = (part for part in loc if not str(part).startswith("<"))
     parts = [f".{key}" if isinstance(key, str) else f"[{key}]" * indices for key in keys]
     return "".join(parts).removeprefix(".")
 
 
 def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Sentence on an unknown key: where it belongs, or the nearest known key, or all known ones."""
+    """Word an unknown key: where it belongs, or the nearest known key, or all known ones."""
     table, key, known = _path(loc[:-1], indices=False), str(loc[-1]), describe(model)
-    prefix = table and f"{table}."  # whatever the key begins with
+    prefix = table and f"{table}."  # empty at the top level, so that every key begins with it
     inside = [i.path.removeprefix(prefix).partition(".")[0] for i in known if i.path.startswith(prefix)]
     names = [*dict.fromkeys(inside)] or ["polynomial", "stations", "values"]
     kinds = [show(i.choices[0]) for i in known if i.path == f"{table}.kind" and key in i.section.model_fields]

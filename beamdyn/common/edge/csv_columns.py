@@ -1,4 +1,4 @@
-"""Tables in CSV files: a line of heads with units, such as "r [m], EI flap [N m2]", then lines of numbers."""
+"""Reading of CSV files: a line of heads with units, such as "r [m], EI flap [N m2]", then numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from beamdyn.common.edge.data_text import DataText, as_decimal, number_at, plain
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.units import InvalidInput, usual_unit
 
-_INNER = r"(?:[^\[\]()]|\([^\[\]()]*\))*"  # a unit, such as (m/s2)2/Hz
+_INNER = r"(?:[^\[\]()]|\([^\[\]()]*\))*"  # a unit in brackets, such as (m/s2)2/Hz
 _HEAD = re.compile(rf"\s*([^\[\]()]*?)\s*(?:[\[(]({_INNER})[\])]\s*)?")
 _DELIMITERS = ",;\t"
 
@@ -66,7 +66,7 @@ class CsvTable:
     columns: tuple[CsvColumn, ...]
 
     def named(self) -> dict[str, CsvColumn]:
-        """The columns whose quantity is known, by its name."""
+        """Return the columns whose quantity is known, by its name."""
         return {column.name: column for column in self.columns if column.name}
 
 
@@ -77,7 +77,7 @@ def read_csv(
     may_lack: Collection[str] = (),
     least_rows: int = 2,
 ) -> CsvTable:
-    """Read a CSV file.
+    """Read a CSV file with heads and units.
 
     Lines that are empty or begin with # or ! are comments.  Columns are separated by commas, semicolons
     or tabs.
@@ -104,7 +104,8 @@ def read_csv(
     if not lines:
         raise text.lacking("expected a line of heads with their units in brackets")
     head_line, *rest = lines
-    outside = re.sub(r"[\[(][^\])]*[\])]", "", text.lines[head_line - 1])  # of the brackets of units
+    # The head line without the brackets of units, in which separators do not count.
+    outside = re.sub(r"[\[(][^\])]*[\])]", "", text.lines[head_line - 1])
     delimiter = max(_DELIMITERS, key=outside.count)
     heads = [_read_head(text, head_line, cell, known, names) for cell in _cells(text, head_line, delimiter)]
     plain = [head.name or plain_name(head.head) for head in heads]
@@ -125,14 +126,14 @@ def read_csv(
 def _cells(text: DataText, line: int, delimiter: str) -> list[str]:
     try:
         (cells,) = csv.reader([text.lines[line - 1]], delimiter=delimiter, skipinitialspace=True)
-    except csv.Error:  # the one that there is of a single line of text
+    except csv.Error:  # a cell longer than csv's limit, as in a long line of text without separators
         most = csv.field_size_limit()
         raise text.refusal(line, f"a cell has more than {most} characters; give a number in each") from None
     return [cell.strip() for cell in cells]
 
 
 class _ColumnHead(NamedTuple):
-    """A head as it is written, the name of its quantity (empty if not known), its unit, and the quantity."""
+    """A head as written: name of its quantity (empty if not known), unit, and the quantity itself."""
 
     head: str
     name: str
@@ -143,11 +144,11 @@ class _ColumnHead(NamedTuple):
 def _read_head(
     text: DataText, line: int, cell: str, known: Mapping[str, Quantity], names: Mapping[str, str]
 ) -> _ColumnHead:
-    """Read a head, and refuse a unit that is missing, unknown or of another kind."""
+    """Read a head; refuse a unit that is missing, unknown or of another kind."""
     match = _HEAD.fullmatch(cell)
     if match is None or not match[1] or to_number(cell) is not None:
         raise text.refusal(line, f"expected a head with its unit in brackets, found {quote(cell)}")
-    # Units in the spelling read elsewhere: N m2 for Nm^2 and N-m^2, as in files on wind turbines.
+    # Spelling of units in wind-turbine files: N m2 is read for Nm^2 and N-m^2.
     head, unit = match[1], re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", " ", (match[2] or "").strip())
     unit, plain = re.sub(r"\b([kMG]?N)m(?![a-z])", r"\1 m", unit), plain_name(head)
     if not (name := names.get(plain, "")):
@@ -170,7 +171,7 @@ def _read_head(
 
 
 def _row_of_cells(text: DataText, line: int, cells: list[str], heads: list[_ColumnHead]) -> list[str]:
-    """The cells of a line, one a head."""
+    """Return the cells of a line, one for each head."""
     if len(cells) == len(heads) + 1 and not cells[-1]:  # some programs end each line with a separator
         cells = cells[:-1]
     if len(cells) != len(heads):
@@ -181,7 +182,7 @@ def _row_of_cells(text: DataText, line: int, cells: list[str], heads: list[_Colu
 def _read_row(
     text: DataText, line: int, cells: list[str], heads: list[_ColumnHead], may_lack: Collection[str]
 ) -> list[float]:
-    """Numbers of a line: in SI where the column is known."""
+    """Read the numbers of a line, in SI where the column is known."""
     row = []
     for cell, (head, name, unit, quantity) in zip(cells, heads, strict=True):
         if not cell and name in may_lack:
@@ -197,7 +198,7 @@ def _read_row(
 
 
 def check_places(table: CsvTable, name: str) -> None:
-    """Refuse positions that do not ascend; a position given twice with other values is a jump.
+    """Refuse positions that do not ascend; a position given twice is a jump of other values.
 
     Parameters
     ----------

@@ -18,11 +18,12 @@ from beamdyn.common.edge.units import show
 from beamdyn.common.inputs.checks import MOST
 from beamdyn.common.results.files import as_path
 
-# 1.0D+03 and 1.0+03 are 1.0e+03 to FORTRAN.
+# FORTRAN reads 1.0D+03 and 1.0+03 as 1.0e+03.
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:(?:[eEdDqQ]|(?=[+-]))([+-]?\d+))?", re.ASCII)
 _WORD = re.compile(r"'[^']*'|\"[^\"]*\"|[^\s,]+")
-_MOST_BYTES = 20_000_000  # a deck has some ten thousand
-_ENCODINGS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}  # encodings by the mark at the start of a file
+_MOST_BYTES = 20_000_000  # largest number of bytes of a file; an input deck has some ten thousand
+# Encodings by the byte order mark at the start of a file.
+_ENCODINGS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
 
 @dataclass(frozen=True)
@@ -41,25 +42,25 @@ class DataText:
     lines: tuple[str, ...]
 
     def refusal(self, line: int, sentence: str) -> ConfigError:
-        """The error with a sentence about a line."""
+        """Return the error with a sentence about a line."""
         return ConfigError(str(self.path), [f"line {line}: {sentence}"])
 
     def lacking(self, sentence: str) -> ConfigError:
-        """The error with a sentence about something that the file lacks."""
+        """Return the error with a sentence about something that the file lacks."""
         return self.refusal(len(self.lines), f"the file ends here, {sentence}")
 
     def is_comment(self, line: int) -> bool:
-        """Whether a line is empty or a comment: one that begins with # or !."""
+        """Whether a line is empty, or a comment that begins with # or !."""
         plain = self.lines[line - 1].lstrip()
         return not plain or plain[0] in "#!"
 
     def words(self, line: int) -> list[str]:
-        """The words of a line as FORTRAN separates them, by blanks, tabs and commas; quotes keep together."""
+        """Split a line into words as FORTRAN does, at blanks, tabs and commas; quoted text stays together."""
         return _WORD.findall(self.lines[line - 1])
 
 
 def read_data(path: str | PathLike[str]) -> DataText:
-    """Read a text file.
+    """Read a text file line by line.
 
     Its comments may be in any encoding: what is not UTF-8 is read as Latin-1.
 
@@ -98,7 +99,7 @@ def read_data(path: str | PathLike[str]) -> DataText:
 
 
 def named_file(path: str | PathLike[str], key: str, name: str) -> Path:
-    """The file that a key of another file names, beside it.
+    """Return the path of a file that a key of another file names, relative to that file.
 
     Raises
     ------
@@ -116,7 +117,7 @@ def named_file(path: str | PathLike[str], key: str, name: str) -> Path:
 
 
 def to_number(word: str) -> float | None:
-    """The number that FORTRAN reads in a word, such as 1.0D+03; None if there is none, or it is too large."""
+    """Read a word as FORTRAN reads a number, such as 1.0D+03; None if it is none, or too large."""
     match = _NUMBER.fullmatch(word)
     if match is None:
         return None
@@ -125,14 +126,14 @@ def to_number(word: str) -> float | None:
 
 
 def as_decimal(word: str) -> str:
-    """The word of a number with e in place of FORTRAN's letters."""
+    """Rewrite the word of a number with e in place of FORTRAN's letters."""
     match = _NUMBER.fullmatch(word)
     assert match is not None
     return match[1] + (f"e{match[2]}" if match[2] else "")
 
 
 def number_at(text: DataText, line: int, word: str, name: str) -> float:
-    """The number in a word, or an error that says what was expected."""
+    """Return the number in a word; raise an error that says what was expected."""
     number, advice = to_number(word), ""
     if number is not None and abs(number) <= MOST:
         return number
@@ -149,7 +150,7 @@ def number_at(text: DataText, line: int, word: str, name: str) -> float:
 
 
 def quote(word: str) -> str:
-    """A word in a message, shortened where it is long."""
+    """Quote a word in a message, shortened if it is long."""
     return f"'{word if len(word) <= 40 else word[:37] + '...'}'"
 
 
@@ -176,7 +177,7 @@ class NamedValue:
 
 
 def plain_name(name: str) -> str:
-    """A name in lower case, without brackets, colons, underscores and blanks, which programs vary."""
+    """Return a name in lower case without brackets, colons, underscores and blanks, which programs vary."""
     return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
@@ -210,13 +211,13 @@ def named_values(text: DataText, names: Collection[str]) -> dict[str, NamedValue
                 there = f"{words[1].rstrip(':')} stands in line {found[key].line}, too"
                 raise text.refusal(line, f"{there}; expected each name once")
             found[key] = NamedValue(words[1].rstrip(":"), words[0].strip("'\""), line)
-        elif keys and keys[0] in names:  # perhaps a line whose value is missing, perhaps a comment
+        elif keys and keys[0] in names:  # either a line whose value is missing, or a comment
             bare.setdefault(keys[0], NamedValue(words[0].rstrip(":"), "", line))
     return bare | found
 
 
 def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapping[str, str]) -> None:
-    """Refuse a file that lacks names or their values.
+    """Refuse a file that lacks some names, or their values.
 
     Parameters
     ----------
@@ -241,18 +242,18 @@ def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapp
 
 
 def named_number(text: DataText, named: NamedValue) -> float:
-    """The number of a named value."""
+    """Return the number of a named value."""
     return number_at(text, named.line, named.word, named.name)
 
 
 def check_named(text: DataText, named: NamedValue, good: bool, wanted: str) -> None:
-    """Refuse a named value unless it is good; `wanted` says what was expected."""
+    """Refuse a named value unless `good` is true; `wanted` says what was expected."""
     if not good:
         raise text.refusal(named.line, f"expected {named.name} {wanted}, found {quote(named.word)}")
 
 
 def named_count(text: DataText, named: NamedValue, least: int = 2) -> int:
-    """The whole number of a named value, which must not be less than `least`."""
+    """Return the whole number of a named value, which must not be less than `least`."""
     number = named_number(text, named)
     if number != int(number) or number < least:
         said = f"expected a whole number of {least} or more for {named.name}, found {quote(named.word)}"

@@ -1,4 +1,4 @@
-"""Tables of files, made from core classes whose fields are described, so that no input is described twice."""
+"""Tables of files, made from core classes with described fields, so that no input is described twice."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class MadeSection(CoreSection):
 
     @property
     def given(self) -> dict[str, Any]:
-        """The arguments of the core class."""
+        """Return the arguments of the core class."""
         given: dict[str, Any] = {}
         for name, key in self.key_of.items():
             value, (argument, pair, _) = getattr(self, key), name.partition("[")
@@ -37,7 +37,7 @@ class MadeSection(CoreSection):
 
     @cached_property
     def core(self) -> Any:
-        """The core object."""
+        """Make the core object."""
         with of_file(self.key_of):
             return self.made(**self.given)
 
@@ -48,7 +48,7 @@ Base = TypeVar("Base", bound=MadeSection)
 def section_of(
     made: type, kind: str = "", tables: Mapping[type, Any] | None = None, base: type[Base] = MadeSection
 ) -> type[Base]:
-    """Make the table of a core class.
+    """Make the class of the table of a core class.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def section_of(
 def fields_of(
     made: Callable[..., Any], tables: Mapping[type, Any] | None = None, leave_out: Collection[str] = ()
 ) -> dict[str, Any]:
-    """Annotations and defaults, by key, of the table of a core class or function.
+    """Return annotations and defaults, by key, for the table of a core class or function.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def fields_of(
 
 
 def one_of_kinds(sections: Mapping[str, type[MadeSection]]) -> Any:
-    """The annotation of a table with alternatives, told apart by the key ``kind``; default: the first."""
+    """Return the annotation of a table with alternatives, told apart by ``kind``; by default the first."""
     usual, *_ = sections
     tagged = (Annotated[section, Tag(f"<{kind}>")] for kind, section in sections.items())
 
@@ -119,7 +119,7 @@ def one_of_kinds(sections: Mapping[str, type[MadeSection]]) -> Any:
 
 
 def _arguments(made: Callable[..., Any]) -> dict[str, Any]:
-    """Annotations by argument; a pair whose numbers are described apart has two, such as "tip[0]"."""
+    """Return annotations by argument; a pair whose numbers are described apart has two, such as "tip[0]"."""
     hints, arguments = get_type_hints(made, include_extras=True), {}
     for name in signature(made).parameters:
         parts = get_args(hints.get(name))
@@ -131,13 +131,13 @@ def _arguments(made: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _key(name: str, hint: Any) -> str:
-    """Key of an argument; those of a pair "tip" are "tip_x" and "tip_y" unless others are described."""
+    """Return the key of an argument: "tip_x" and "tip_y" for a pair "tip", unless described otherwise."""
     described = description(hint)
     return described.key if described and described.key else name.replace("[0]", "_x").replace("[1]", "_y")
 
 
 def _refuse_truth(given: object) -> object:
-    """Refuse a truth value where the number that equals it can be chosen."""
+    """Refuse a truth value, which would otherwise pass for the number that equals it."""
     if isinstance(given, bool):
         raise InvalidInput("", given, "give a number")
     return given
@@ -148,7 +148,7 @@ def _is_described(hint: Any) -> bool:
 
 
 def _annotation(hint: Any, tables: Mapping[type, Any]) -> Any:
-    """The annotation for pydantic that corresponds to one of the core."""
+    """Return the annotation for pydantic that corresponds to an annotation of the core's classes."""
     kinds, described = kinds_of(hint), description(hint)
     kind, parts = kinds[0], get_args(kinds[0])
     read: Any

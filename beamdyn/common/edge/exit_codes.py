@@ -1,4 +1,4 @@
-"""Running a command: exit codes and messages of failure."""
+"""Running of commands: their exit codes, and messages of failure."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ Shell = Literal["bash", "zsh", "fish"]
 
 
 def examples(*lines: str) -> str:
-    """The end of a command's help: examples, which can be typed as they stand, and the exit codes."""
+    """Write the end of a command's help: examples that can be typed as they are, and the exit codes."""
     head = _EXAMPLES.format("Example" if len(lines) == 1 else "Examples")
     return "\n\n".join([head, *(f"`{line}`" for line in lines), EXIT_CODES])
 
 
 class NoAnswer(Exception):
-    """The model has no answer; the message says why, and where."""
+    """Raised when the model has no answer; the message says why, and where."""
 
 
 class Interrupted(Exception):
-    """Ctrl-C or SIGTERM; the message says what is done and how to go on."""
+    """Raised by Ctrl-C or SIGTERM; the message says what is done and how to go on."""
 
 
 def add_completion(app: App) -> None:
-    """Give a program's command line the command `completion`.
+    """Add the command `completion` to the command line of a program.
 
     Parameters
     ----------
@@ -105,7 +105,8 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     except CycloptsError as error:
         return _complain(name, say_mistake(app, error, given), BAD_INPUT)
     except (NoAnswer, ArithmeticError, ValueError, OSError) as error:
-        from beamdyn.common.edge.refusal_words import as_typed, is_no_answer  # with numpy, which help lacks
+        # Imported here, since it loads numpy, which help does without.
+        from beamdyn.common.edge.refusal_words import as_typed, is_no_answer
 
         if isinstance(error, NoAnswer) or is_no_answer(error):
             return _complain(name, f"no answer: {as_typed(error)}", NO_ANSWER)
@@ -115,8 +116,8 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
 
 @contextmanager
 def _terminated_as_interrupted() -> Iterator[None]:
-    """Within it, a request to terminate (SIGTERM), as of a scheduler, ends the command as Ctrl-C does."""
-    if threading.current_thread() is not threading.main_thread():  # where no handler can be set
+    """Let a request to terminate (SIGTERM), as from a scheduler, end the command as Ctrl-C does."""
+    if threading.current_thread() is not threading.main_thread():  # only the main thread can set a handler
         yield
         return
 
@@ -132,18 +133,19 @@ def _terminated_as_interrupted() -> Iterator[None]:
 
 @contextmanager
 def _as_sentences(name: str) -> Iterator[None]:
-    """Within it, warnings of the packages are printed as sentences, without their place in the code."""
+    """Print warnings of the packages as sentences, without their place in the code."""
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
         if category is UserWarning:
             warn(name, [str(message)])
-        else:  # a warning of another package, meant for developers
+        else:  # a warning of another package, for developers
             usual(message, category, *place)
 
     with warnings.catch_warnings():
-        warnings.simplefilter("default", UserWarning)  # whatever filters are set outside
-        warnings.simplefilter("ignore", OutsideLinearTheory)  # a command prints the warnings of its result
+        warnings.simplefilter("default", UserWarning)  # independent of filters set outside
+        # A command prints the warnings of its result itself.
+        warnings.simplefilter("ignore", OutsideLinearTheory)
         warnings.showwarning = show
         yield
 

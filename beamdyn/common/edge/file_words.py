@@ -1,4 +1,4 @@
-"""Sentences in the terms of files and commands, and mistakes in typing; a module without slow imports."""
+"""Wording of sentences and typing mistakes in the terms of files and commands, without slow imports."""
 
 from __future__ import annotations
 
@@ -8,21 +8,29 @@ from contextvars import ContextVar
 from itertools import pairwise
 from typing import Any, Literal, get_args, get_origin
 
-from cyclopts import App, CoercionError, CycloptsError, UnknownOptionError, UnusedCliTokensError
+from cyclopts import (
+    App,
+    CoercionError,
+    CycloptsError,
+    RepeatArgumentError,
+    UnknownOptionError,
+    UnusedCliTokensError,
+)
 
-from beamdyn.common.words import Named, Part, Setting, Words, worded
+from beamdyn.common.words import InputName, Named, Part, Setting, Words, worded
 
 TYPED: ContextVar[tuple[App, Sequence[str]] | None] = ContextVar("typed", default=None)
 
 # Command lines that cannot be understood -------------------------------------------------------------
 
 
-_OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}  # names under which options are looked for
+# Names that people use for options, and the options' own names.
+_OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}
 _KINDS: dict[Any, str] = {float: "a number", int: "a whole number", bool: "a value of a switch"}
 
 
 def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
-    """Say in a sentence what cannot be understood, and where help is.
+    """Word what cannot be understood in a command line, and where help is.
 
     Parameters
     ----------
@@ -38,10 +46,12 @@ def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
         said = "A dash names no file: give a name, such as /dev/stdin or /dev/stdout where the system has it."
     elif isinstance(error, UnknownOptionError):
         said = _with_meant_option(error, given)
+    elif isinstance(error, RepeatArgumentError) and error.token:
+        said = f"{error.token.keyword} is given twice; give it once, with all values where it takes several."
     elif isinstance(error, UnusedCliTokensError) and error.unused_tokens:
         said = _say_too_many(error.unused_tokens, given)
     elif isinstance(error, CoercionError) and error.target_type in _KINDS and error.token and not error.msg:
-        option = error.token.keyword  # the oldest cyclopts that we admit omits what a switch is given
+        option = error.token.keyword  # the oldest supported cyclopts leaves out the text given to a switch
         joined = next((text.partition("=")[2] for text in given if text.startswith(f"{option}=")), "")
         wanted = _KINDS[error.target_type]
         said = f'Invalid value for {option}: "{error.token.value or joined}" is not {wanted}.'
@@ -51,13 +61,13 @@ def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
 
 
 def check_names(given: Sequence[str]) -> None:
-    """Refuse an empty word in place of a file's name, which would be the current folder."""
+    """Refuse an empty word in place of a file's name, which would mean the current folder."""
     if any(not word.strip() and not before.startswith("-") for before, word in pairwise(given)):
         raise ValueError('one of the names is empty (""); give the name of a file')
 
 
 def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
-    """Say which words belong to no option, most often a unit that the shell has parted from its number."""
+    """Word which words belong to no option; most often the shell has parted a unit from its number."""
     first = next((i for i, word in enumerate(given) if word == words[0]), 0)
     option, value = given[first - 2 : first] if first > 1 else ("", "")
     example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""
@@ -66,7 +76,7 @@ def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
 
 
 def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
-    """Say that an option is unknown, and which is meant: by a known other name, or by the value given."""
+    """Word that an option is unknown, and which is meant: by another known name, or by its value."""
     option = (error.token.keyword or error.token.value).partition("=")[0]
     if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
         return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"
@@ -82,7 +92,7 @@ _HEADING: ContextVar[Callable[[str], str] | None] = ContextVar("heading", defaul
 
 
 def in_files(text: str, units: Any = None) -> str:
-    """A text in the terms of files and commands, and with its speeds in a display unit, if units are given.
+    """Word a text in the terms of files and commands; its speeds in a display unit, if units are given.
 
     `Physics(shear=True)` becomes "[physics] shear = true", on a form "Physics: shear = true".
     """
@@ -90,16 +100,18 @@ def in_files(text: str, units: Any = None) -> str:
 
 
 def word(part: Part, units: Any = None) -> str:
-    """A part of a text in the terms of files, or of the form that asks."""
+    """Word a part of a text in the terms of files, or of the form that asks."""
     if isinstance(part, Setting) and (heading := _HEADING.get()) is not None:
         return part.on_form(heading(part.table))
+    if isinstance(part, InputName) and _HEADING.get() is not None:
+        return part.on_form
     if isinstance(part, Named):
         return part.elsewhere
-    return str(part) if units is None else part.in_units(units)
+    return str(part) if units is None else in_files(part.in_units(units))
 
 
 def say(error: Exception) -> str:
-    """The message of an error in the terms of files and commands."""
+    """Return the message of an error in the terms of files and commands."""
     composed, (first, *_) = getattr(error, "worded", None), (*error.args, "")
     if composed is not None:
         return composed(word)
@@ -108,7 +120,7 @@ def say(error: Exception) -> str:
 
 @contextmanager
 def on_form(heading: Callable[[str], str]) -> Iterator[None]:
-    """Within it, settings are called as a form does that has them under these headings of tables."""
+    """Name settings in this context as a form does, with these headings of its tables."""
     before = _HEADING.set(heading)
     try:
         yield

@@ -1,4 +1,4 @@
-"""Reports: inputs, results, drawings and warnings in one HTML file that needs no other."""
+"""HTML reports: inputs, results, drawings and warnings in one file that needs no other."""
 
 from __future__ import annotations
 
@@ -41,19 +41,23 @@ class Question:
 
     @classmethod
     def of(cls, command: str, file: object, text: str, **options: object) -> Question:
-        """Make one from the text of the file; options that are None, False or empty are left out."""
+        """Make the report's record of a command: its words, its options and the text of its file.
+
+        Options that are None, False or an empty tuple are left out.
+        """
         words = [*command.split(), str(file)]
         for name, value in options.items():
             option = f"--{name.replace('_', '-')}"
             for given in value if isinstance(value, tuple) else (value,):
                 if given is not None and given is not False:
                     words += [option] if given is True else [option, str(given)]
-        line = "".join(c if c.isprintable() else " " for c in shlex.join(words))  # as a comment
+        # One line, so that it can be a comment.
+        line = "".join(c if c.isprintable() else " " for c in shlex.join(words))
         return cls(f"{command}: {file}", f"# {line}\n\n{text}")
 
     @classmethod
     def on_file(cls, command: str, file: str | Path, **options: object) -> Question:
-        """Make one from a file; raises `ConfigError` if it cannot be read."""
+        """Make a question from a file; raise `ConfigError` if the file cannot be read."""
         return cls.of(command, file, read(file), **options)
 
 
@@ -79,7 +83,7 @@ class Report:
     more: Sequence[tuple[str, Callable[[], str]]] = ()
 
     def page(self, draw: Callable[[], Figure] | None) -> str:
-        """The report as HTML, with a main drawing unless `draw` is None."""
+        """Write the report as HTML, with a main drawing unless `draw` is None."""
         tables = html(self.tables) + further(self.more)
         title = self.question.title
         made = "" if draw is None else picture(drawing(draw), title)
@@ -88,12 +92,12 @@ class Report:
 
 
 def further(parts: Iterable[tuple[str, Callable[[], str]]]) -> str:
-    """Further parts, each under its title, in HTML."""
+    """Write further parts as HTML, each under its title."""
     return "\n".join(f"<h3>{escape(title)}</h3>{make()}" for title, make in parts)
 
 
 def report_page(title: str, inputs: str, parts: Iterable[tuple[str, Sequence[str], str, str]]) -> str:
-    """The HTML page of a report, which needs no other file.
+    """Return the HTML page of a report, which needs no other file.
 
     Parameters
     ----------

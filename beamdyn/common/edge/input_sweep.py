@@ -1,4 +1,4 @@
-"""Results over inputs of a file that are varied, as an object and as columns; designs solved one by one."""
+"""Sweeps: results over varied inputs of a file, also as columns; designs can be solved one by one."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from beamdyn.common.results.columns import Column, Columns, column_named
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.result import Result
 
-MOST_ONE_BY_ONE = 2000  # designs, which take minutes
-_CHUNK = 16  # designs of a task
-_MOST_NAMED = 4  # results in a line
+MOST_ONE_BY_ONE = 2000  # largest number of designs that are solved one by one, which takes minutes
+_CHUNK = 16  # number of designs in a task
+_MOST_NAMED = 4  # largest number of results that a line of text names
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Output:
     scale: float = 1.0
 
     def shown(self, result: Any) -> Any:
-        """Value or values in an answer, in the unit shown."""
+        """Return the value or values of an answer, in the unit shown."""
         return np.asarray(self.of(result)) / self.scale
 
     @property
@@ -96,25 +96,28 @@ class InputSweep(Result):
     unanswered: tuple[tuple[int, str], ...] = ()
 
     def headline(self) -> Iterator[str]:
-        """The results, the number of designs and the varied inputs in one line; see `Result.headline`."""
+        """Yield results, number of designs and inputs, the parts of the result's one-line summary.
+
+        See `Result.headline`.
+        """
         shown = ", ".join(self.results[:_MOST_NAMED]) + ", ..." * (len(self.results) > _MOST_NAMED)
         yield f"{shown} of {counted(self.designs.count, 'design')} over {', '.join(self.inputs)}"
         yield warned(self.warnings)
 
     @property
     def designs(self) -> Designs:
-        """The designs, with values in the units given."""
+        """The designs, with values in the units in which they were given."""
         each = zip(self.inputs, self.units, self.values, strict=True)
         return Designs([VariedInput(*one) for one in each], self.combine)
 
 
 def chosen(outputs: Sequence[Output], names: str, option: str = "--what") -> list[Output]:
-    """The outputs with the names in a text, separated by commas, each once.
+    """Return the outputs whose names stand in a text, separated by commas, each once.
 
     Parameters
     ----------
     outputs : sequence of Output
-        Those that there are.
+        All outputs of the design.
     names : str
         The names.
     option : str
@@ -189,7 +192,7 @@ def swept(
 
 
 def sweep_csv(swept: InputSweep) -> Columns:
-    """Inputs and results of each design, a row each, and why some have none."""
+    """Make columns with a row for each design: inputs, results, and why some have none."""
     rows, why = [*sweep_rows(swept)], dict(swept.refused)
     cells = [*zip(*rows, strict=True)]
     named = zip(columns(swept), cells, strict=True)
@@ -206,7 +209,7 @@ def sweep_rows(swept: InputSweep) -> Iterator[list[float]]:
 
 
 def columns(swept: InputSweep) -> list[tuple[str, str]]:
-    """Names and units of the columns: inputs, then results."""
+    """Return names and units of the columns: inputs, then results."""
     inputs = ((path.partition(".")[2] or path).replace(".", "_") for path in swept.inputs)
     return [*zip(inputs, swept.units, strict=True), *zip(swept.results, swept.result_units, strict=True)]
 
@@ -225,7 +228,7 @@ class SolvedCases:
     refused : tuple of int
         Designs without an answer, counted within the task.
     why : tuple of str
-        Why each of these has none.
+        Reason why each of these designs has no answer.
     """
 
     values: np.ndarray
@@ -235,7 +238,7 @@ class SolvedCases:
 
 @dataclass(frozen=True)
 class CaseTask:
-    """Some designs of a sweep, which a worker solves one by one.
+    """A task: some designs of a sweep, which a worker solves one by one.
 
     Parameters
     ----------
@@ -295,7 +298,7 @@ def one_by_one(
     designs, run = designs_of(axes, combine), run or TaskRunner()
     results, refusals = np.full((len(outputs), designs.count), np.nan), dict[int, str]()
     names = tuple(output.name for output in outputs)
-    sent = []  # without classes of tables: one that was made while a file was read does not unpickle
+    sent = []  # axes without classes of tables: a class made while a file was read cannot be unpickled
     for axis in axes:
         entry = replace(axis.input, section=Section)
         if isinstance(entry, Coordinate):
@@ -322,7 +325,7 @@ def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> Solv
     task : CaseTask
         The designs.
     outputs : sequence of Output
-        The outputs that there are.
+        The outputs that designs have.
     solve : callable
         Returns the answer of a design, given as tables.
     """
@@ -339,12 +342,12 @@ def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> Solv
 
 
 def placed(tables: Mapping[str, Any], axes: Sequence[Axis], values: Sequence[float]) -> dict[str, Any]:
-    """The tables of a design with other values [the axes' units] of some inputs."""
+    """Return the tables of a design with other values [units of the axes] of some inputs."""
     given = {
         axis.input.path: f"{value:.15g} {axis.unit}" if axis.unit else float(value)
         for axis, value in zip(axes, values, strict=True)
     }
-    missing: dict[str, Any] = {}  # points of which one coordinate is given, with their defaults
+    missing: dict[str, Any] = {}  # points of which one coordinate is varied, with the defaults of both
     for axis in axes:
         if isinstance(axis.input, Coordinate):
             of, there = axis.input.of, part_at(tables, axis.input.of.path)

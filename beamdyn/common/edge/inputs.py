@@ -1,4 +1,4 @@
-"""Tables of inputs: each input is described once, for files, command line, forms and documentation."""
+"""Tables of inputs: each input is described once, for files, commands, forms and documentation."""
 
 from __future__ import annotations
 
@@ -36,9 +36,8 @@ class Section(BaseModel):
         return (_empty_section, (type(self).__module__, known), self.__getstate__())
 
 
-_SECTIONS: dict[
-    str, type[Section]
-] = {}  # the class of each name and keys: the first, of several that are alike
+# The class of each table, by its name and keys; of several equal classes the first one made.
+_SECTIONS: dict[str, type[Section]] = {}
 
 
 def _known_as(section: type[Section]) -> str:
@@ -46,14 +45,14 @@ def _known_as(section: type[Section]) -> str:
 
 
 def _empty_section(module: str, known: str) -> Section:
-    """A section without its values, for pickle to fill."""
-    import_module(module)  # its import defines what is missing, unless that has been imported before
+    """Make a section without values, which pickle fills."""
+    import_module(module)  # the import defines the class, unless the module was imported before
     section = _SECTIONS[known]
     return section.__new__(section)
 
 
 class SiNumber(float):
-    """A number in SI that a file has given with its unit elsewhere, such as in the head of a column."""
+    """A number in SI whose unit a file states elsewhere, such as in the head of a column."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +63,8 @@ class Quantity(Described):
     value in SI.
     """
 
-    further_units: ClassVar[tuple[str, ...]] = ()  # taken besides those of its kind
+    # Units that are accepted besides those of the quantity's kind.
+    further_units: ClassVar[tuple[str, ...]] = ()
 
     def parse(self, given: object) -> float:
         """Convert to SI and check the bounds.
@@ -77,7 +77,7 @@ class Quantity(Described):
         return self.within_bounds(given, self.convert(given))
 
     def convert(self, given: object) -> float:
-        """Convert to SI without checking the bounds."""
+        """Convert a value to SI without checking bounds."""
         if isinstance(given, SiNumber):
             return float(given)
         if self.infinite and given in ("inf", math.inf):
@@ -92,11 +92,11 @@ class Quantity(Described):
         raise InvalidInput("", given, "give a finite number, without a unit or quotes")
 
     def in_unit(self, value: float, unit: str) -> float:
-        """A value in SI as a number of another unit; raises `InvalidInput` for one of another kind."""
+        """Convert a value in SI to another unit; raise `InvalidInput` for a unit of another kind."""
         return value / quantity(f"1 {unit}", self.unit)
 
     def within_bounds(self, given: object, value: float) -> float:
-        """Refuse a value out of bounds."""
+        """Return a value; refuse one that is out of bounds."""
         if not self.is_within_bounds(value):
             unit, convert = unit_as_written(given, self.unit)
             raise InvalidInput(
@@ -114,7 +114,7 @@ class SlopeQuantity(Quantity):
     further_units = ("%",)
 
     def convert(self, given: object) -> float:
-        """The angle [rad]."""
+        """Convert the angle, or the rise in %, to rad."""
         if isinstance(given, str) and given.rstrip().endswith("%"):
             try:
                 return math.atan(real("", float(given.rstrip()[:-1])) / 100)
@@ -123,19 +123,19 @@ class SlopeQuantity(Quantity):
         return super().convert(given)
 
     def in_unit(self, value: float, unit: str) -> float:
-        """The angle in another unit, or as a rise in %."""
+        """Convert the angle [rad] to another unit, or to a rise in %."""
         return 100 * math.tan(value) if unit == "%" else super().in_unit(value, unit)
 
 
 @dataclass(frozen=True)
 class WholeNumber(Quantity):
-    """A whole number, such as how many of something, that stays one."""
+    """A whole number, such as a count, which stays an int."""
 
     _: KW_ONLY
     whole: bool = True
 
     def parse(self, given: object) -> int:
-        """Take the number and check the bounds; see `Quantity.parse`."""
+        """Read the number and check its bounds; see `Quantity.parse`."""
         return int(super().parse(given))
 
 
@@ -146,13 +146,13 @@ class Lines(Quantity):
     unit: str = ""
 
     def parse(self, given: object) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """Take a text."""
+        """Return a text unchanged; refuse anything else."""
         if not isinstance(given, str):
             raise InvalidInput("", given, "give a text")
         return given
 
 
-_SHOWN = {"rad": "deg"}  # units that people read, by that in SI
+_SHOWN = {"rad": "deg"}  # units in which values are shown to people, by the SI unit
 
 
 @dataclass(frozen=True)
@@ -192,7 +192,7 @@ class Input:
 
     @property
     def help(self) -> str:
-        """Meaning, unit, bounds and what inf stands for, in one phrase; angles in the degrees of files."""
+        """Meaning, unit, bounds and meaning of inf, in one phrase; angles in degrees, as in files."""
         q = self.quantity
         shown = _SHOWN.get(q.unit, q.unit)
         bounds = q.bounds if shown == q.unit else q.bounds_as(lambda bound: q.in_unit(bound, shown))
@@ -209,7 +209,7 @@ def _each(_: str, models: Sequence[type[BaseModel]]) -> Sequence[type[BaseModel]
 
 
 def describe(model: type[BaseModel], prefix: str = "", choose: Choice = _each) -> list[Input]:
-    """All inputs of a model and of the models within it, in their order.
+    """List all inputs of a model and of the models within it, in their order.
 
     Parameters
     ----------
@@ -229,26 +229,26 @@ def describe(model: type[BaseModel], prefix: str = "", choose: Choice = _each) -
     return _describe_all(model, prefix, choose) if chosen else [*_described(model, prefix)]
 
 
-@lru_cache(maxsize=256)  # forms ask for them at each change of a field
+@lru_cache(maxsize=256)  # cached, as forms ask at each change of a field
 def _described(model: type[BaseModel], prefix: str) -> tuple[Input, ...]:
     return tuple(_describe_all(model, prefix, _each))
 
 
 @lru_cache(maxsize=256)
 def _has_alternatives(model: type[BaseModel]) -> bool:
-    """Whether a table within it has several models."""
+    """Whether a table within the model has several alternative models."""
     tables = [_models_of(field) for field in model.model_fields.values()]
     return any(len(models) > 1 or any(map(_has_alternatives, models)) for models in tables)
 
 
 def _models_of(field: FieldInfo) -> list[type[BaseModel]]:
-    """The models that describe a table."""
+    """Return the models that describe a table."""
     parts = [*parts_of(field.annotation), *field.metadata]
     return [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
 
 
 def _describe_all(model: type[BaseModel], prefix: str, choose: Choice) -> list[Input]:
-    """Inputs of a model, those of the tables within it in their places."""
+    """List the inputs of a model; those of tables within it take the table's place."""
     found: list[Input] = []
     for name, field in model.model_fields.items():
         path = prefix + name
@@ -266,7 +266,7 @@ def _describe_all(model: type[BaseModel], prefix: str, choose: Choice) -> list[I
 
 
 def parts_of(annotation: Any) -> Iterator[Any]:
-    """An annotation and its parts, recursively."""
+    """Yield an annotation and its parts, recursively."""
     yield annotation
     for part in get_args(annotation):
         yield from parts_of(part)

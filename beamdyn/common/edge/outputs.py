@@ -1,4 +1,4 @@
-"""Files that commands write."""
+"""Files that commands write: options, checks before anything is computed, and writing."""
 
 from __future__ import annotations
 
@@ -14,19 +14,16 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import Parameter
 
 from beamdyn.common.results.files import check_writable, same_file, write_text
-from beamdyn.common.results.pictures import figure_of, save_figure
+from beamdyn.common.results.pictures import Axes, Figure, figure_of, save_figure
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from beamdyn.common.edge.html_report import Report
     from beamdyn.common.results.result import Result
 
 
 Flag = Annotated[bool, Parameter(negative="")]
 
-_TABLES = (".csv", ".tsv", ".txt", "")  # suffixes of tables; without a suffix the name promises nothing
+_TABLES = (".csv", ".tsv", ".txt", "")  # suffixes of tables; a name without a suffix may be a table
 _SUFFIXES = {
     "json": (".json", ".txt", ""),
     "csv": _TABLES,
@@ -42,7 +39,7 @@ _SUFFIXES = {
 
 
 class Files:
-    """Files to write: what all kinds of commands do with them."""
+    """Files to write, with what all kinds of commands need of them."""
 
     plot: Path | None = None
     json: Path | None = None
@@ -173,8 +170,9 @@ def write(
 
 
 def write_table(path: Path, rows: Iterable[Sequence[object]]) -> None:
-    """Write rows as text, separated by commas, in a file named .tsv by tabs."""
-    from beamdyn.common.edge.rendering import csv_text  # with numpy, which help does without
+    """Write rows as text, separated by commas, or by tabs in a file named .tsv."""
+    # Imported here, since it loads numpy, which help does without.
+    from beamdyn.common.edge.rendering import csv_text
 
     write_text(path, csv_text(rows, "\t" if path.suffix.lower() == ".tsv" else ","))
 
@@ -196,10 +194,10 @@ def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
 
 
 def _named_by(scene: Path) -> list[Path]:
-    """The files of stations or records that a scene file names; none if it is not a scene file."""
+    """Return the files of stations or records that a scene file names; empty for other files."""
     try:
         tables = tomllib.loads(scene.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError):  # the message comes when the file is read
+    except (OSError, ValueError, RecursionError):  # the error is reported when the file is read
         return []
     named = []
     for *path, key in (("beam", "stations"), ("motion", "file"), ("motion", "rotation", "file")):

@@ -18,25 +18,26 @@ from rich.text import Text
 if TYPE_CHECKING:
     from rich.progress import Progress
 
-SILENCE = 1.0  # time after which the line appears [s]
+SILENCE = 1.0  # computing time after which the progress line appears [s]
 
-_LINE: ContextVar[_ProgressLine | None] = ContextVar("line", default=None)  # the present line
+# The progress line that is in use in this context; None if there is none.
+_LINE: ContextVar[_ProgressLine | None] = ContextVar("line", default=None)
 
 
 class Pace:
-    """How long the remaining steps take, by those of the last half of the time: steps may be ever shorter."""
+    """Estimate of the remaining time from the steps in the last half of the time, as steps may get faster."""
 
     def __init__(self) -> None:
         self._times: list[float] = []
         self._counts: list[int] = []
 
     def note(self, now: float, done: int) -> None:
-        """Note at a time [s] how many steps are done."""
+        """Store how many steps are done at a time [s]."""
         self._times.append(now)
         self._counts.append(done)
 
     def left(self, now: float, total: int) -> float | None:
-        """Time [s] that the rest of so many steps takes; None as long as none has been seen to end."""
+        """Return the time [s] that the remaining steps take; None until a step has ended."""
         if not self._times or self._counts[-1] == self._counts[0]:
             return None
         last, done = self._times[-1], self._counts[-1]
@@ -46,7 +47,7 @@ class Pace:
 
 
 class _ProgressLine:
-    """The line: the elapsed time, and a bar with the remaining time where steps are counted."""
+    """The progress line: the elapsed time, and a bar with the remaining time where steps are counted."""
 
     def __init__(self, what: str) -> None:
         self._what, self._began = what, time.monotonic()
@@ -54,13 +55,13 @@ class _ProgressLine:
         self._lock, self._timer, self._shown = RLock(), None, None
 
     def begin(self) -> None:
-        """Show it after a second, unless it is hidden before."""
+        """Show the line after a second, unless it is hidden before."""
         self._timer = Timer(SILENCE, self._show)
         self._timer.daemon = True
         self._timer.start()
 
     def hide(self) -> None:
-        """Take it from the screen; counts are kept."""
+        """Remove the line from the screen; keep the counts."""
         with self._lock:
             timer, self._timer = self._timer, None
             shown, self._shown = self._shown, None
@@ -70,7 +71,7 @@ class _ProgressLine:
             shown.stop()
 
     def count(self, done: int, total: int) -> None:
-        """Set the numbers of steps that are done, and of all."""
+        """Store the number of steps that are done, and of all."""
         with self._lock:
             self._done, self._total = done, total
             self._pace.note(time.monotonic(), done)
@@ -79,7 +80,7 @@ class _ProgressLine:
 
     def _show(self) -> None:
         with self._lock:
-            if self._timer is None:  # hidden while this waited
+            if self._timer is None:  # the line was hidden while this waited
                 return
             self._shown = _bar(self._pace)
             self._shown.add_task(self._what, total=None, count="")
@@ -96,7 +97,7 @@ def _bar(pace: Pace) -> Progress:
     from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn, TimeElapsedColumn
 
     class Remaining(ProgressColumn):
-        """The remaining time, where steps are counted."""
+        """A column with the remaining time, where steps are counted."""
 
         max_refresh = 0.5
 
@@ -109,7 +110,7 @@ def _bar(pace: Pace) -> Progress:
 
     counted = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[count]}")
     screen = Console(stderr=True, force_terminal=True)
-    # Redirected, a standard output that goes to a file would be printed on the terminal.
+    # Without this, output redirected to a file would be printed on the terminal.
     return Progress(
         *counted, TimeElapsedColumn(), Remaining(),
         console=screen, transient=True, redirect_stdout=False, redirect_stderr=False,
@@ -118,7 +119,7 @@ def _bar(pace: Pace) -> Progress:
 
 @contextmanager
 def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
-    """Within it, a line shows progress on standard error, if that is a terminal.
+    """Show progress on standard error during the work inside, if that is a terminal.
 
     Parameters
     ----------
@@ -146,7 +147,7 @@ def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Within it no line is shown, so that something can be printed; it returns after a second."""
+    """Hide the progress line in this context, so that something can be printed; it returns after a second."""
     line = _LINE.get()
     if line is None:
         yield

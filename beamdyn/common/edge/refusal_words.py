@@ -1,4 +1,4 @@
-"""Refusals of the core in the words of the command that was typed."""
+"""Wording of refusals by the core in terms of the command that was typed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from beamdyn.common.edge.units import InvalidInput, last_quantity
 from beamdyn.common.edge.wording import in_unit_of
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, reason_of
 
-# What commands call arguments of the core, beyond options of the same name.
+# Names that commands have for arguments of the core, apart from options of the same name.
 _ELSEWHERE = {
     "combine": "--together",
     "psd.values": "--psd, values",
@@ -29,16 +29,16 @@ _ELSEWHERE = {
     "t_end": "--window",
 }
 _PHYSICS = "physics."
-_USUAL = {"rad": "1 deg"}  # in whose unit numbers are said that were not typed
+_USUAL = {"rad": "1 deg"}  # units for numbers that were not typed themselves
 
 
 def is_no_answer(error: Exception) -> bool:
-    """Whether the model has no answer to what was asked, as where a linear system is singular."""
+    """Whether an error means that the model has no answer, as for a singular linear system."""
     return isinstance(error, ArithmeticError | NoModelAnswer | LinAlgError)
 
 
 def as_typed(error: Exception) -> str:
-    """The message of a refusal with the options and keys that were typed, its number in their unit.
+    """Word a refusal with the options and keys that were typed, and its number in their unit.
 
     "tolerance = 5: give ..." becomes "--tolerance = 5: give ..." where the command has that option.
     """
@@ -50,7 +50,7 @@ def as_typed(error: Exception) -> str:
     text = _text_of(name)
     named = replace(error, field=name, other=_name(error.other))
     if error.field == "combine" or (error.field == "scene.motion" and error.value):
-        return f"{name}: {named.advice(word)}"  # what was typed has no value of its own
+        return f"{name}: {named.advice(word)}"  # the value in the message is not one that was typed
     if error.field == "scene.motion":
         return f"{name}: missing: {named.advice(word)}"
     if isinstance(error.value, float) and error.unit:
@@ -62,14 +62,14 @@ def as_typed(error: Exception) -> str:
 
 
 def _says_more(text: str, value: object) -> bool:
-    """Whether what was typed says more than its value: a quantity with a unit, or what is made of a text."""
+    """Whether a typed text says more than its value: a unit, or what is made of the text."""
     if isinstance(value, float | int):
         return text == last_quantity(text) != f"{value:g}"
     return isinstance(value, tuple) or is_dataclass(value)
 
 
 def _name(field: str) -> str:
-    """What the command that is run calls an argument of the core."""
+    """Return the option or key of the running command that stands for an argument of the core."""
     option = f"--{field.replace('_', '-')}"
     if field.startswith(_PHYSICS):
         return f"[physics] {field.removeprefix(_PHYSICS)}"
@@ -77,17 +77,17 @@ def _name(field: str) -> str:
 
 
 def _text_of(name: str) -> str:
-    """The text that was typed for an option, or for an input that is varied; empty if there is none."""
+    """Return the text typed for an option, or for a varied input; empty if there is none."""
     typed = TYPED.get()
     arguments = [] if typed is None else [str(each) for each in typed[1]]
     after = (text for before, text in pairwise(arguments) if before == name)
-    parts = (each.partition("=") for each in arguments)  # keys are shortened as far as they are told apart
+    parts = (each.partition("=") for each in arguments)  # keys may be shortened as far as they stay unique
     joined = (text for key, _, text in parts if text and f".{name}".endswith(f".{key.strip()}"))
     return next(chain(after, joined), "")
 
 
 def _options() -> set[str]:
-    """The options of the command that is run; none outside one."""
+    """Return the options of the running command; empty outside a command."""
     if (typed := TYPED.get()) is None:
         return set()
     app, arguments = typed

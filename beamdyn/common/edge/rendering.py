@@ -1,10 +1,11 @@
-"""Figures as SVG and PNG, tables as HTML, rows as CSV, returned as text or bytes."""
+"""Rendering of figures as SVG and PNG, of tables as HTML and of rows as CSV, as text or bytes."""
 
 from __future__ import annotations
 
 import base64
 import csv
 import io
+import re
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from html import escape
@@ -17,43 +18,106 @@ from rich.text import Text
 
 from beamdyn.common.inputs.checks import reason_of
 
+_RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
 _SENTENCE = 36  # letters from which on the words of a cell are a sentence
-_WIDE = 75  # letters in a row from which on a table takes the whole width of a page
+# Letters in a row from which on a table takes the whole width of a page, and of one on a wide screen.
+_WIDE, _WIDEST = 75, 112
+_LONG = 12  # rows from which on a table goes on in a second column, if it has room in one
+_BETWEEN = 1.5  # letters that have the room between two columns
+
+_FEW_DECADES = 1e2  # ends of an axis over decades, one over the other, up to which its small ticks matter
+_MOST_PLACES = 50  # largest number of pictures whose layout is kept
+_PLACES: dict[tuple[object, ...], list[Bbox]] = {}  # places of axes, by size and labels of their picture
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from matplotlib.transforms import Bbox
     from rich.console import RenderableType
 
 
 def svg(figure: Figure) -> str:
-    """A figure as the text of an SVG file; the same figure gives the same text."""
+    """Return a figure as the text of an SVG file; the same figure always gives the same text."""
     return png(figure, "svg").decode()
 
 
 def png(figure: Figure, kind: str = "png") -> bytes:
-    """A figure as a PNG file, or as one of another kind."""
+    """Return a figure as a PNG file, or as one of another kind."""
     from matplotlib import rc_context
 
     file = io.BytesIO()
+    _write_powers_plainly(figure)
     metadata = {"Date": None} if kind == "svg" else {}
     with rc_context({"svg.hashsalt": "beamdyn"}), np.errstate(all="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # layouts warn where they have too little room
+        warnings.simplefilter("ignore", UserWarning)  # layout engines warn where they have too little room
         figure.savefig(file, format=kind, dpi=150, metadata=metadata)
     return file.getvalue()
 
 
-def drawing(draw: Callable[[], Figure]) -> str:
-    """The SVG of a drawing, or a sentence if it cannot be drawn (numbers too large)."""
+def _write_powers_plainly(figure: Figure) -> None:
+    """Write powers of axes over decades as plain letters, since typesetting takes a third of the time."""
+    from matplotlib.ticker import LogFormatterSciNotation
+
+    class Powers(LogFormatterSciNotation):
+        def __call__(self, x: float, pos: int | None = None) -> str:
+            return _POWER.sub(_in_letters, super().__call__(x, pos))
+
+    for axis in (axis for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)):
+        if isinstance(axis.get_major_formatter(), LogFormatterSciNotation):
+            axis.set_major_formatter(Powers())
+        if isinstance(axis.get_minor_formatter(), LogFormatterSciNotation):
+            axis.set_minor_formatter(Powers())
+
+
+def in_haste(figure: Figure) -> Figure:
+    """Leave out what takes most of a picture's time: a layout of its own, and the small ticks of decades.
+
+    Its axes are where they were in the last picture of this process with the same labels and size.
+    """
+    for axis in (axis for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)):
+        low, high = axis.get_view_interval()
+        if axis.get_scale() == "log" and high > _FEW_DECADES * low:
+            axis.minorticks_off()
+    labels = tuple((ax.get_xlabel(), ax.get_ylabel(), ax.get_title()) for ax in figure.axes)
+    known = (*figure.get_size_inches(), *labels)
+    if known not in _PLACES:
+        figure.draw_without_rendering()
+        if len(_PLACES) >= _MOST_PLACES:
+            _PLACES.clear()
+        _PLACES[known] = [ax.get_position(original=True).frozen() for ax in figure.axes]
+    figure.set_layout_engine(None)  # as the usual settings have it: none
+    for ax, place in zip(figure.axes, _PLACES[known], strict=True):
+        ax.set_position(place, which="original")
+    return figure
+
+
+_POWER = re.compile(r"\$\\mathdefault\{(.*?)10\^\{(-?\d+)\}\}\$")
+
+
+def _in_letters(power: re.Match[str]) -> str:
+    factor = power[1].replace(r"\times", "\u00d7")
+    return f"{factor}10{power[2].translate(_RAISED)}"
+
+
+def drawing(draw: Callable[[], Figure], finish: Callable[[Figure], Figure] = lambda figure: figure) -> str:
+    """The SVG of a drawing, or a sentence if it cannot be drawn (numbers too large).
+
+    Parameters
+    ----------
+    draw : callable
+        Draws the figure.
+    finish : callable
+        What is done to it before it is written, such as `in_haste`.
+    """
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)
-            return svg(draw())
+            return svg(finish(draw()))
     except (ValueError, ArithmeticError) as error:
         return f"There is no drawing: {reason_of(error)}"
 
 
 def picture(text: str, words: str) -> str:
-    """An SVG as an HTML image, which runs no scripts; a sentence in its place as a paragraph.
+    """Return an SVG as an HTML image, which runs no scripts; a sentence instead of an SVG as a paragraph.
 
     Parameters
     ----------
@@ -68,20 +132,22 @@ def picture(text: str, words: str) -> str:
 
 
 def data_url(text: str) -> str:
-    """An SVG as a data URL."""
+    """Return an SVG as a data URL."""
     return f"data:image/svg+xml;base64,{base64.b64encode(text.encode()).decode()}"
 
 
 def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
-    """Tables and sentences, as the commands print them, in HTML.
+    """Write tables and sentences, as the commands print them, in HTML.
 
-    If a table has more than `most` rows, the first and last ones are shown, and how many are not.
+    Each table with its title and sentences is a section.  If one has more than `most` rows, the first and
+    last ones are shown, and how many are not.
     """
     made = []
     for part in parts:
-        if isinstance(part, Group):
-            wide = ' class="wide"' if _width(part) > _WIDE else ""
-            made.append(f"<section{wide}>{html(part.renderables, most)}</section>")
+        if isinstance(part, Group) and sum(isinstance(each, Group) for each in part.renderables) > 1:
+            made.append(html(part.renderables, most))
+        elif isinstance(part, Group):
+            made.append(f'<section class="{_size(part)}">{html(part.renderables, most)}</section>')
         elif isinstance(part, Table):
             made.append(_table(part, most))
         elif isinstance(part, Text) and part.style == "bold":
@@ -91,16 +157,33 @@ def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
     return "\n".join(made)
 
 
-def _width(part: object) -> int:
-    """Letters in the longest cells of a row of a table, or of the widest one of a group; else 0."""
+def _size(part: Group) -> str:
+    """Name the size of the largest table of a group, as styles of pages tell them apart."""
+    letters, rows = _width(part), _rows(part)
+    sizes = {"wide": letters > _WIDE, "widest": letters > _WIDEST, "long": rows >= _LONG}
+    return " ".join(name for name, applies in sizes.items() if applies)
+
+
+def _rows(part: object) -> int:
+    """Rows of a table, or of the longest one of a group; else 0."""
     if isinstance(part, Group):
-        return max(map(_width, part.renderables), default=0)
+        return max(map(_rows, part.renderables), default=0)
+    return part.row_count if isinstance(part, Table) else 0
+
+
+def _width(part: object) -> float:
+    """Letters that have the room of a table, or of the widest of a group; else 0.  Heads may be broken."""
+    if isinstance(part, Group):
+        return max(map(_width, part.renderables), default=0.0)
     columns = part.columns if isinstance(part, Table) else ()
-    return sum(max(map(len, map(str, (column.header, *column.cells)))) for column in columns)
+    letters = sum(
+        max(map(len, (*str(each.header).split(), *map(str, each.cells))), default=0) for each in columns
+    )
+    return letters + _BETWEEN * len(columns)
 
 
 def _table(made: Table, most: int | None) -> str:
-    """A table; of one with too many rows the first and last ones, and how many are not shown."""
+    """Write a table in HTML; if it has too many rows, the first and last, and how many are not shown."""
     words = [column.justify == "left" for column in made.columns]
     cells = zip(*(column.cells for column in made.columns), strict=True)
     rows = [_row([_cell(cell) for cell in row], words, "td") for row in cells]
@@ -117,7 +200,7 @@ def _table(made: Table, most: int | None) -> str:
 
 
 def _cell(cell: object) -> str:
-    """A cell in HTML; dimmed digits of a number stand at its end."""
+    """Write a cell in HTML; digits beyond the error, at the end of a number, are dimmed."""
     if not isinstance(cell, Text) or not cell.spans:
         return escape(str(cell))
     start = cell.spans[0].start
@@ -125,7 +208,7 @@ def _cell(cell: object) -> str:
 
 
 def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
-    """A row; words of a sentence are not set one below the other."""
+    """Write a row in HTML; cells with long words may wrap."""
     kinds = (
         ("words sentence" if len(cell) > _SENTENCE else "words") if w else "number"
         for cell, w in zip(cells, words, strict=True)
@@ -135,7 +218,7 @@ def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
 
 
 def csv_text(rows: Iterable[Sequence[object]], delimiter: str = ",") -> str:
-    """Rows as the text of a CSV file."""
+    """Return rows as the text of a CSV file."""
     file = io.StringIO()
     csv.writer(file, delimiter=delimiter, lineterminator="\n").writerows(rows)
     return file.getvalue()
@@ -147,7 +230,7 @@ STYLE = """
 .shown h3 { font-size: 1rem; font-weight: 600; margin: 0.8rem 0 0.2rem; line-height: 1.4; }
 .shown table { border-collapse: collapse; font-size: 0.875rem; }
 .shown th { border-bottom: 1px solid #555; font-weight: 600; }
-.shown td, .shown th { padding: 0.1rem 0.8rem 0.1rem 0; vertical-align: top; }
+.shown td, .shown th { padding: 0.1rem 0.6rem 0.1rem 0; vertical-align: top; }
 .shown .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 .shown .beyond { color: #767676; }
 .shown .words { text-align: left; }

@@ -1,29 +1,25 @@
-"""Reports of `reproduce`: headings of papers, notes, and pictures drawn into a folder."""
+"""Printed reports of `reproduce`: headings of papers, notes, and pictures drawn into a folder."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rich.console import Console
 
-from beamdyn.common.results.pictures import save_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from beamdyn.common.results.pictures import Axes, Figure, save_figure
 
 
 def print_heading(screen: Console, paper: Mapping[str, Any], between: str = ", ") -> None:
-    """Print the title of a published file, and its authors, journal and year, as far as it has them."""
+    """Print title, authors, journal and year of a published file, as far as it has them."""
     people = between.join(paper.get("authors", ()))
     parts = people, paper.get("journal", ""), str(paper["year"])
     screen.print(f"{paper['title']}\n{', '.join(filter(None, parts))}", style="bold")
 
 
 def print_notes(screen: Console, notes: Iterable[str]) -> None:
-    """Print paragraphs, each with an empty line below."""
+    """Print paragraphs, each followed by an empty line."""
     for note in notes:
         screen.print(f"{note}\n")
 

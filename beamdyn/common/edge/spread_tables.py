@@ -1,4 +1,4 @@
-"""Spreads as tables for reading and as rows of CSV files."""
+"""Spreads over tolerances, as tables and as rows of CSV files."""
 
 from __future__ import annotations
 
@@ -17,26 +17,27 @@ from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.spreading.spread_result import Spread, spread_figure
 from beamdyn.common.spreading.tolerances import Normal
 
-_DIGITS = 6  # most of an answer
-_WIDTH, _GAP, _OF_SHARES = 119, 3, 20  # characters of a table, between columns, of two shares
+_DIGITS = 6  # largest number of digits of an answer
+# Characters: of a table's width, between columns, and of a pair of shares.
+_WIDTH, _GAP, _OF_SHARES = 119, 3, 20
 _HEADLINES = 6
-_SIGNS = "+-."  # signs that heads of inputs and answers keep
-_SMALL = 0.01  # share of a variance that is not told from others below it
+_SIGNS = "+-."  # signs that names keep in heads of columns
+_SMALL = 0.01  # share of a variance below which a table only says that the share is smaller
 
 
 def spread_table(result: Spread) -> Group:
-    """A sentence on each answer, then tables of ranges, scatter, and shares of the inputs in the variance."""
+    """Make a sentence on each answer, and tables of ranges, scatter, and the inputs' shares of variance."""
     said = [Text(headline(result, k)) for k in _told(result)[:_HEADLINES]]
     return Group(*said, _ranges(result), _scatter(result), *_inputs(result), Text(_note(result)))
 
 
 def _told(result: Spread) -> list[int]:
-    """The answers that some design has."""
+    """Return the indices of answers that at least one design has."""
     return [k for k in range(len(result.answers)) if result.scatter.no_answer[k] < 1]
 
 
 def headline(result: Spread, answer: int) -> str:
-    """An answer in a sentence: nominal value, worst cases, standard deviation, what matters most."""
+    """Word an answer: nominal value, worst cases, standard deviation, and what matters most."""
     k, unit = answer, f" {result.units[answer]}".rstrip()
     (low, high), scatter, nominal = _worst(result, k), result.scatter, result.nominal[k]
     parts = [f"{result.answers[k]}: {_number(nominal, _numerical(result, k)(nominal))}{unit}"]
@@ -60,20 +61,20 @@ def headline(result: Spread, answer: int) -> str:
 
 
 def _numerical(result: Spread, answer: int) -> Callable[[float], float]:
-    """The absolute numerical error of an answer."""
+    """Return the function that gives the absolute numerical error of a value of an answer."""
     error = result.error[answer]
     return lambda value: abs(value) * (0.0 if np.isnan(error) else error)
 
 
 def _deviation(result: Spread, answer: int) -> tuple[float, float]:
-    """The standard deviation of an answer, and its error: the errors of the answers may add up to theirs."""
+    """Return the standard deviation of an answer, and its error by sampling and by errors of answers."""
     found, values = result.scatter, result.sampled_answers[:, answer]
     largest = np.abs(values[np.isfinite(values)]).max(initial=0.0)
     return found.deviation[answer], found.deviation_error[answer] + _numerical(result, answer)(largest)
 
 
 def _worst(result: Spread, answer: int) -> tuple[str, str]:
-    """The worst cases of an answer, each with the digits that its own error supports."""
+    """Word the worst cases of an answer, each with the digits that its own error supports."""
     found, k = result.worst, answer
     errors = np.nan_to_num([found.smallest_error[k], found.largest_error[k]], posinf=np.inf)
     return _number(found.smallest[k], errors[0]), _number(found.largest[k], errors[1])
@@ -84,7 +85,7 @@ def _number(value: float, error: float) -> str:
 
 
 def _share(value: float, error: float) -> str:
-    """A share of a variance as text; "< 0.01" if it is surely small."""
+    """Word a share of a variance; "< 0.01" if it is surely small."""
     if abs(value) + 3 * error < _SMALL:
         return f"< {_SMALL:g}"
     return supported(value, error, 3).replace("none", "-")
@@ -97,7 +98,7 @@ def _heads(result: Spread) -> list[str]:
 
 
 def _ranges(result: Spread) -> Group:
-    """Nominal values, ranges to first order, and worst cases with where they were found and errors."""
+    """Make the table of nominal values, first-order ranges, and worst cases with their sources and errors."""
     first, found, rows = result.first_order, result.worst, []
     for k, head in enumerate(_heads(result)):
         wrong = _numerical(result, k)
@@ -121,7 +122,7 @@ def _ranges(result: Spread) -> Group:
 
 
 def _scatter(result: Spread) -> Group:
-    """Mean, standard deviation and percentiles, with the digits that their standard errors support."""
+    """Make the table of mean, standard deviation and percentiles, in digits that standard errors support."""
     found, rows = result.scatter, []
     for k, head in enumerate(_heads(result)):
         pairs = [(found.percentile[i, k], found.percentile_error[i, k]) for i in (1, 2, 3)]
@@ -138,12 +139,13 @@ def _scatter(result: Spread) -> Group:
 
 
 def _inputs(result: Spread) -> Iterator[Group]:
-    """Inputs with their tolerances and shares of the variance of some answers, a table after the other."""
+    """Yield tables of inputs with tolerances and shares of variance, for as many answers as fit."""
     told, found = _told(result), result.indices
     firsts = [(each.name, f"{each.nominal:.6g} {each.unit}".rstrip(), each.text) for each in result.inputs]
     names = [result.answers[k] for k in told]
     left = sum(max(map(len, column)) + _GAP for column in zip(*firsts, ("", "", "tolerance"), strict=True))
-    beside = max(1, (_WIDTH - left) // (max(_OF_SHARES, *map(len, names), 0) + _GAP))  # as many as fit
+    # Number of answers that fit beside one another.
+    beside = max(1, (_WIDTH - left) // (max(_OF_SHARES, *map(len, names), 0) + _GAP))
     for start in range(0, len(told), beside):
         rows: list[list[str]] = [[*first] for first in firsts]
         for i, row in enumerate(rows):
@@ -155,7 +157,7 @@ def _inputs(result: Spread) -> Iterator[Group]:
 
 
 def _note(result: Spread) -> str:
-    """Designs, digits, and where slopes and worst cases come from, naming inputs that have no derivatives."""
+    """Word numbers of designs, digits, and the sources of slopes and worst cases."""
     is_normal = any(isinstance(each.distribution, Normal) for each in result.inputs)
     normal = ", of normal ones three standard deviations either way" if is_normal else ""
     first, told = result.first_order, _told(result)
@@ -175,7 +177,7 @@ def _note(result: Spread) -> str:
 
 
 def spread_csv(result: Spread) -> Columns:
-    """Inputs in SI and answers of the random designs, a row each; frequencies of modes as in all tables."""
+    """Make columns with a row for each random design: inputs in SI, and answers."""
     columns = [
         column_named(name_in_heads(each.name.replace(".", "_"), _SIGNS), values, each.unit)
         for each, values in zip(result.inputs, result.sampled_inputs.T, strict=True)

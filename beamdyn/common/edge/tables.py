@@ -1,4 +1,4 @@
-"""Tables on the console, which are never cut: columns that do not fit on the screen follow below."""
+"""Console tables that are never cut: columns too many for the screen follow below."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from rich.text import Text
 from beamdyn.common.edge.progress import quiet
 from beamdyn.common.results.digits import count_sure, supported
 
-if TYPE_CHECKING:  # the columns need numpy, which help does without
+if TYPE_CHECKING:  # imported for types only, since columns need numpy, which help does without
     from beamdyn.common.results.columns import Column, Columns
     from beamdyn.common.results.comparison import Comparison
     from beamdyn.common.results.display_units import DisplayUnits
 
-_BETWEEN, _EDGES = 3, 1  # characters that a column, and a table, have beside their text
+_BETWEEN, _EDGES = 3, 1  # characters that a column has beside its text, and a table beside its columns
 _WORDS = 16  # least width of a column of words, in characters
 _PIPE_WIDTH = 120  # width of tables that go to a file or another program
 
 
-# ASCII for characters of our tables that a console without Unicode may lack.
+# ASCII text for characters of tables that a console without Unicode may lack.
 _SPELLED = {
     "ω": "omega", "ζ": "zeta", "η": "eta", "Λ": "Lambda", "Ω": "ohm", "µ": "u", "μ": "u", "ᵀ": "^T",
     "²": "^2", "³": "^3", "±": "+-", "°": " deg", "·": "*", "×": "x", "─": "-",
@@ -39,7 +39,7 @@ _SPELLED = {
 
 
 def spell(text: str, encoding: str) -> str:
-    """Replace the characters that an encoding lacks: "omega^2" where it has no Greek letters."""
+    """Replace characters that an encoding lacks: "omega^2" where it has no Greek letters."""
 
     def spelled(character: str) -> str:
         if character.encode(encoding, "ignore"):
@@ -55,7 +55,7 @@ def spell(text: str, encoding: str) -> str:
 
 
 def spell_output(stream: TextIOWrapper) -> None:
-    """Let a stream replace the characters that its encoding lacks."""
+    """Set a stream to replace the characters that its encoding lacks."""
 
     def replaced(error: UnicodeError) -> tuple[str, int]:
         assert isinstance(error, UnicodeEncodeError)
@@ -66,17 +66,17 @@ def spell_output(stream: TextIOWrapper) -> None:
 
 
 class Terminal(Console):
-    """A console on standard output whose columns are laid out for the characters that it can show.
+    """A console on standard output that lays columns out for the characters that it can show.
 
     If the reader of a pipe closes it, as `head` does, the command goes on without output.
     """
 
     def render_str(self, text: str, **options: Any) -> Text:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """Convert a string to rich's text."""
+        """Convert a string to rich's text, with characters that the console can show."""
         return super().render_str(spell(text, self.encoding), **options)
 
     def print(self, *objects: Any, **options: Any) -> None:
-        """Print; raises an OSError that names the standard output."""
+        """Print objects; raise an OSError that names the standard output if that fails."""
         try:
             with quiet():
                 super().print(*objects, **options)
@@ -84,7 +84,7 @@ class Terminal(Console):
             raise OSError(f"the standard output cannot be written ({error.strerror or error})") from None
 
     def on_broken_pipe(self) -> None:
-        """Send further output nowhere, and let the command finish."""
+        """Discard further output, and let the command finish."""
         self.quiet = True
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
@@ -92,7 +92,7 @@ class Terminal(Console):
 
 
 def console() -> Terminal:
-    """The console on standard output, without markup."""
+    """Make a console on standard output, without markup."""
     width = None if sys.stdout.isatty() else _PIPE_WIDTH
     return Terminal(width=width, markup=False, highlight=False, emoji=False)
 
@@ -128,7 +128,7 @@ class FittedTable(Table):
             self.add_column(heading, justify="left" if i in left else "right", no_wrap=i not in left)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the table, or its parts."""
+        """Yield the table, or the parts into which it is split if it is too wide."""
         room, places = options.max_width, [*range(len(self.columns))]
         if _total([self._width(i) for i in places]) <= room:
             yield from super().__rich_console__(console, options)
@@ -149,7 +149,7 @@ class FittedTable(Table):
             yield from self._part([*keys, *group], needed, numbered).__rich_console__(console, options)
 
     def _width(self, i: int, broken: bool = False) -> int:
-        """Least width of a column, in characters; its heading may be broken between words if `broken`."""
+        """Return the least width of a column, in characters; with `broken` its heading may be broken."""
         texts = [cell.plain if isinstance(cell, Text) else str(cell) for cell in self.columns[i].cells]
         heading = str(self.columns[i].header)
         lines = [line for text in texts for line in text.split("\n")]
@@ -157,14 +157,15 @@ class FittedTable(Table):
         return whole if self.columns[i].no_wrap else min(whole, _WORDS)
 
     def _part(self, places: Sequence[int], needed: Sequence[int], numbered: bool) -> Table:
-        """A table of some columns, with the numbers of the rows in front if `numbered`."""
+        """Make a table of some columns, with the numbers of the rows in front if `numbered`."""
         made = Table(box=self.box, padding=self.padding)
         if numbered:
             made.add_column("", justify="right", no_wrap=True)
         for i in places:
             column = self.columns[i]
             heading = "\n".join(textwrap.wrap(str(column.header), needed[i]))
-            overflow = "fold" if column.no_wrap else "ellipsis"  # where not even one column has room
+            # Cells are cut only where not even one column has room.
+            overflow = "fold" if column.no_wrap else "ellipsis"
             made.add_column(heading, justify=column.justify, no_wrap=column.no_wrap, overflow=overflow)
         cells = [[*self.columns[i].cells] for i in places]
         for k, row in enumerate(self.rows):
@@ -174,15 +175,15 @@ class FittedTable(Table):
 
 
 def _total(widths: Sequence[int]) -> int:
-    """Width of a table with columns of these widths."""
+    """Return the width of a table with columns of these widths."""
     return sum(widths) + _BETWEEN * len(widths) + _EDGES
 
 
-BEYOND = "dim"  # style of the digits of a number that its error does not support
+BEYOND = "dim"  # style of digits that the error of a number does not support
 
 
 def set_apart(text: str, error: float) -> Text:
-    """A number's text, with the digits beyond an absolute error dimmed."""
+    """Return a number's text, with the digits beyond an absolute error dimmed."""
     sure = count_sure(text, error)
     return Text.assemble(text[:sure], (text[sure:], BEYOND))
 
@@ -194,7 +195,7 @@ def table(
     left: Sequence[int] = (0,),
     keys: int = 1,
 ) -> Group:
-    """A table of text; where it is too wide for the screen, several below each other.
+    """Make a table of text; where it is too wide for the screen, several below each other.
 
     Parameters
     ----------
@@ -224,7 +225,7 @@ def table(
 
 
 def table_of(columns: Columns, units: DisplayUnits, title: str = "", keys: int = 1) -> Group:
-    """A table of columns of a result, with the sentences that go with them, in units for people.
+    """Make a table of a result's columns in display units, with the sentences that go with them.
 
     Words stand at the left, numbers at the right.  The title may be another than theirs; so many first
     columns identify a row.
@@ -237,12 +238,12 @@ def table_of(columns: Columns, units: DisplayUnits, title: str = "", keys: int =
 
 
 def _for_people(column: Column, units: DisplayUnits) -> Column:
-    """A column in display units: angles in degrees, lengths in mm unless another unit is given."""
+    """Convert a column to display units: angles in degrees, lengths in mm unless another unit is given."""
     return column.times(180 / pi, "deg") if column.unit == "rad" else column.in_units(units, "mm")
 
 
 def _cells(column: Column) -> Sequence[str | Text]:
-    """Cells of a column in a table: those that are given, else its values."""
+    """Return the cells of a column in a table: as given, or else formatted values."""
     given = column.cells
     if given is None:
         return _values(column)
@@ -252,7 +253,7 @@ def _cells(column: Column) -> Sequence[str | Text]:
 
 
 def _values(column: Column) -> Sequence[str | Text]:
-    """Values of a column as tables write them."""
+    """Format the values of a column for a table."""
     form = column.form or (".6g" if column.error is None else supported)
     if isinstance(form, str):
         return [each if isinstance(each, str) else format(each, form) for each in column.plain]
@@ -262,7 +263,7 @@ def _values(column: Column) -> Sequence[str | Text]:
 
 
 def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
-    """The table of comparisons, with a line where the first two words of `what` change."""
+    """Make a table of comparisons, with a line where the first two words of `what` change."""
     cells: list[list[str]] = []
     topics: list[list[str]] = []
     for row in rows:

@@ -65,7 +65,7 @@ def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[s
 
 
 def _read_head(place: str, head: Any, known: Mapping[str, Quantity]) -> tuple[str, str]:
-    """Name and unit of a column."""
+    """Read name and unit of a column from its head."""
     match = _HEAD.fullmatch(head) if isinstance(head, str) else None
     name = match[1] if match else ""
     if match is None or name not in known:

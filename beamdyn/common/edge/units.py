@@ -1,4 +1,4 @@
-"""Numbers with units, as people write them, in SI: "0.2 mm", "200 GPa", "525 rpm", "7850 kg/m3"."""
+"""Conversion of numbers with units, as people write them, to SI: "0.2 mm", "525 rpm", "7850 kg/m3"."""
 
 from __future__ import annotations
 
@@ -14,26 +14,28 @@ from typing import TYPE_CHECKING
 
 from beamdyn.common.inputs.checks import InvalidValue
 
-if TYPE_CHECKING:  # pint costs 0.3 s: it is loaded with the first quantity
+if TYPE_CHECKING:  # imported later, as pint takes 0.3 s, when a quantity needs it
     from pint import Unit, UnitRegistry
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _FACTOR = r"[A-Za-z_%°µμΩ]+(?:(?:\^|\*\*)?-?[1-9])?"
 _SEPARATOR = r"(?:\s*[*/]\s*|\s+)"
-# "1/s" stands after a blank: 0.51/s would have two meanings.
+# "1/s" must follow a blank: 0.51/s would have two meanings.
 _UNITS = rf"(?<=\s)1/{_FACTOR}|{_FACTOR}(?:{_SEPARATOR}{_FACTOR})*"
 _TEXT = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNITS})?)\s*", re.ASCII)
 _NO_NUMBER = re.compile(r"\s*[+-]?(nan|inf)", re.IGNORECASE)
 _POWER = re.compile(r"(?:\^|\*\*)?(-?\d)")
-_MINUS_SIGNS, _SPACES = "\u2212\u2013\uff0d", "\u00a0\u2007\u2009\u202f"  # signs as copied from printed pages
+# Minus signs and blanks as copied from printed pages.
+_MINUS_SIGNS, _SPACES = "\u2212\u2013\uff0d", "\u00a0\u2007\u2009\u202f"
 _PLAIN = str.maketrans(
     {"²": "2", "³": "3", "⁴": "4", "·": "*", "⋅": "*", "\uff0e": "."}
     | dict.fromkeys(_MINUS_SIGNS, "-")
     | dict.fromkeys(_SPACES, " ")
     | {0xFF10 + digit: str(digit) for digit in range(10)}  # digits of full width
 )
-_BETWEEN, _BEFORE_NUMBER = re.compile(r"[:,]|\bto\b"), re.compile(r"^[^\d.]*")  # of several in a text
-_KNOWN_SIGNS = "°µμΩ"  # of units
+# What stands between several quantities in a text, and before a number.
+_BETWEEN, _BEFORE_NUMBER = re.compile(r"[:,]|\bto\b"), re.compile(r"^[^\d.]*")
+_KNOWN_SIGNS = "°µμΩ"  # signs of units beyond ASCII
 
 _KINDS = {
     "m": "length",
@@ -68,8 +70,8 @@ _KINDS = {
     "K": "temperature",
     "": "plain number",
 }
-# Factors of the units of most files, so that reading them does not load pint, which takes longer than most
-# commands; of angles to more digits than decimal numbers have.
+# Factors of common units, so that reading them does not load pint, which takes longer than most commands;
+# those of angles have more digits than a decimal number needs.
 _COMMON = {
     "m": {"mm": "0.001", "cm": "0.01"},
     "kg": {"g": "0.001"},
@@ -82,16 +84,16 @@ _USUAL = {"m": "mm", "kg": "g", "rad": "deg", "rad/s": "rpm", "Pa": "GPa", "kg m
 
 
 class InvalidInput(InvalidValue):
-    """A value of a file, form or command that is refused: its message shows it as TOML writes it."""
+    """Raised for a refused value of a file, form or command; the message shows it as TOML writes it."""
 
     @property
     def shown(self) -> str:
-        """The value in the message."""
+        """The value as the message shows it."""
         return super().shown if isinstance(self.value, float) else show(self.value)
 
 
 def quantity(text: object, unit: str) -> float:
-    """The value of a number with a unit.
+    """Return the value of a number with a unit, in SI.
 
     Parameters
     ----------
@@ -135,7 +137,7 @@ def _finite(value: float, text: object, unit: str) -> float:
 
 
 def _common_factor(given: str, unit: str) -> Decimal | None:
-    """The factor from a unit to an SI unit where it is a common one."""
+    """Return the factor from a unit to an SI unit, if the unit is a common one."""
     factor = "1" if given == unit else _COMMON.get(unit, {}).get(given)
     return None if factor is None else Decimal(factor)
 
@@ -143,18 +145,18 @@ def _common_factor(given: str, unit: str) -> Decimal | None:
 def _product(number: str, factor: Decimal) -> float:
     try:
         return float(Decimal(number) * factor)
-    except ArithmeticError:  # an exponent beyond decimal's
+    except ArithmeticError:  # an exponent beyond the range of decimal
         return math.nan
 
 
 @lru_cache(4096)
 def _known(text: str, unit: str) -> float:
-    """As `quantity`, cached: while one input changes, a form reads all others again and again."""
+    """Convert a quantity like `quantity`, with a cache, since a form reads all inputs at each change."""
     return _quantity(text, unit)
 
 
 def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], float]]:
-    """The unit of a quantity as it was written, and what converts numbers in `unit` to it.
+    """Return the unit of a quantity as written, and a function that converts numbers in `unit` to it.
 
     Where the text has no unit of that kind, it is `unit` itself. Of an angle, "%" is the rise of a slope.
     """
@@ -172,12 +174,12 @@ def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], flo
 
 
 def last_quantity(text: str) -> str:
-    """The last of several quantities in a text, such as "100:5 rpm" or "+-2 g/cm3", with the unit of all."""
+    """Return the last of several quantities in a text, such as "100:5 rpm", with the unit of all."""
     return _BEFORE_NUMBER.sub("", _BETWEEN.split(text)[-1])
 
 
 def show(value: object, depth: int = 2) -> str:
-    """A value as TOML writes it, shortened where it is long or deep."""
+    """Return a value as TOML writes it, shortened if it is long or deeply nested."""
     text = _toml(value, depth)
     return text if len(text) <= 60 else text[:57] + "..."
 
@@ -209,7 +211,7 @@ def _registry() -> UnitRegistry:
 
 
 def _split(given: object, unit: str) -> tuple[str, str]:
-    """The number and the unit, as written."""
+    """Split a quantity into number and unit, as written."""
     bare = isinstance(given, int | float) and not isinstance(given, bool)
     text = str(given) if bare or isinstance(given, str) else ""
     match = _TEXT.fullmatch(text.translate(_PLAIN))
@@ -224,7 +226,7 @@ def _split(given: object, unit: str) -> tuple[str, str]:
 
 @cache
 def _parse(unit: str) -> Unit | None:
-    """The unit of a text in which m2, m^2 and m**2 are the same, or None if there is none."""
+    """Return the unit that a text means (m2, m^2 and m**2 are the same); None if there is none."""
     from pint.errors import PintError
 
     try:
@@ -234,14 +236,14 @@ def _parse(unit: str) -> Unit | None:
 
 
 def _root(unit: Unit) -> Unit:
-    """Product of base units, with radians kept: tells rpm from Hz."""
+    """Return the product of base units, with radians kept, which tells rpm from Hz."""
     return _registry().get_root_units(unit)[1]
 
 
 def _convert(number: str, kind: Unit, wanted: Unit) -> float:
     try:
         return float(_registry().Quantity(Decimal(number), kind).to(wanted).magnitude)
-    except (ArithmeticError, TypeError):  # an exponent beyond decimal's; a logarithmic unit
+    except (ArithmeticError, TypeError):  # an exponent beyond decimal's range, or a logarithmic unit
         return math.nan
 
 
@@ -255,7 +257,7 @@ def _mismatch(number: str, kind: Unit, unit: str) -> str:
 
 
 def _no_quantity(given: object, unit: str) -> tuple[str, str]:
-    """The reason why a value is not a number with a unit, and how to write it."""
+    """Word why a value is not a number with a unit, and how to write it."""
     match given:
         case bool():
             return "a truth value", f"give a quantity, e.g. {_example(unit)}"
@@ -275,19 +277,19 @@ def _no_quantity(given: object, unit: str) -> tuple[str, str]:
 
 
 def in_plain_characters(text: str) -> str:
-    """A text with plain minus signs, spaces and digits in place of those copied from printed pages."""
+    """Replace minus signs, blanks and digits copied from printed pages by plain ones."""
     return text.translate(_PLAIN)
 
 
 def odd_character(text: str) -> str:
-    """The name of the first character that no number or unit has, and that may look like one that does."""
+    """Return the name of the first character that no number or unit has; empty if there is none."""
     plain = text.translate(_PLAIN)
     odd = next((c for c in plain if not (c.isascii() or c in _KNOWN_SIGNS)), "")
     return f"{unicodedata.name(odd, 'without a name')} (U+{ord(odd):04X})" if odd else ""
 
 
 def _example(unit: str, number: str = "1") -> str:
-    """A quantity as a file writes it, with a number as it was given."""
+    """Write a quantity as a file does, with a number as it was given."""
     return f'"{number} {usual_unit(unit)}"' if unit else number
 
 
@@ -296,5 +298,5 @@ def _kind(unit: str) -> str:
 
 
 def usual_unit(unit: str) -> str:
-    """The unit in which people write a quantity, by its SI unit: "deg" for "rad"."""
+    """Return the unit in which people write a quantity, by its SI unit: "deg" for "rad"."""
     return _USUAL.get(unit, unit)

@@ -1,4 +1,4 @@
-"""An input of a file with the values that it takes, such as "stop.speed=10:30:9 km/h", or its tolerance."""
+"""Reading of varied inputs, such as "stop.speed=10:30:9 km/h", and of inputs with tolerances."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import difflib
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, get_args, get_origin
+from typing import get_args, get_origin
 
 import numpy as np
 
@@ -17,10 +17,6 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.designs import Designs, VariedInput
 from beamdyn.common.spreading.tolerances import SpreadInput, parse_tolerance
 
-if TYPE_CHECKING:
-    pass
-
-
 # Tolerances ----------------------------------------------------------------------------------------
 
 
@@ -28,7 +24,7 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NO_NUMBER = re.compile(r"(?<!\w)[+-]?(nan|inf(inity)?)(?!\w)", re.IGNORECASE)
 _RANGE = re.compile(rf"\s*({_NUMBER})\s*:\s*({_NUMBER})\s*:\s*(\d+)\s*(?::?\s*(log)\b)?\s*([^:]*?)\s*")
 _LIST = re.compile(rf"\s*({_NUMBER}(?:\s*,\s*{_NUMBER})+)\s*(.*?)\s*")
-MOST_AT_ONCE = 100_000  # designs that are answered together, by arrays
+MOST_AT_ONCE = 100_000  # largest number of designs that are answered together, as arrays
 
 
 @dataclass(frozen=True)
@@ -75,7 +71,7 @@ class Coordinate(Input):
 
 
 def numbers(inputs: Sequence[Input]) -> list[Input]:
-    """The inputs that can be varied: numbers, and the coordinates of points."""
+    """List the inputs that can be varied: numbers, and the coordinates of points."""
     found: list[Input] = []
     for entry in inputs:
         parts = [*parts_of(entry.kind)]
@@ -141,7 +137,7 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
 
 
 def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
-    """A value in SI, checked against the bounds of the input."""
+    """Convert a value to SI, and check it against the bounds of the input."""
     quantity = entry.quantity
     given = f"{number} {unit}".strip() if quantity.unit or unit else float(number)
     try:
@@ -151,7 +147,7 @@ def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
 
 
 def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
-    """Find the input with a key: its path, or the last part of it.
+    """Find the input of a key, which is its path or the last part of that.
 
     Parameters
     ----------
@@ -169,7 +165,8 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     """
     matches = [i for i in inputs if key in (i.path, i.name)]
     if all(i.required or i.default is None for i in matches):
-        matches = [i for i in matches if i.required] or matches  # the others follow it, as a second shoe does
+        # A required input takes precedence, as the others follow it, like those of a second shoe.
+        matches = [i for i in matches if i.required] or matches
     if len(matches) > 1:
         raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")
     numbers = [i for i in inputs if not i.choices]
@@ -182,14 +179,14 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
 
 
 def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
-    """Sentence on an unknown name, with the nearest known name, or all."""
+    """Word an unknown name, with the nearest known name, or all names."""
     near = difflib.get_close_matches(key, [*names, *more], n=1)
     advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}"
     return f"unknown name {key!r}; {advice}"
 
 
 def designs_of(axes: Sequence[Axis], combine: str = "product") -> Designs:
-    """The designs that varied inputs make, with values in the units given.
+    """Make the designs of varied inputs, with values in the units given.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Options of commands that vary inputs, or give them tolerances, and how the designs are computed."""
+"""Options of commands that vary inputs or give them tolerances, and the computation of the designs."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ _MOST_WORKERS = 128
 
 
 def folder(_: object, tokens: Sequence[Token]) -> Path:
-    """Convert the name of a folder, and refuse an empty one, which would be the current folder."""
+    """Convert the name of a folder; refuse an empty one, which would mean the current folder."""
     if not tokens[0].value.strip():
         raise ValueError("the name is empty; give a folder, or leave the option out.")
     return Path(tokens[0].value)
 
 
 Folder = Annotated[Path | None, Parameter(converter=folder)]
-SomeFolder = Annotated[Path, Parameter(converter=folder)]  # folder of an option that has one by default
+SomeFolder = Annotated[Path, Parameter(converter=folder)]  # a folder that has a default
 
 
 def _check_workers(_: object, value: object) -> None:
@@ -64,24 +64,24 @@ class VaryOptions:
 
     @property
     def combine(self) -> Literal["product", "zip"]:
-        """How the inputs are combined."""
+        """The way in which inputs are combined: each with each, or taken together."""
         return "zip" if self.together else "product"
 
     @property
     def options(self) -> dict[str, object]:
-        """The options that are not at their defaults, for the head of a report."""
+        """Options that are not at their defaults, for the head of a report."""
         given: dict[str, object] = {"vary": self.vary or None, "store": self.store}
         given["workers"] = self.workers if self.workers > 1 else None
         return given | {"together": True if self.together else None}
 
     def check(self) -> None:
-        """Refuse options that say nothing without an input that is varied."""
+        """Refuse options that have no effect unless an input is varied."""
         for name in ("together", "workers", "store"):
             if not self.vary and getattr(self, name) != getattr(NOTHING_VARIED, name):
                 raise ValueError(f"--{name} goes with {OPTION}: there is one design only")
 
     def runner(self, kind: str, versions: tuple[str, ...], progress: Callable[[int, int], Any]) -> TaskRunner:
-        """The runner of the designs' tasks; `kind` and `versions` are as for `TaskRunner`."""
+        """Make the runner of the designs' tasks; `kind` and `versions` are as for `TaskRunner`."""
         from beamdyn.common.parallel.tasks import TaskRunner
 
         return TaskRunner(self.workers, None, self.store, kind, versions, progress)
@@ -94,7 +94,7 @@ NOTHING_VARIED = VaryOptions()
 
 
 def _whole(_: object, tokens: Sequence[Token]) -> int:
-    """A whole number; cyclopts alone would cut 2.5 down to 2."""
+    """Read a whole number; cyclopts alone would cut 2.5 down to 2."""
     text = tokens[0].value.strip()
     if not (text.isascii() and text.isdecimal()):
         raise ValueError(f'"{text}" is not a whole number of 0 or more.')
@@ -126,13 +126,13 @@ class SpreadOptions:
 
     @property
     def options(self) -> dict[str, object]:
-        """The options that are not at their defaults, for the head of a report."""
+        """Options that are not at their defaults, for the head of a report."""
         given: dict[str, object] = {"spread": self.spread or None}
         given["samples"] = self.samples if self.samples != DEFAULT_SAMPLES else None
         return given | {"seed": self.seed or None}
 
     def check(self, varying: VaryOptions) -> None:
-        """Refuse what does not go together with the inputs that are varied."""
+        """Refuse options that do not go with each other, or with the inputs that are varied."""
         for name in ("samples", "seed"):
             if not self.spread and getattr(self, name) != getattr(NO_SPREAD, name):
                 raise ValueError(f"--{name} goes with {SPREAD}: no random designs are drawn without it")

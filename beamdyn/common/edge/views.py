@@ -1,4 +1,4 @@
-"""Views of results: tables and a picture in a notebook, columns of a data frame, text."""
+"""Views of results: tables and a picture in a notebook, columns of a data frame, and text."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
-_MOST_ROWS = 30  # rows of a table in a notebook
-_WIDTH = 120  # characters of a table as text
+_MOST_ROWS = 30  # largest number of rows of a table in a notebook
+_WIDTH = 120  # width of a table as text, in characters
 _NOT_SHOWN = ("provenance", "warnings")
 _DEEPEST = 1  # deepest level of objects within a result whose fields are shown
 
-Rows = Iterable[Sequence[object]]  # rows, or columns, which are in display units, too
+Rows = Iterable[Sequence[object]]  # rows with heads first, or columns, which can be in display units
 
 
 @dataclass(frozen=True)
 class View:
-    """How results of a class are shown; what is not given is made from their fields and their `plot`.
+    """The way in which results of a class are shown; parts not given follow from their fields and `plot`.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class View:
 
 
 def view_of(result: Result) -> View:
-    """The view of a result's class, or of the nearest class that it derives from."""
+    """Return the view of a result's class, or of the nearest class that it derives from."""
     for kind in type(result).__mro__:
         package, room, *_ = f"{kind.__module__}.".split(".")
         place = SHOWN_BY.get(f"{package}.{room}", SHOWN_BY.get(package))
@@ -71,7 +71,7 @@ def view_of(result: Result) -> View:
 
 
 def tables_of(result: Result) -> RenderableType:
-    """Tables and sentences on a result, as its command prints them."""
+    """Return tables and sentences on a result, as its command prints them."""
     view = view_of(result)
     if view.tables is not None:
         return view.tables(result)
@@ -87,14 +87,14 @@ def tables_of(result: Result) -> RenderableType:
 
 
 def rows_of(result: Result) -> Rows:
-    """Rows of the CSV file of a result, heads first, in its display units."""
+    """Return the rows of a result's CSV file, heads first, in its display units."""
     made = view_of(result).rows
     rows = _fields_rows(result) if made is None else made(result)
     return rows.in_units(result.display_units) if isinstance(rows, Columns) else rows
 
 
 def picture_of(result: Result) -> Callable[[], Figure] | None:
-    """A function that draws the picture of a result, by its view or its `plot`; None if it has neither."""
+    """Return a function that draws a result, by its view or its `plot`; None if it has neither."""
     made = view_of(result).figure
     if made is not None:
         return lambda: made(result)
@@ -106,20 +106,15 @@ def picture_of(result: Result) -> Callable[[], Figure] | None:
 
 
 def text_of(result: Result) -> str:
-    """The tables as text."""
+    """Return the tables of a result as text."""
     page = Console(file=io.StringIO(), width=_WIDTH, markup=False, highlight=False, emoji=False)
     with page.capture() as captured:
         page.print(tables_of(result))
-    return _in_python("\n".join(line.rstrip() for line in captured.get().splitlines()).strip("\n"))
-
-
-def _in_python(text: str) -> str:
-    """A text whose references to options of a command are replaced by methods."""
-    return text.replace("--json and --csv", "to_dict and to_pandas").replace("--csv", "to_pandas")
+    return "\n".join(line.rstrip() for line in captured.get().splitlines()).strip("\n")
 
 
 def frame_of(result: Result) -> DataFrame:
-    """The rows of the CSV file as a data frame.
+    """Return the rows of a result's CSV file as a data frame of pandas.
 
     Raises
     ------
@@ -143,7 +138,7 @@ def frame_of(result: Result) -> DataFrame:
 
 # Notebooks ------------------------------------------------------------------------------------------
 
-# Colours are inherited from the page, light or dark; the picture has a white ground of its own.
+# Colours are inherited from the page, light or dark; the picture has its own white ground.
 _STYLE = """
 .beamdyn-result { overflow-x: auto; }
 .beamdyn-result h3 { font-size: 1em; font-weight: 600; margin: 0.8em 0 0.3em; }
@@ -161,17 +156,18 @@ _STYLE = """
 
 
 def html_of(result: Result) -> str:
-    """Headline, warnings, tables and picture of a result as a piece of a page, which needs no other file.
+    """Write headline, warnings, tables and picture of a result as HTML that needs no other file.
 
     The picture is an image of its own: it shares no names with others on the page, and runs no scripts.
     """
     said = "".join(f'<p class="warning">{escape(str(each))}</p>' for each in getattr(result, "warnings", ()))
-    shown, name = _in_python(html([tables_of(result)], _MOST_ROWS)), escape(repr(result))
+    shown, name = html([tables_of(result)], _MOST_ROWS), escape(repr(result))
     try:
         draw = picture_of(result)
         content = "" if draw is None else base64.b64encode(png(draw())).decode()
         image = content and f'<img alt="{name}" src="data:image/png;base64,{content}">'
-    except (ValueError, ArithmeticError, LookupError) as error:  # numbers too large, nothing that is finite
+    # Numbers that are too large, or none that is finite.
+    except (ValueError, ArithmeticError, LookupError) as error:
         image = f"<p>{escape(f'There is no picture: {reason_of(error)}')}</p>"
     return (
         f'<div class="beamdyn-result"><style>{_STYLE}</style>\n'
@@ -183,7 +179,7 @@ def html_of(result: Result) -> str:
 
 
 def _fields_rows(result: Result) -> Iterator[Sequence[object]]:
-    """Names, values and units of the public fields; arrays entry by entry."""
+    """Yield names, values and units of the public fields, arrays entry by entry."""
     yield "name", "value", "unit"
     for name, value, unit in _named_fields(result):
         if not isinstance(value, np.ndarray) or not value.size:
@@ -196,7 +192,7 @@ def _fields_rows(result: Result) -> Iterator[Sequence[object]]:
 
 
 def _named_fields(result: Any, depth: int = 0) -> Iterator[tuple[str, Any, str]]:
-    """Name, value and unit of each public field that is a number, a text, or an array or mapping of them.
+    """Yield name, value and unit of each public field that is a number, text, array or mapping of them.
 
     Those of results and other objects within it follow; inputs, which are `Described`, are left out.
     """
@@ -214,7 +210,7 @@ def _named_fields(result: Any, depth: int = 0) -> Iterator[tuple[str, Any, str]]
 
 
 def _parts(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """A value, or those of a mapping or of a sequence of objects, each with its name."""
+    """Yield a value, or the values of a mapping or of a sequence of objects, each with its name."""
     if isinstance(value, dict):
         yield from ((f"{name}, {key}", item) for key, item in value.items())
     elif isinstance(value, tuple | list):

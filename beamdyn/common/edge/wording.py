@@ -1,4 +1,4 @@
-"""Messages of the core about a value, in the terms of a file: its keys, and degrees for radians."""
+"""Messages of the core about a value, reworded in terms of a file: its keys, and degrees for radians."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from beamdyn.common.edge.inputs import describe
 from beamdyn.common.edge.units import last_quantity, unit_as_written
 from beamdyn.common.inputs.checks import OUT_OF_RANGE, InvalidValue
 
-_SUSPECT = 12.0  # powers of ten by which a number is far from 1
+_SUSPECT = 12.0  # number of decades from 1, above which a number may be mistyped
 _FAR = "far too large or too small beside the others: the results leave the range of numbers"
 _CHECK = "check its exponent and its unit"
 
 
 @contextmanager
 def of_file(keys: Mapping[str, str]) -> Iterator[None]:
-    """Within it, an `InvalidValue` names the keys of a file in place of arguments, with angles in degrees.
+    """Reword `InvalidValue` errors in this context: keys of a file for arguments, and angles in degrees.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def of_file(keys: Mapping[str, str]) -> Iterator[None]:
 
 @contextmanager
 def in_range(design: BaseModel) -> Iterator[None]:
-    """Within it, an overflow raises a ValueError, as a mistyped exponent is the likely cause.
+    """Raise a ValueError for an overflow in this context, of which a mistyped exponent is the likely cause.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def in_range(design: BaseModel) -> Iterator[None]:
 
 
 def _numbers(given: object, path: str = "") -> Iterator[tuple[str, float]]:
-    """The numbers of a design, each with its path, such as "pad[0]"."""
+    """Yield the numbers of a design, each with its path, such as "pad[0]"."""
     match given:
         case float():
             yield path, given
@@ -78,7 +78,7 @@ def _numbers(given: object, path: str = "") -> Iterator[tuple[str, float]]:
 
 
 def _decades(number: float) -> float:
-    """How far a size is from 1, in powers of ten; 0 of zero."""
+    """Return how far a size is from 1, in decades; 0 for zero."""
     return abs(math.log10(abs(number))) if number and math.isfinite(number) else 0.0
 
 
@@ -94,5 +94,5 @@ def in_millimetres(error: InvalidValue) -> InvalidValue:
 
 
 def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
-    """Convert an error to the unit at the end of a text, as "+-2 g/cm3" or "0:100:5 rpm", if of its kind."""
+    """Convert an error to the unit at the end of a text, such as "+-2 g/cm3" or "0:100:5 rpm", if it fits."""
     return error.in_unit(*unit_as_written(last_quantity(text), error.unit))

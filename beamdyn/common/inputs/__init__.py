@@ -1,1 +1,1 @@
-"""Inputs described once, their checks, their combinations in designs, and parts of objects by path."""
+"""Inputs that are described once, their checks, their combinations in designs, and parts by path."""

@@ -1,4 +1,4 @@
-"""Checks of numbers that may be arrays: one case or many, by numpy broadcasting."""
+"""Checks of numbers that may be arrays, for one case or many, with numpy's broadcasting."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, as_floats, in_unit, refuse, set_fields
 from beamdyn.common.inputs.described import described_hints, description, kinds_of
 
-Numbers = Any  # a float, or an array of floats: one value a case
+Numbers = Any  # a float, or an array of floats with one value for each case
 Solved = TypeVar("Solved")
 
 
 def numbers(name: str, value: Any, unit: str = "") -> Numbers:
-    """Finite floats: a float, or an array of any shape."""
+    """Return finite floats: a float, or an array of any shape; refuse anything else."""
     array = as_floats(value)
     if array is None:
         raise InvalidValue(name, value, "give a finite number, or an array" + in_unit(unit), unit=unit)
@@ -27,21 +27,21 @@ def numbers(name: str, value: Any, unit: str = "") -> Numbers:
 
 
 def positive(name: str, value: Any, unit: str = "", remedy: str = "") -> Numbers:
-    """Finite floats above zero."""
+    """Return finite floats; refuse any that is not above zero."""
     array = numbers(name, value, unit)
     refuse(np.asarray(array) <= 0, name, array, unit, "it must be greater than 0", remedy)
     return array
 
 
 def not_negative(name: str, value: Any, unit: str = "", remedy: str = "") -> Numbers:
-    """Finite floats of zero or more."""
+    """Return finite floats; refuse any below zero."""
     array = numbers(name, value, unit)
     refuse(np.asarray(array) < 0, name, array, unit, "it must be 0 or more", remedy)
     return array
 
 
 def pair(name: str, value: Any, unit: str = "") -> tuple[Numbers, Numbers]:
-    """Two finite floats or arrays; a message names them by index, such as "tip[0]"."""
+    """Return two finite floats or arrays; a message names them by index, such as "tip[0]"."""
     try:
         first, second = value
     except (TypeError, ValueError):
@@ -50,27 +50,33 @@ def pair(name: str, value: Any, unit: str = "") -> tuple[Numbers, Numbers]:
 
 
 def keep_checked(core: object) -> None:
-    """Replace the described numbers of a frozen dataclass by floats or arrays of floats; None stays.
+    """Replace the described numbers of a frozen dataclass by floats or arrays that broadcast; None stays.
 
     Raises
     ------
     InvalidValue
         If one is not finite, or out of the bounds of its description; the numbers of a pair have none.
+    ValueError
+        If the shapes of the numbers, those of lists aside, do not broadcast.
     """
+    found: dict[str, Any] = {}
     for name, hint in described_hints(type(core)).items():
         value, (kind, *others), described = getattr(core, name), kinds_of(hint), description(hint)
         if described is None or get_origin(kind) is Literal or (value is None and NoneType in others):
             continue
         if get_origin(kind) is tuple:
             checked = pair(name, value, described.unit)
+            found |= {f"{name}[{k}]": each for k, each in enumerate(checked)}
         else:
             checked = numbers(name, value, described.unit)
             described.refuse_out_of_bounds(name, checked)
+            found |= {} if get_origin(kind) is list else {name: checked}
         set_fields(core, **{name: checked})
+    together(**found)
 
 
 def together(**values: Any) -> None:
-    """Raise a ValueError unless the shapes broadcast."""
+    """Raise a ValueError unless the shapes of all values broadcast."""
     shapes = {name: np.shape(value) for name, value in values.items()}
     try:
         np.broadcast_shapes(*shapes.values())

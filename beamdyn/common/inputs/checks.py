@@ -1,4 +1,4 @@
-"""Checks of input values.  Each refusal is an `InvalidValue`, which carries what its message says."""
+"""Checks of input values. Each refusal is an `InvalidValue`, which has the parts of its message as data."""
 
 from __future__ import annotations
 
@@ -6,27 +6,24 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from types import NoneType, UnionType
-from typing import TYPE_CHECKING, Any, get_args
+from typing import Any, Self, get_args
 
 import numpy as np
 
 from beamdyn.common.words import Named, Part, worded
 
-if TYPE_CHECKING:
-    from typing import Self
-
-MOST = 1e50  # largest size in SI units: products of six are still far from overflow
-_LONGEST = 60  # characters of a value that a message shows
+MOST = 1e50  # largest size in SI units, so that products of six are still far from overflow
+_LONGEST = 60  # largest number of characters of a value that a message shows
 
 
 @dataclass(frozen=True)
 class RefusedCases:
-    """Which of N cases are refused.
+    """The refused ones of N cases, with their values and limits.
 
     Parameters
     ----------
     bad : ndarray of bool, shape (N,)
-        Those that are refused.
+        Whether each case is refused.
     value : ndarray, shape (N,)
         The value of each.
     limit : ndarray, shape (N,), optional
@@ -38,14 +35,14 @@ class RefusedCases:
     limit: np.ndarray | None
 
     def converted(self, convert: Callable[[float], float]) -> RefusedCases:
-        """The cases with numbers in another unit."""
+        """Return the cases with values and limits converted to another unit."""
         each = np.vectorize(convert, otypes=[float])
         return RefusedCases(self.bad, each(self.value), None if self.limit is None else each(self.limit))
 
 
 @dataclass(eq=False)
 class InvalidValue(ValueError):
-    """A value that is refused.  Its message is composed from its attributes, which callers may replace.
+    """Raised for a refused value; its message is composed from its attributes, which callers may replace.
 
     Parameters
     ----------
@@ -84,12 +81,12 @@ class InvalidValue(ValueError):
         return self.worded(str)
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """The message, with what a medium calls differently as it words that."""
+        """Return the message, in the words of a medium."""
         name = self.field and f"{self.field} = "
         return f"{name}{self.shown}{self.where}: {self.advice(word)}"
 
     def advice(self, word: Callable[[Part], str]) -> str:
-        """The bound and the remedy, as a medium words them."""
+        """Return the bound and the remedy, in the words of a medium."""
         remedy = self.remedy and f"; {worded(self.remedy, word)}"
         return self._filled(worded(self.bound, word) + remedy)
 
@@ -97,14 +94,14 @@ class InvalidValue(ValueError):
         return type(self), tuple(getattr(self, attribute.name) for attribute in fields(self))
 
     def in_unit(self, unit: str, convert: Callable[[float], float]) -> Self:
-        """The refusal with its numbers in another unit, by what converts one."""
+        """Return the refusal with its numbers converted to another unit."""
         value = convert(self.value) if isinstance(self.value, float) else self.value
         limit = None if self.limit is None else convert(self.limit)
         cases = None if self.cases is None else self.cases.converted(convert)
         return replace(self, value=value, limit=limit, unit=unit, cases=cases)
 
     def by_case(self) -> dict[int, InvalidValue]:
-        """A refusal of each bad case by itself, by the number of the case."""
+        """Return a separate refusal for each bad case, by the number of the case."""
         if self.cases is None:
             return {}
         bad, value, limit = self.cases.bad, self.cases.value, self.cases.limit
@@ -121,10 +118,10 @@ class InvalidValue(ValueError):
 
     @property
     def shown(self) -> str:
-        """The value in the message: a number with its unit, anything else as Python writes it."""
+        """The value as the message shows it: a number with its unit, anything else as Python writes it."""
         if isinstance(self.value, float):
             return self._with_unit(self.value)
-        text = " ".join(repr(self.value).split())  # one line, also of a matrix
+        text = " ".join(repr(self.value).split())  # a matrix, too, is written on one line
         return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
     def _with_unit(self, number: float) -> str:
@@ -143,17 +140,20 @@ OUT_OF_RANGE = (
 
 
 def reason_of(error: Exception) -> str:
-    """The message of an error; of numbers out of range a plain one, in place of that of Python or numpy."""
+    """Return the message of an error.
+
+    A plain one in place of Python's or numpy's for numbers out of range.
+    """
     beyond = isinstance(error, ZeroDivisionError | OverflowError | FloatingPointError)
     return OUT_OF_RANGE if beyond else str(error)
 
 
 class NoModelAnswer(ValueError):
-    """Good arguments to which the model has no answer, such as a speed past the critical speed."""
+    """Raised for valid arguments to which the model has no answer, such as too high a speed."""
 
 
 class BeyondModel(InvalidValue, NoModelAnswer):
-    """A good value at which the model has no answer."""
+    """Raised for a valid value at which the model has no answer."""
 
 
 def refuse(
@@ -199,7 +199,7 @@ def refuse(
 
 
 def real(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """A finite real number as a float: of Python, numpy, Decimal, or whatever else converts itself."""
+    """Return a finite real number (of Python, numpy, Decimal or the like) as a float."""
     number = _as_float(value)
     if not math.isfinite(number):
         raise InvalidValue(name, value, "give a finite number" + in_unit(unit), remedy, unit)
@@ -207,7 +207,7 @@ def real(name: str, value: object, unit: str = "", remedy: str = "") -> float:
 
 
 def _as_float(value: Any) -> float:
-    """The number as a float; nan for text, bytes, a truth value, a complex or masked number, an array."""
+    """Return a number as a float; nan for anything that is not a single real number."""
     of_numpy = hasattr(value, "dtype")
     if not hasattr(value, "__float__") or isinstance(value, bool) or (of_numpy and not _is_one(value)):
         return math.nan
@@ -218,13 +218,13 @@ def _as_float(value: Any) -> float:
 
 
 def _is_one(value: Any) -> bool:
-    """Whether a scalar or an array of numpy is one real number."""
+    """Whether a numpy scalar or array is one real number."""
     return holds_reals(array := np.asanyarray(value)) and not array.ndim
 
 
 def holds_reals(array: np.ndarray) -> bool:
-    """Whether an array holds real numbers alone; a mask, truth values, text and complex numbers are none."""
-    if array.dtype.kind == "O":  # such as Decimal, or an integer beyond 64 bits
+    """Whether an array holds real numbers only; masks, truth values, text and complex numbers are none."""
+    if array.dtype.kind == "O":  # objects, such as Decimal, or an integer beyond 64 bits
         return all(
             hasattr(each, "__float__") and not isinstance(each, bool | np.bool_) for each in array.flat
         )
@@ -232,21 +232,21 @@ def holds_reals(array: np.ndarray) -> bool:
 
 
 def positive(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """A finite number above zero."""
+    """Return a finite number; refuse one that is not above zero."""
     number = real(name, value, unit, remedy)
     refuse(number <= 0, name, number, unit, "it must be greater than 0", remedy)
     return number
 
 
 def moderate(name: str, value: object, unit: str = "") -> float:
-    """A finite number whose powers and products with its like do not overflow."""
+    """Return a finite number whose powers and products with similar ones do not overflow."""
     number = real(name, value, unit)
     refuse(abs(number) > MOST, name, number, unit, "give at most {limit} either way", limit=MOST)
     return number
 
 
 def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """A number above zero, neither so large nor so small that powers and products overflow."""
+    """Return a number above zero, neither so large nor so small that powers and products overflow."""
     number = positive(name, value, unit, remedy)
     refuse(number < 1 / MOST, name, number, unit, "give a size of {limit} or more", remedy, limit=1 / MOST)
     refuse(number > MOST, name, number, unit, "give a size of at most {limit}", remedy, limit=MOST)
@@ -254,21 +254,21 @@ def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
 
 
 def not_negative(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """A finite number of zero or more."""
+    """Return a finite number; refuse one below zero."""
     number = real(name, value, unit, remedy)
     refuse(number < 0, name, number, unit, "it must be 0 or more", remedy)
     return number
 
 
 def amount(name: str, value: object, unit: str = "") -> float:
-    """A number of zero or more, not so large that powers and products overflow."""
+    """Return a number of zero or more, not so large that powers and products overflow."""
     number = not_negative(name, value, unit)
     refuse(number > MOST, name, number, unit, "give at most {limit}", limit=MOST)
     return number
 
 
 def within(name: str, value: object, least: float, most: float) -> float:
-    """A number from `least` to `most`."""
+    """Return a number; refuse one that is not between `least` and `most`."""
     number = _as_float(value)
     if not least <= number <= most:
         raise InvalidValue(name, value, f"give a number from {least:g} to {most:g}")
@@ -276,7 +276,7 @@ def within(name: str, value: object, least: float, most: float) -> float:
 
 
 def angle(name: str, value: object) -> float:
-    """An angle within one turn either way [rad]."""
+    """Return an angle [rad]; refuse one beyond one turn in either direction."""
     number = real(name, value, "rad")
     remedy = f"if {number:g} degrees were meant, give math.radians({number:g})"
     refuse(abs(number) > 2 * math.pi, name, number, "rad", "it is beyond one turn (2 pi)", remedy)
@@ -284,7 +284,7 @@ def angle(name: str, value: object) -> float:
 
 
 def count(name: str, value: object, least: int = 1, most: float = math.inf, remedy: str = "") -> int:
-    """A whole number of at least `least` and at most `most`."""
+    """Return a whole number of at least `least` and at most `most`."""
     number = _as_float(value)
     if not (least <= number <= most and number.is_integer()):
         bounds = f"of {least} or more" if math.isinf(most) else f"from {least} to {most:.0f}"
@@ -293,14 +293,14 @@ def count(name: str, value: object, least: int = 1, most: float = math.inf, reme
 
 
 def flag(name: str, value: object) -> bool:
-    """A truth value, of Python or numpy."""
+    """Return a truth value, of Python or numpy, as a bool."""
     if not isinstance(value, bool | np.bool_):
         raise InvalidValue(name, value, "give True or False")
     return bool(value)
 
 
 def kind(name: str, value: object, wanted: type | UnionType, remedy: str = "") -> None:
-    """Refuse what is not of the wanted class, or of one of several."""
+    """Refuse an object that is not of the wanted class, or of one of several."""
     if not isinstance(value, wanted):
         classes: tuple[Any, ...] = get_args(wanted) or (wanted,)
         known = {NoneType: "None", str: "text"}
@@ -309,7 +309,7 @@ def kind(name: str, value: object, wanted: type | UnionType, remedy: str = "") -
 
 
 def several(name: str, values: Any, wanted: type, remedy: str = "") -> tuple[Any, ...]:
-    """The values as a tuple, each of the wanted class."""
+    """Return values as a tuple; refuse one that is not of the wanted class."""
     try:
         given = None if isinstance(values, str | bytes | dict) else tuple(values)
     except TypeError:
@@ -322,13 +322,13 @@ def several(name: str, values: Any, wanted: type, remedy: str = "") -> tuple[Any
 
 
 def function(name: str, value: object, remedy: str = "") -> None:
-    """Refuse what cannot be called."""
+    """Refuse an object that cannot be called."""
     if not callable(value):
         raise InvalidValue(name, value, "give a function", remedy)
 
 
 def one_of(name: str, value: object, choices: Sequence[str]) -> None:
-    """Refuse what is not one of a few words."""
+    """Refuse anything but one of a few words."""
     if not isinstance(value, str) or value not in choices:
         *others, last = map(repr, choices)
         raise InvalidValue(name, value, f"give {', '.join(others)} or {last}")
@@ -363,7 +363,7 @@ def check_used(what: str, options: Mapping[str, Collection[str]], **given: objec
 
 
 def real_array(name: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
-    """A one-dimensional array of finite floats."""
+    """Return a one-dimensional array of finite floats."""
     array = as_floats(values)
     if array is None:
         raise InvalidValue(name, values, "give a sequence of numbers")
@@ -374,19 +374,20 @@ def real_array(name: str, values: float | Sequence[float] | np.ndarray) -> np.nd
 
 
 def as_floats(values: Any) -> np.ndarray | None:
-    """An array of floats, of any shape; None if it does not hold real numbers alone."""
+    """Return an array of floats, of any shape; None if the values are not all real numbers."""
     try:
         array = np.asanyarray(values)
         if (array.size and not holds_reals(array)) or _holds_truth(values):
             return None
-        with np.errstate(over="ignore"):  # a number beyond float's becomes inf
+        with np.errstate(over="ignore"):  # a number beyond the range of float becomes inf
             return array.astype(float)
-    except (TypeError, ValueError, ArithmeticError):  # of ragged lists, and of numbers beyond float's
+    # Raised by ragged lists, and by numbers beyond the range of float.
+    except (TypeError, ValueError, ArithmeticError):
         return None
 
 
 def _holds_truth(values: Any) -> bool:
-    """Whether a list holds a truth value, which numpy takes for a number where others stand beside it."""
+    """Whether a list holds a truth value, which numpy converts to a number beside other numbers."""
     return isinstance(values, list | tuple) and any(isinstance(each, bool | np.bool_) for each in values)
 
 
@@ -394,7 +395,7 @@ _UNIQUE, _IN_ORDER = "pass numpy.unique({field})", "give each once, in ascending
 
 
 def ascending(name: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
-    """A one-dimensional array of finite floats, each greater than the one before; of one for a number."""
+    """Return an array of ascending finite floats, shape (n,); a single number gives an array of one."""
     array = as_floats(values)
     array = real_array(name, array.reshape(1) if array is not None and not array.ndim else values)
     if not array.size:
@@ -405,11 +406,11 @@ def ascending(name: str, values: float | Sequence[float] | np.ndarray) -> np.nda
 
 
 def set_fields(instance: object, **values: object) -> None:
-    """Set fields of a frozen dataclass during its construction, to their checked values."""
+    """Set fields of a frozen dataclass to their checked values, during its construction."""
     for name, value in values.items():
         object.__setattr__(instance, name, value)
 
 
 def in_unit(unit: str) -> str:
-    """The unit in a sentence, such as " in m"; empty if there is none."""
+    """Return the end of a sentence that names the unit, such as " in m"; empty if there is none."""
     return " in {unit}" if unit else ""

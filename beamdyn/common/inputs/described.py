@@ -1,4 +1,4 @@
-"""Descriptions of inputs as plain data: files, forms and help texts are made from them."""
+"""Descriptions of inputs as plain data, from which files, forms and help texts are made."""
 
 from __future__ import annotations
 
@@ -64,12 +64,12 @@ class Described:
         return self.bounds_as(lambda bound: bound)
 
     def bounds_as(self, convert: Callable[[float], float]) -> str:
-        """Bounds in words, with each number converted to another unit."""
+        """Word the bounds, with each number converted to another unit."""
         limits = (f"{words} {convert(bound):g}" for words, bound, _ in self._limits())
         return ", ".join([*["a whole number"] * self.whole, *limits])
 
     def _limits(self) -> Iterator[tuple[str, float, Callable[[Any, float], Any]]]:
-        """Each bound in words, its number [unit], and which values it refuses."""
+        """Yield each bound in words, its number [unit], and the comparison that refuses a value."""
         for words, bound, refuses in (
             ("greater than", self.above, operator.le),
             ("at least", self.least, operator.lt),
@@ -80,12 +80,12 @@ class Described:
                 yield words, bound, refuses
 
     def is_within_bounds(self, value: float) -> bool:
-        """Whether a value [unit] keeps all bounds."""
+        """Whether a value [unit] is within all bounds."""
         fits = not self.whole or float(value).is_integer()
         return fits and not any(refuses(value, bound) for _, bound, refuses in self._limits())
 
     def nearest_within(self, value: float) -> float:
-        """The value within all bounds that is nearest to a value [unit]."""
+        """Return the value within all bounds that is nearest to a given value [unit]."""
         least = [self.least] if self.above is None else [self.least, math.nextafter(self.above, math.inf)]
         most = [self.most] if self.below is None else [self.most, math.nextafter(self.below, -math.inf)]
         value = max([value, *(bound for bound in least if bound is not None)])
@@ -119,14 +119,14 @@ class Described:
 
 
 def description(hint: Any) -> Described | None:
-    """Description in an annotation, or in one of its parts."""
+    """Return the description in an annotation, or in one of its parts; None if there is none."""
     parts = (hint, *get_args(hint))
     found = (entry for part in parts for entry in getattr(part, "__metadata__", ()))
     return next((entry for entry in found if isinstance(entry, Described)), None)
 
 
 def kinds_of(hint: Any) -> list[Any]:
-    """Types that an annotation allows, without their descriptions."""
+    """Return the types that an annotation allows, without their descriptions."""
     if get_origin(hint) is Annotated:
         return kinds_of(get_args(hint)[0])
     if get_origin(hint) in (Union, UnionType):
@@ -136,13 +136,13 @@ def kinds_of(hint: Any) -> list[Any]:
 
 @cache
 def described_hints(made: Callable[..., Any]) -> dict[str, Any]:
-    """Annotations of the described arguments of a dataclass or function, in their order."""
+    """Return the annotations of the described arguments of a dataclass or function, in order."""
     hints = get_type_hints(made, include_extras=True)
     return {name: hint for name, hint in hints.items() if description(hint)}
 
 
 @cache
 def descriptions(made: Callable[..., Any]) -> dict[str, Described]:
-    """Descriptions of the arguments of a dataclass or function, in their order."""
+    """Return the descriptions of the arguments of a dataclass or function, in order."""
     hints = described_hints(made)
     return {name: found for name, hint in hints.items() if (found := description(hint))}

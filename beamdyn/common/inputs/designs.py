@@ -16,20 +16,21 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, one_of
 from beamdyn.common.inputs.described import description
+from beamdyn.common.words import InputName
 
 _STEP = re.compile(r"\[(\d+)\]|((?:(?!\[\d+\])[^.])+)")
-_AXES = "xy"  # names of the coordinates of points
+_AXES = "xy"  # names of the coordinates of a point
 
 
 def part_at(whole: Any, path: str) -> Any:
-    """The part of an object at a path; None if there is nothing."""
+    """Return the part of an object at a path; None if there is nothing."""
     for step in _steps(path):
         whole = _part(whole, step)
     return whole
 
 
 def with_parts(whole: Any, parts: Mapping[str, Any]) -> Any:
-    """A copy of an object with parts replaced, by their paths: all at once, as they may depend on each other.
+    """Copy an object with parts replaced, by their paths; all at once, as they may depend on each other.
 
     Dataclasses check the values; models of files do not.
     """
@@ -44,7 +45,7 @@ def with_parts(whole: Any, parts: Mapping[str, Any]) -> Any:
 
 
 class _Tree(dict[Any, Any]):
-    """New values by steps, those within a part as a tree of their own."""
+    """New values by the first step of their paths; values further within form trees of their own."""
 
 
 def _steps(path: str) -> list[str | int]:
@@ -81,7 +82,7 @@ def _replaced(whole: Any, new: Any) -> Any:
 
 
 def field_of(made: type, key: str) -> str:
-    """The field of a dataclass with a key in files; of other classes the key itself."""
+    """Return the field of a dataclass with a key in files; for other classes the key itself."""
     return _fields_by_key(made).get(key, key)
 
 
@@ -95,7 +96,7 @@ def _fields_by_key(made: type) -> dict[str, str]:
 
 
 COMBINATIONS = ("product", "zip")
-MOST_DESIGNS = 1_000_000  # number of designs whose answers fit into memory
+MOST_DESIGNS = 1_000_000  # largest number of designs whose answers fit into memory
 
 
 @dataclass(frozen=True)
@@ -125,13 +126,18 @@ class VariedInput:
 
     @property
     def label(self) -> str:
-        """For tables and pictures: name and unit."""
+        """For tables: name and unit."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+    @property
+    def in_words(self) -> str:
+        """For pictures: its name as forms say it; that of the beam's inputs without the beam."""
+        return InputName(self.name).on_form
 
 
 @dataclass(frozen=True)
 class Designs:
-    """N designs: the last input of a product changes fastest.
+    """N designs, as combinations of inputs; the last input of a product changes fastest.
 
     Parameters
     ----------
@@ -147,7 +153,7 @@ class Designs:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of the answers: one axis an input, or one for all that are taken together."""
+        """Shape of the answers: an axis for each input, or one for all that are taken together."""
         lengths = tuple(len(each.values) for each in self.inputs)
         return lengths[:1] if self.combine == "zip" else lengths
 
@@ -157,7 +163,7 @@ class Designs:
         return math.prod(self.shape)
 
     def columns(self, rows: slice | np.ndarray = slice(None)) -> dict[str, np.ndarray]:
-        """The value of each input in some of the designs: (R,) by name."""
+        """Return the values (R,) of each input in some of the designs, by name."""
         places = np.arange(*rows.indices(self.count)) if isinstance(rows, slice) else rows
         if self.combine == "zip":
             return {each.name: each.values[places] for each in self.inputs}
@@ -165,7 +171,7 @@ class Designs:
         return {each.name: each.values[i] for each, i in zip(self.inputs, indices, strict=True)}
 
     def at(self, *place: int) -> dict[str, float]:
-        """Values by name of the design at a place (i1, ..., id) of `shape`.
+        """Return the values by name of the design at a place (i1, ..., id) of `shape`.
 
         Raises
         ------
@@ -180,21 +186,21 @@ class Designs:
         return {each.name: float(each.values[i]) for each, i in zip(self.inputs, places, strict=True)}
 
     def chunks(self, size: int) -> list[slice]:
-        """Rows of designs of at most a size, which follow from the designs alone."""
+        """Split the rows of designs into slices of at most a size."""
         return [slice(k, min(k + size, self.count)) for k in range(0, self.count, size)]
 
     def without(self, name: str) -> Designs:
-        """A copy without one of the inputs."""
+        """Return a copy without one of the inputs."""
         return Designs([each for each in self.inputs if each.name != name], self.combine)
 
     def extremes(self) -> Iterator[dict[str, float]]:
-        """Yield the designs of the smallest and the largest value of each input, each with each."""
+        """Yield all combinations of the smallest and the largest value of each input."""
         ends = [VariedInput(i.name, i.unit, np.unique([i.values.min(), i.values.max()])) for i in self.inputs]
         yield from rows_of(Designs(ends).columns())
 
 
 def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
-    """Designs of columns (R,), each with its values by name."""
+    """Return designs with their values by name, from columns (R,)."""
     return [
         dict(zip(columns, row, strict=True))
         for row in zip(*(c.tolist() for c in columns.values()), strict=True)
@@ -202,14 +208,14 @@ def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
 
 
 def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "vary") -> None:
-    """Refuse an unknown combination, an input given twice, unequal lengths to be taken together, too many.
+    """Refuse unknown combinations, repeated inputs, unequal lengths taken together, and too many designs.
 
     Parameters
     ----------
     designs : Designs
         The designs.
     most : int
-        Largest number of them.
+        Largest number of designs.
     option : str
         Name of the inputs in the message.
 

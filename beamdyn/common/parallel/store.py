@@ -1,4 +1,4 @@
-"""A folder of finished parts of a long computation, one file each, named by a hash of the request."""
+"""A store of finished parts of a long computation: a folder of files named by hashes of the requests."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ import numpy as np
 from beamdyn.common.results.files import ASIDE, write_text
 from beamdyn.common.results.result import DamagedRecord, seal, unseal
 
-_PACKAGES = ("beamdyn", "brakes")  # fields of their classes that equality leaves out change no result
-_MARKER = "store.json"  # tells a store from a folder with other content
-_RECORD = re.compile(r"[0-9a-f]{32}\.json")  # the file of a record: see `fingerprint`
+# Packages whose classes have fields that equality leaves out and that change no result.
+_PACKAGES = ("beamdyn", "brakes")
+_MARKER = "store.json"  # file that tells a store from a folder with other content
+_RECORD = re.compile(r"[0-9a-f]{32}\.json")  # name of the file of a record: see `fingerprint`
 _REMEDY = "name a folder that does not exist yet, or an earlier store"
 
 
@@ -59,7 +60,10 @@ class Store:
             raise ValueError(f"store = {str(path)!r}: it cannot be written ({reason}); {_REMEDY}") from None
 
     def _marked(self, content: Sequence[str]) -> object:
-        """The kind by the marker; by the names of the records, where the marker is damaged or missing."""
+        """Return the kind of results that the folder's marker file names.
+
+        If that file is damaged, return this store's kind if all other files are records, else None.
+        """
         try:
             return json.loads((self.path / _MARKER).read_bytes())["kind"]
         except (OSError, ValueError, LookupError, TypeError):
@@ -67,11 +71,11 @@ class Store:
             return self.kind if records and all(map(_RECORD.fullmatch, records)) else None
 
     def file(self, key: str) -> Path:
-        """The file of the record of a key."""
+        """Return the path of the record with a key."""
         return self.path / f"{key}.json"
 
     def read(self, key: str) -> dict[str, Any] | None:
-        """The record of a key, None if there is none.
+        """Read the record with a key; None if there is none.
 
         Raises
         ------
@@ -90,7 +94,7 @@ class Store:
         return record
 
     def write(self, key: str, record: Mapping[str, Any]) -> None:
-        """Keep a record of JSON's types under a key; floats keep all their digits."""
+        """Store a record of JSON's types under a key; floats keep all their digits."""
         write_text(self.file(key), json.dumps(seal({**record, "key": key})))
 
 
@@ -98,7 +102,7 @@ class Store:
 
 
 def fingerprint(*values: object) -> str:
-    """A hash of values: the same in every process, different if a single bit differs.
+    """Compute a hash of values, the same in every process, and different if a single bit differs.
 
     Parameters
     ----------
@@ -124,7 +128,7 @@ def fingerprint(*values: object) -> str:
 
 
 def _pieces(value: Any) -> Iterator[bytes]:
-    """A value as a sequence of bytes, different for different values."""
+    """Yield a value as bytes, which are different for different values."""
     value = value.item() if isinstance(value, np.generic) else value
     yield f"{type(value).__module__}.{type(value).__qualname__}".encode()
     if isinstance(value, float):
@@ -146,7 +150,7 @@ def _pieces(value: Any) -> Iterator[bytes]:
 
 
 def _parts(value: Any) -> list[Any]:
-    """The items of a container; anything else as its pickle."""
+    """Return the items of a container; for anything else its pickle."""
     if isinstance(value, list | tuple):
         return list(value)
     if isinstance(value, dict):
@@ -161,7 +165,7 @@ def _parts(value: Any) -> list[Any]:
 
 
 def _code(code: CodeType) -> Iterator[bytes]:
-    """The code of a function, independent of its place in the file."""
+    """Yield the code of a function as bytes, independent of its place in the file."""
     yield code.co_code
     yield repr(code.co_names).encode()
     for constant in code.co_consts:

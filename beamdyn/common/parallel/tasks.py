@@ -1,4 +1,4 @@
-"""Tasks of a long computation: run here, in workers or by an executor, few at a time, and kept in a store."""
+"""Tasks of a long computation: run in this process, in workers or by an executor, and kept in a store."""
 
 from __future__ import annotations
 
@@ -20,8 +20,11 @@ from beamdyn.common.results.snapshots import decode, encode
 Progress = Callable[[int, int], object]
 Solve = Callable[[Any], Any]
 Keep = Callable[[Any, Any], None]
-_IN_FLIGHT = 256  # tasks that an executor has at a time: enough for its workers, few for the memory
-_PER_WORKER = 8  # the same for each worker of our own: what waits is taken back where it is wanted
+# Largest number of tasks submitted to an executor: enough for its workers, few for the memory.
+_IN_FLIGHT = 256
+# Largest number of tasks submitted for each worker process of this package; those that still wait can be
+# taken back.
+_PER_WORKER = 8
 
 
 class RunInterrupted(RuntimeError):
@@ -35,7 +38,7 @@ class RunInterrupted(RuntimeError):
         Whether those that are done are in a store.
     """
 
-    parts = "designs"  # name of the parts in messages
+    parts = "designs"  # what messages call the parts
 
     def __init__(self, done: int, total: int, stored: bool) -> None:
         super().__init__(done, total, stored)
@@ -61,7 +64,7 @@ class StudyInterrupted(RunInterrupted):
 
 @dataclass(frozen=True)
 class Task:
-    """A part of a computation.
+    """A part of a computation, with what it is made from.
 
     Parameters
     ----------
@@ -70,7 +73,7 @@ class Task:
     size : int
         Number of its designs or cases.
     place : object
-        Where its result belongs.
+        Where the result of the task belongs among all results.
     """
 
     make: Callable[[], Any]
@@ -80,7 +83,7 @@ class Task:
 
 @dataclass
 class TaskRunner:
-    """Runs tasks, and keeps their results in a store.
+    """A runner of tasks, which keeps their results in a store.
 
     A result depends on its task alone, so that it is the same to the bit for any workers or executor.
 
@@ -138,16 +141,16 @@ class TaskRunner:
             function("progress", self.progress, f"it takes the numbers of finished {parts} and of all")
 
     def open_store(self) -> Store | None:
-        """The store, which is made or, with a ValueError, refused when it is first asked for."""
+        """Return the store, which is opened when it is first asked for; None if there is none."""
         if self._opened is None and self.store is not None:
             self._opened = Store(Path(self.store), self.kind)
         return self._opened
 
     @contextmanager
     def prepared(self, solve: Solve, tasks: int) -> Iterator[None]:
-        """Let workers of our own import what solves so many tasks, while the caller prepares these.
+        """Start workers that import what `solve` needs, while the caller prepares the tasks in this context.
 
-        With a store, in which all results may be, they start when they are needed.
+        If there is a store, which may have all results, workers start only when they are needed.
         """
         others = min(self.workers, tasks) - 1
         if self.executor is not None or self.store is not None or others < 1:
@@ -162,7 +165,7 @@ class TaskRunner:
                 self._pool = None
 
     def run(self, solve: Solve, tasks: Sequence[Task], keep: Keep) -> None:
-        """Solve the tasks; `keep` takes the place and the result of each, in the order in which they end.
+        """Solve tasks; `keep` receives the place and the result of each, in the order in which they end.
 
         Parameters
         ----------
@@ -192,7 +195,7 @@ class TaskRunner:
 
 
 class _Pending(NamedTuple):
-    """A task that is not in the store, what it made, and the key of its result."""
+    """A task whose result is not in the store, with what it made, and the key of its result."""
 
     task: Task
     made: Any
@@ -201,7 +204,7 @@ class _Pending(NamedTuple):
 
 @dataclass
 class _TaskRun:
-    """One run of tasks, and how far it is."""
+    """One run of tasks, and its progress."""
 
     runner: TaskRunner
     solve: Solve
@@ -211,12 +214,15 @@ class _TaskRun:
     flying: dict[Future[Any], _Pending] = field(default_factory=dict)
 
     def here(self, tasks: Sequence[Task]) -> None:
-        """Solve the tasks one after the other."""
+        """Solve the tasks in this process, one after the other."""
         for pending in self._missing(tasks):
             self._finish(pending, _solve(self.solve, pending.made))
 
     def through(self, executor: Executor, most: int, tasks: Sequence[Task], helps: bool = False) -> None:
-        """Have an executor solve the tasks, at most so many at a time; `helps` solves some here meanwhile."""
+        """Solve tasks with an executor, a limited number at a time.
+
+        With `helps`, this process also solves some of the tasks itself.
+        """
         missing = self._missing(tasks)
         try:
             while True:
@@ -241,12 +247,12 @@ class _TaskRun:
             self._finish(self.flying.pop(future), result)
 
     def _take_back(self) -> _Pending | None:
-        """A task that waits for a worker; None if none waits."""
+        """Take back a task that waits for a worker; None if none waits."""
         waiting = next((future for future in reversed(self.flying) if future.cancel()), None)
         return None if waiting is None else self.flying.pop(waiting)
 
     def _missing(self, tasks: Sequence[Task]) -> Iterator[_Pending]:
-        """Yield the tasks that are not in the store, made when they are wanted; keep those that are."""
+        """Yield the tasks that are not in the store, made one at a time; keep the results that are in it."""
         self._report()
         for task in tasks:
             made = task.make()
@@ -259,12 +265,12 @@ class _TaskRun:
                 self._report()
 
     def _key(self, made: Any) -> str:
-        """The name of a stored result: a hash of the versions, of the function and of the task."""
+        """Return the key of a stored result: a hash of versions, function and task."""
         stored = self.runner.store is not None
         return fingerprint(self.runner.versions, self.solve, made) if stored else ""
 
     def _stored(self, key: str) -> Any:
-        """The result in the store; None if there is none that is whole."""
+        """Return the result in the store; None if there is none, or it is damaged."""
         if (store := self.runner.open_store()) is None:
             return None
         try:
@@ -276,7 +282,10 @@ class _TaskRun:
             return None
 
     def _ask(self, action: Callable[..., Any], *arguments: Any) -> Any:
-        """Call the executor; an error that it raises is its own, because tasks return theirs."""
+        """Call the executor; on an error, store what is done and raise `TaskRunner.interrupted`.
+
+        The error is then the executor's own, as tasks return theirs.
+        """
         try:
             return action(*arguments)
         except Exception as error:
@@ -315,7 +324,7 @@ class _TaskRun:
 
 
 def _import(solve: Solve) -> None:
-    """Nothing: whoever is sent this has imported what `solve` needs."""
+    """Do nothing; a process that receives this has imported what `solve` needs."""
 
 
 def _solve(solve: Solve, made: Any) -> Any:
@@ -324,7 +333,7 @@ def _solve(solve: Solve, made: Any) -> Any:
 
 
 def _returning_errors(solve: Solve, made: Any) -> Any:
-    """Solve a task and return its error, if any, so that errors raised are the executor's own."""
+    """Solve a task and return its error, if any, so that raised errors are always the executor's."""
     try:
         return _solve(solve, made)
     except Exception as error:

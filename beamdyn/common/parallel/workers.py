@@ -1,4 +1,4 @@
-"""Worker processes of our own: an executor that survives the death of its processes."""
+"""Worker processes of this package: an executor that survives the death of its processes."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from typing import Any, BinaryIO
 
 from threadpoolctl import ThreadpoolController
 
-ATTEMPTS = 3  # processes that one task may cost
+ATTEMPTS = 3  # number of processes that may die of one task
 _SERVE = (
-    "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); "  # Ctrl-C is the caller's to handle
+    "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); "  # the caller handles Ctrl-C
     "from beamdyn.common.parallel.workers import serve; serve()"
 )
 _log = logging.getLogger(__name__)
 
 
 class WorkerDied(BrokenExecutor):
-    """A task ended every process that took it."""
+    """Raised when a task ended every process that ran it."""
 
 
 class Workers(ThreadPoolExecutor):
@@ -52,7 +52,7 @@ class Workers(ThreadPoolExecutor):
         self._stopped = False
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Run fn(*args, **kwargs) in a process."""
+        """Submit fn(*args, **kwargs), to be run in a process."""
         return super().submit(self._run, pickle.dumps((fn, args, kwargs)))
 
     def stop(self) -> None:
@@ -86,7 +86,7 @@ class Workers(ThreadPoolExecutor):
         raise WorkerDied(f"a task ended {ATTEMPTS} worker processes (exit code {code}): out of memory?")
 
     def _process(self) -> _Process:
-        """The process of this thread."""
+        """Return the process of this thread, started when it is first needed."""
         with self._lock:
             if self._stopped:
                 raise CancelledError
@@ -97,7 +97,7 @@ class Workers(ThreadPoolExecutor):
 
 
 class _Process:
-    """A process that takes pickled tasks on its standard input and answers on its standard output."""
+    """A process that reads pickled tasks from standard input and writes answers to standard output."""
 
     def __init__(self) -> None:
         path = os.pathsep.join(p or os.getcwd() for p in sys.path)
@@ -112,7 +112,7 @@ class _Process:
         self.pid, self.kill = self._popen.pid, self._popen.kill
 
     def run(self, task: bytes) -> Any:
-        """The result of a task; EOFError or BrokenPipeError if the process dies."""
+        """Run a task and return its result; raise EOFError or BrokenPipeError if the process dies."""
         _send(self._tasks, task)
         done, result = pickle.loads(_receive(self._answers))
         if not done:
@@ -120,17 +120,17 @@ class _Process:
         return result
 
     def close(self) -> int:
-        """Let the process end, and return its exit code."""
+        """End the process, and return its exit code."""
         for stream in (self._tasks, self._answers):
-            with suppress(BrokenPipeError):  # what was written last never arrived
+            with suppress(BrokenPipeError):  # what was written last may not have arrived
                 stream.close()
         return self._popen.wait()
 
 
 def serve() -> None:
-    """Do the tasks that arrive on the standard input until it is closed, or nobody takes the answers."""
+    """Run tasks that arrive on standard input until it is closed, or nobody reads the answers."""
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what a task prints must not mix with the answers
+    os.dup2(2, 1)  # standard output is redirected, as what a task prints must not mix with the answers
     while True:
         try:
             task = _receive(sys.stdin.buffer)
@@ -138,7 +138,7 @@ def serve() -> None:
         except EOFError:
             return
         except BrokenPipeError:  # the caller was killed
-            os._exit(0)  # ends without a last try to send what is left
+            os._exit(0)  # ends without another try to send what is left
 
 
 def _answer(task: bytes) -> bytes:
@@ -148,7 +148,7 @@ def _answer(task: bytes) -> bytes:
     except Exception as error:
         try:
             return pickle.dumps((False, error))
-        except Exception:  # the error itself cannot be sent
+        except Exception:  # the error itself cannot be pickled
             return pickle.dumps((False, RuntimeError(repr(error))))
 
 
@@ -171,7 +171,7 @@ def _receive(stream: BinaryIO | Any) -> bytes:
 
 @cache
 def _find_libraries() -> ThreadpoolController:
-    """Libraries of numpy and scipy that start threads.  They stay loaded; to find them takes milliseconds."""
+    """Return the loaded libraries that start threads; cached, as finding them takes milliseconds."""
     return ThreadpoolController()
 
 
@@ -182,7 +182,7 @@ _blas_limits: Any = None
 
 @contextmanager
 def one_blas_thread() -> Iterator[None]:
-    """Give BLAS one thread while inside; where several threads are inside, until the last leaves."""
+    """Limit BLAS to one thread in this context; if several threads enter it, until the last one leaves."""
     global _blas_users, _blas_limits
     with _blas_lock:
         _blas_users += 1

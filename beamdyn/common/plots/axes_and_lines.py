@@ -1,33 +1,29 @@
-"""Axes of plots, lines on them that differ in colour and dashes, and notes below a figure."""
+"""Axes of plots, lines that differ in colour and dashes, and notes below a figure."""
 
 from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamdyn.common.results.display_units import DisplayUnits
-from beamdyn.common.results.pictures import COLOURS, DASHES, add_legend, new_axes
+from beamdyn.common.results.pictures import COLOURS, DASHES, Axes, Figure, add_legend, new_axes
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_LETTERS = 15.0  # letters of a note in an inch
-_COLOUR = "#5a4200"  # colour of notes
+_LETTERS = 15.0  # number of letters of a note that fit into an inch
+_COLOUR = "#5a4200"  # colour of the letters of notes
 
 
 def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
-    """Label the axes, new ones if none are given, with a grid and plain numbers."""
+    """Label axes, with a grid and plain numbers; new axes if none are given."""
     ax = new_axes() if ax is None else ax
     ax.set_xlabel(xlabel, fontsize=12)
     ax.set_ylabel(ylabel, fontsize=12)
     ax.tick_params(labelsize=11)
     for axis in ("x", "y"):
-        with suppress(AttributeError):  # where axes drawn on before have a scale that has no offset
+        with suppress(AttributeError):  # axes drawn on before may have a scale without an offset
             ax.ticklabel_format(axis=axis, useOffset=False)
     ax.margins(x=0.02)
     ax.grid(color="0.85", linewidth=0.7)
@@ -41,11 +37,11 @@ def panels(count: int, ax: Axes | None = None, columns: int = 2) -> tuple[Axes, 
     Parameters
     ----------
     count : int
-        How many.
+        Number of panels.
     ax : Axes, optional
         Whose place they take; that of a new figure if not given.
     columns : int
-        Most in a row.
+        Largest number of panels in a row.
 
     Returns
     -------
@@ -67,12 +63,12 @@ def panels(count: int, ax: Axes | None = None, columns: int = 2) -> tuple[Axes, 
 
 
 def speed_label(units: DisplayUnits) -> str:
-    """Name of an axis of speeds."""
+    """Return the label of an axis of speeds."""
     return f"angular speed [{units.speed_unit().name}]"
 
 
 def position_label(units: DisplayUnits) -> str:
-    """Name of an axis of positions along the beam."""
+    """Return the label of an axis of positions along the beam."""
     return f"position along the beam [{units.length_unit('m').name}]"
 
 
@@ -83,7 +79,7 @@ def draw_lines(ax: Axes, x: np.ndarray, rows: Iterable[np.ndarray], labels: Sequ
 
 
 def line_style(i: int) -> dict[str, Any]:
-    """Colour and dashes of line i."""
+    """Return the colour and dashes of line i."""
     cycle, colour = divmod(i, len(COLOURS))
     return {"color": COLOURS[colour], "linestyle": DASHES[cycle % len(DASHES)]}
 
@@ -112,7 +108,7 @@ def draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, sty
 
 
 def style_by_plane(i: int) -> dict[str, Any]:
-    """Colour of line i, and its width, which changes when the colours are used up."""
+    """Return the colour of line i, and its width, which changes when the colours are used up."""
     cycle, colour = divmod(i, len(COLOURS))
     return {"color": COLOURS[colour], "linewidth": max(1.8 - 0.6 * cycle, 0.6)}
 
@@ -124,7 +120,7 @@ def name_colour(ax: Axes, label: str, i: int) -> None:
 
 
 def name_planes(ax: Axes, words: Sequence[str]) -> Axes:
-    """Name solid and dashed lines in the legend, and add that."""
+    """Name solid and dashed lines in the legend, and add the legend."""
     for dashes, text in zip(("-", "--"), words, strict=True):
         ax.plot([], [], dashes, color="0.3", linewidth=1.8, label=text)
     return add_legend(ax)

@@ -1,29 +1,27 @@
-"""Campbell's diagram from arrays: natural frequencies and lines over speed, with what is marked in it."""
+"""Campbell diagrams from arrays: natural frequencies and excitation lines over speed, with marks."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamdyn.common.plots.axes_and_lines import draw_by_plane, set_up_axes, style_by_plane
 from beamdyn.common.results.display_units import DisplayUnits
-from beamdyn.common.results.pictures import COLOURS
+from beamdyn.common.results.pictures import COLOURS, Axes
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_MOST_ABOVE = 2.0  # highest frequency shown, over that of the fastest line at the top speed
+_MOST_ABOVE = 2.0  # highest frequency shown, over that of the steepest line at the top speed
 _HEADROOM = 1.06
-_MOST_HIDDEN = 2  # modes above the picture that the legend names
-_APART = 0.042  # least distance of two labels, over the height
-_LONGEST = 36  # letters of an entry of the legend above which it has two columns
-_SAME = 0.03  # distance of two labels of one name below which one of them will do, over the height
-_GREY, _DARK = "0.45", "0.1"  # colours of per-rev lines, and of the motion's
-_PER_REV = re.compile(r"\d+P")  # names of per-rev lines
+_MOST_HIDDEN = 2  # largest number of modes above the picture that the legend names
+_APART = 0.042  # least distance of two labels, over the height of the axes
+_LONGEST = 36  # letters of a legend entry, above which the legend has two columns
+# Distance of two labels with the same name, over the height of the axes, below which only one is written.
+_SAME = 0.03
+_GREY, _DARK = "0.45", "0.1"  # colours of per-rev lines, and of the motion's lines
+_PER_REV = re.compile(r"\d+P")  # pattern of the names of per-rev lines
 _MARKS: tuple[dict[str, Any], ...] = (
     {"marker": "o", "color": "black", "markerfacecolor": "white", "markersize": 6},
     {"marker": "s", "color": "black", "markerfacecolor": "white", "markersize": 6},
@@ -36,7 +34,7 @@ _INSIDE: tuple[dict[str, Any], ...] = (
 
 @dataclass(frozen=True)
 class Curves:
-    """Natural frequencies of one scene.
+    """Natural frequencies of one scene over speed.
 
     Parameters
     ----------
@@ -126,18 +124,19 @@ def plot_campbell(
     if len(scenes) == 1 and scenes[0].label:
         ax.set_title(scenes[0].label, fontsize=12, pad=6 + 12 * rows)
     handles, labels = ax.get_legend_handles_labels()
-    if labels:  # below the axes, where it covers nothing
+    if labels:  # the legend stands below the axes, where it covers nothing
         columns = 3 if max(map(len, labels)) <= _LONGEST else 2
         from matplotlib.transforms import ScaledTranslation
 
-        below = ax.transAxes + ScaledTranslation(0, -0.55, ax.figure.dpi_scale_trans)  # inch: for the x label
+        # In inches, to leave room for the x label.
+        below = ax.transAxes + ScaledTranslation(0, -0.55, ax.figure.dpi_scale_trans)
         place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
         ax.legend(handles, labels, fontsize=9.5, ncols=columns, frameon=False, borderaxespad=0, **place)
     return ax
 
 
 def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> float:
-    """Top of the axis of frequencies [Hz]: above the modes that are not far above all lines."""
+    """Return the top of the frequency axis [Hz]: above the modes that are not far above all lines."""
     fastest = max(lines.values(), default=0.0) * last / (2 * np.pi)
     shown = np.concatenate([curves.frequency.ravel() for curves in scenes])
     shown = shown[np.isfinite(shown)]
@@ -151,7 +150,7 @@ def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> f
 def _draw_lines(
     ax: Axes, factor: float, lines: Mapping[str, float], ends: np.ndarray, top: float
 ) -> tuple[list[_CurveName], int]:
-    """Draw the lines, and name those that leave at the top there: labels of the others, rows of names."""
+    """Draw the lines; return the labels at the right end, and the number of rows of names above the axes."""
     at_right, above = [], []
     for name, multiple in lines.items():
         per_rev = _PER_REV.fullmatch(name)
@@ -162,7 +161,7 @@ def _draw_lines(
             at_right.append(_CurveName(name, y[1], colour))
         else:
             above.append((name, colour, 2 * np.pi * top / multiple))
-    right: list[float] = []  # ends of the rows of names
+    right: list[float] = []  # right end of each row of names
     for name, colour, speed in sorted(above, key=lambda line: line[2]):
         half = 0.006 * (len(name) + 1) * (ends[1] - ends[0])
         row = next((r for r, end in enumerate(right) if speed - half > end), len(right))
@@ -174,7 +173,10 @@ def _draw_lines(
 
 
 def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -> Iterator[_CurveName]:
-    """Draw the modes, and yield their labels; one that does not reach the right end is named at its start."""
+    """Draw the modes, and yield their labels.
+
+    A mode that ends before the right side is named at its start.
+    """
     for k, curves in enumerate(scenes):
         solid = np.ones(curves.frequency.shape, bool) if curves.solid is None else curves.solid
         x = factor * curves.speeds
@@ -185,7 +187,7 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
                 changed = curves.directions if dashes[0] != dashes[-1] else None
                 more = (
                     f" ({changed[0 if dashes[-1] else 1]})" if changed else ""
-                )  # what it mostly is in the end
+                )  # direction in which the mode mostly bends at the right end
                 yield _CurveName(name + more, float(y[-1]), style["color"])
             elif (shown := np.flatnonzero(np.isfinite(y) & (y <= top))).size:
                 place = {"xytext": (4, 3), "textcoords": "offset points", "color": style["color"]}
@@ -201,7 +203,7 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
 
 
 def _name_hidden(ax: Axes, scenes: Sequence[Curves], top: float) -> None:
-    """Name the modes above the picture in the legend, with their least frequency where it is one scene."""
+    """Name modes above the picture in the legend, with their least frequency if there is one scene."""
     hidden = {
         name: np.nanmin(y)
         for curves in scenes
@@ -215,7 +217,7 @@ def _name_hidden(ax: Axes, scenes: Sequence[Curves], top: float) -> None:
 
 
 def _name_at_right(ax: Axes, labels: Sequence[_CurveName], top: float) -> None:
-    """Name curves beside their right ends, the labels apart, each with a leader to its curve.
+    """Name curves beside their right ends, with labels apart and a leader to each curve.
 
     One label in grey stands for those of one name whose curves end close to one another.
     """
@@ -238,7 +240,7 @@ def _name_at_right(ax: Axes, labels: Sequence[_CurveName], top: float) -> None:
 
 
 def _spread(heights: Sequence[float]) -> list[float]:
-    """Move ascending heights as little as need be, so that neighbours are apart.
+    """Move ascending heights as little as possible, so that neighbours are far enough apart.
 
     Heights less their numbers times the distance have to ascend: the nearest ascending ones are the means
     of blocks that do not (pool adjacent violators).

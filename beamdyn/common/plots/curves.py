@@ -1,26 +1,26 @@
-"""Plots of answers over inputs of a scene or design, of loads along the span, and of errors over time."""
+"""Plots of answers over inputs, of loads along the span, and of errors over time."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.plots.axes_and_lines import line_style, position_label, set_up_axes
 from beamdyn.common.plots.maps import MapAnswer, MapInput, map_size, plot_maps
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
-from beamdyn.common.results.pictures import COLOURS, add_legend, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from beamdyn.common.results.pictures import COLOURS, Axes, Figure, add_legend, new_figure
 
 _MOST_CURVES = 8
-_LOWEST, _ROW = 0.02, 0.03  # heights of crosses on the axes, and between those of two curves
+# Height of the lowest row of crosses that mark missing values, and distance of rows, over the axes' height.
+_LOWEST, _ROW = 0.02, 0.03
 _GREY = "0.5"
-_FEW = 4  # cases that are drawn as lines along the span; of more, their range is
+_FEW = 4  # largest number of cases drawn as lines along the span; of more cases the range is drawn
 _MARKERS = "osD^vXP"
+_SAME = 1e-6  # difference of curves, over the largest value, that cannot be seen
+_FEWEST_BARS = 3  # names for which a picture of bars has room at least
 
 
 # Sweeps over inputs ----------------------------------------------------------------------------------
@@ -67,7 +67,7 @@ def _maps_of(swept: Any) -> Figure:
 
 
 def panels_of(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
-    """Panels over one input: heading, names of curves, the curves (m, n). Results of one unit share a panel.
+    """Return panels over one input: heading, names of curves, and curves (m, n) of one unit.
 
     Parameters
     ----------
@@ -90,14 +90,14 @@ def panels_of(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
 
 
 def input_words(swept: Any, place: int) -> str:
-    """An input in words, without its table.
+    """Word an input, without the name of its table.
 
     Parameters
     ----------
     swept : InputSweep
         The sweep.
     place : int
-        Which of its inputs.
+        Index of the input among those of the sweep.
     """
     return _named(_input_name(swept.inputs[place]), swept.units[place])
 
@@ -107,27 +107,26 @@ def _input_name(path: str) -> str:
 
 
 def _named(name: str, unit: str) -> str:
-    """A name in words with its unit."""
+    """Word a name with its unit."""
     return f"{name.replace('_', ' ')} [{unit}]" if unit else name.replace("_", " ")
 
 
 def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> Axes:
-    """Curves, shape (m, n), that differ in colour and style; of many, some spread evenly.
+    """Draw curves (m, n) that differ in colour and style; of many, some that are spread evenly.
 
     Parameters
     ----------
     ax : Axes
-        Where to draw.
+        Axes on which to draw.
     x : ndarray, shape (n,)
         Places.
     values : ndarray, shape (m, n)
         Heights; there is a gap where they are not finite.
     labels : sequence of str
-        One a curve.
+        Names of the curves, one each.
     """
     values = np.where(np.isfinite(values), values, np.nan)
-    shown = np.unique(np.linspace(0, len(values) - 1, min(len(values), _MOST_CURVES)).round().astype(int))
-    for place, i in enumerate(shown):
+    for place, i in enumerate(evenly_spread(len(values), _MOST_CURVES)):
         label = labels[i] if np.isfinite(values[i]).any() else f"{labels[i]}: none"
         ax.plot(x, values[i], linewidth=1.6, label=label, **line_style(place))
     grid(ax)
@@ -135,7 +134,7 @@ def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -
 
 
 def mark_missing(ax: Axes, label: str) -> bool:
-    """Mark places where curves have no value by crosses at the bottom, in a row and the colour of each curve.
+    """Mark places where curves have no value, by crosses at the bottom in the colour of each curve.
 
     Parameters
     ----------
@@ -162,7 +161,7 @@ def mark_missing(ax: Axes, label: str) -> bool:
 
 
 def grid(ax: Axes) -> None:
-    """A light grid behind the curves."""
+    """Draw a light grid behind the curves."""
     ax.grid(color="0.9", linewidth=0.8)
     ax.set_axisbelow(True)
 
@@ -179,7 +178,7 @@ def plot_bars(
     rows : ndarray, shape (n, k)
         Lengths; those that are not finite are left out.
     labels : sequence of str
-        One an answer.
+        Names of the answers, one each.
     xlabel : str
         Label of the axis.
     ax : Axes, optional
@@ -193,6 +192,8 @@ def plot_bars(
         places = np.arange(len(names)) + (rows.shape[1] / 2 - k - 0.5) * height
         ax.barh(places, finite[order, k], height, label=label)
     ax.set_yticks(np.arange(len(names)), [str(names[i]) for i in order])
+    room = max(_FEWEST_BARS - len(names), 0) / 2 + 0.5
+    ax.set_ylim(-room, len(names) - 1 + room)
     ax.axvline(0.0, color="0.4", linewidth=0.8)
     return add_legend(ax)
 
@@ -209,6 +210,8 @@ def plot_along_span(
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
     """Draw a quantity along the beam, one colour a component: lines of few cases, the range of more.
+
+    Components that are the same have one colour together.
 
     Parameters
     ----------
@@ -231,7 +234,7 @@ def plot_along_span(
     """
     ax = set_up_axes(ax, position_label(units), quantity)
     x = units.length_unit("m").of(x)
-    for k, label in enumerate(labels):
+    for k, label in _alike(values, labels):
         colour, of_component = COLOURS[k % len(COLOURS)], values[..., k]
         if len(values) <= _FEW:
             for number, row in enumerate(of_component):
@@ -243,6 +246,20 @@ def plot_along_span(
         ax.plot(x, low, color=colour, linewidth=1.8)
     ax.ticklabel_format(axis="y", style="sci", scilimits=(-3, 4), useOffset=False)
     return add_legend(ax)
+
+
+def _alike(values: np.ndarray, labels: Sequence[str]) -> list[tuple[int, str]]:
+    """Return the index of each component (..., k) that differs from those before, named with its equals.
+
+    Curves of equal components would cover each other.
+    """
+    least = _SAME * np.nanmax(np.abs(values), initial=0.0)
+    named: dict[int, list[str]] = {}
+    for k, label in enumerate(labels):
+        own = values[..., k]
+        first = next((i for i in named if np.allclose(values[..., i], own, 0, least, equal_nan=True)), k)
+        named.setdefault(first, []).append(label)
+    return [(k, " and ".join(each)) for k, each in named.items()]
 
 
 def plot_load_over_time(

@@ -1,6 +1,6 @@
-"""Export of mode shapes and motions as mesh files, for ParaView and the like, and as animations.
+"""Export of mode shapes and motions as mesh files, for ParaView and similar programs, and as animations.
 
-The only module that uses meshio.
+No other module uses meshio.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from beamdyn.common.results.pictures import new_figure, save_animation
 if TYPE_CHECKING:
     import meshio
 
-SHAPE_SUFFIXES = (".vtu", ".vtk")  # not .xdmf, for which meshio needs h5py
-SERIES_SUFFIXES = (".xdmf",)  # their numbers are written as text
-_DRAWN_RATIO = 0.1  # largest drawn deflection, and default width, relative to the length
+SHAPE_SUFFIXES = (".vtu", ".vtk")  # without .xdmf, for which meshio needs h5py
+SERIES_SUFFIXES = (".xdmf",)  # suffixes of files with shapes over time
+_DRAWN_RATIO = 0.1  # largest drawn deflection, and default width, over the length
 
 
 def write_shapes(
@@ -171,7 +171,7 @@ def animate(
     """
     x, t, deflection = _check_history(x, t, deflection)
     figure = note_below(new_figure(6.4, 3.6), notes)
-    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # axes hold the whole motion
+    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # the axes hold the whole motion
     ax.set(xlim=(0, 1e3 * x[-1]), ylim=(-reach, reach))
     ax.set(xlabel="position along the beam [mm]", ylabel="deflection [mm]")
     ax.grid(color="0.85", linewidth=0.7)
@@ -179,7 +179,7 @@ def animate(
     (line,) = ax.plot(1e3 * x, 0 * x, color="#0072B2", linewidth=2.5)
     title = ax.set_title("t = 0 s")
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # laid out once, not for each frame
+    figure.set_layout_engine("none")  # the figure is laid out once, not for each frame
 
     def frames() -> Iterator[float]:
         for time, row in zip(t.tolist(), deflection, strict=True):
@@ -214,7 +214,7 @@ def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None, ro
 
 
 def _over_width(values: np.ndarray) -> np.ndarray:
-    """Deflections with a last axis for positions across, one where none is given."""
+    """Return deflections with a last axis for positions across the width, of length one if they have none."""
     values = np.asarray(values)
     return values[..., None] if values.ndim == 2 else values
 
@@ -238,7 +238,7 @@ def _check_history(
 def _check_shapes(
     x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], across: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Deflections of modes (m, n, k), and those in the direction across (m, n)."""
+    """Check deflections of modes (m, n, k), and those in the direction across (m, n); return both."""
     shapes = _over_width(shapes)
     aside = np.zeros(shapes.shape[:2]) if across is None else np.asarray(across)
     for name, values, places in ("shapes", shapes, shapes.shape[2:]), ("across", aside, ()):
@@ -256,12 +256,12 @@ def _check_shapes(
 
 
 def _scale(field: np.ndarray, largest: float) -> np.ndarray:
-    """Scale displacements to a given largest component; those of zeros stay."""
+    """Scale displacements to a given largest component; zeros stay zeros."""
     return field * (largest / (np.abs(field).max() or 1.0))
 
 
 def _displacement(deflection: np.ndarray, points: int, across: np.ndarray) -> np.ndarray:
-    """Displacement vectors along z, of a deflection (n, k), and along -y, of one across (n,), of a strip.
+    """Return displacement vectors of a strip: z from a deflection (n, k), -y from one across (n,).
 
     Rows of points follow each other from the lowest y; where k is 1 they are displaced alike.
     """

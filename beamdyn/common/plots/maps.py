@@ -1,4 +1,4 @@
-"""Pictures of answers over inputs: curves over one input, lines of equal value over two, a panel each."""
+"""Pictures of answers over inputs: curves over one input, maps with lines of equal value over two."""
 
 from __future__ import annotations
 
@@ -6,32 +6,34 @@ import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.plots.axes_and_lines import new_axes, panels, set_up_axes
 from beamdyn.common.plots.placed_labels import PlacedLabels
-from beamdyn.common.results.pictures import COLOURS
+from beamdyn.common.results.pictures import COLOURS, Axes
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_MOST_THIRD = 3  # values of a third input that have a panel
-_COLUMNS = 3  # panels in a row
-_LEVELS = 8  # lines of equal value, at most
-_DECADES = 1.5  # decades of values from which on lines of equal value ascend by ratios
-_LOGARITHMIC = 10.0  # largest over smallest value of an input at equal ratios, from which on its axis is so
+_MOST_THIRD = 3  # largest number of values of a third input, each of which has a panel
+_COLUMNS = 3  # largest number of panels in a row
+_LEVELS = 8  # largest number of lines of equal value
+_DECADES = 1.5  # decades of values above which lines of equal value ascend by ratios
+# Least ratio of largest to smallest value for a logarithmic axis, of an input at equal ratios.
+_LOGARITHMIC = 10.0
 _DIGITS = 4
-_FEW = 40  # values of an input whose points are marked on a curve
-_SMOOTHED, _APART = 1.0, 0.02  # places over which an edge is smoothed; its least distance from one
-_SAME = 1e-9  # relative difference of values that rounding makes: no lines are drawn between them
-_RARE = 0.04  # share of the values, smallest and largest, that lines of equal value are not chosen by
-_LETTERS = 10.0  # of a title in an inch
-_NARROWEST, _WIDE = 2.2, 100.0  # least width of a map, and one that has room for all [inch]
+_FEW = 40  # largest number of values of an input whose points are marked on a curve
+# Standard deviation [places of the grid] by which the share of places without an answer is smoothed; least
+# distance of the smoothed share from 1/2, its value at the edge of the hatched region.
+_SMOOTHED, _APART = 1.0, 0.02
+_SAME = 1e-9  # relative difference of values that is rounding: no lines are drawn between them
+# Share of the smallest, and of the largest, values that have no influence on the lines of equal value.
+_RARE = 0.04
+_LETTERS = 10.0  # number of letters of a title that fit into an inch
+_NARROWEST, _WIDE = 2.2, 100.0  # least width of a map, and a width that has room for all maps [inch]
 _HATCHED: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "0.72", "hatch": "////", "linewidth": 0}
-_PALE = (0.0, 0.42)  # part of the colours between the lines, so that texts on them are read
-_MEETS = "#A0303A"  # colour of lines that the answer meets, such as those of an excitation
+_PALE = (0.0, 0.42)  # part of the colour map between the lines, pale so that texts can be read on it
+_MEETS = "#A0303A"  # colour of lines that the answer meets, such as excitation lines
 
 
 @dataclass(frozen=True)
@@ -57,16 +59,16 @@ class MapInput:
 
     @property
     def label(self) -> str:
-        """Name and unit."""
+        """Name and unit of the input."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def at(self, i: int) -> str:
-        """Its value i in words."""
+        """Word value i of the input."""
         return f"{self.name} = {self.values[i]:.{_DIGITS}g} {self.unit}".rstrip()
 
     @property
     def is_logarithmic(self) -> bool:
-        """Whether its values are at equal ratios, over a decade at least."""
+        """Whether the values are at equal ratios, over at least a decade."""
         ends = np.sort(self.values)[[0, -1]]
         if not (ends[0] > 0 and ends[1] >= _LOGARITHMIC * ends[0] and len(self.values) > 2):
             return False
@@ -75,16 +77,16 @@ class MapInput:
 
 @dataclass(frozen=True)
 class MapAnswer:
-    """An answer over inputs.
+    """An answer over inputs, to be drawn.
 
     Parameters
     ----------
     title : str
-        What it is, with its unit.
+        Words for the answer, with its unit.
     value : ndarray, shape (n1, ..., nd)
-        Its values; not finite where there is none.
+        Values of the answer; not finite where there is none.
     reason : ndarray of str, shape (n1, ..., nd)
-        Why there is none.
+        Why the answer has no value, where it has none.
     meets : mapping of str to ndarray, shape (n1, ..., nd)
         Values by name, such as frequencies of an excitation, which are marked where the answer meets them.
     """
@@ -98,14 +100,14 @@ class MapAnswer:
 def map_size(
     inputs: Sequence[MapInput], answers: Sequence[MapAnswer], width: float | None = None
 ) -> tuple[float, float]:
-    """Width and height of the picture that `plot_maps` makes, of a width if one is given, in inches."""
+    """Return width and height of the picture that `plot_maps` makes, for a width if one is given [inch]."""
     count, columns = _grid(inputs, answers, width or _WIDE)
     usual = 7.5 if columns == 1 else 4.2 * columns
     return width or usual, 0.6 + (2.6 if len(_varied(inputs)) < 2 else 3.2) * -(-count // columns)
 
 
 def plot_maps(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], ax: Axes | None = None) -> Axes:
-    """Draw answers over inputs, a panel each.
+    """Draw answers over inputs, with a panel for each.
 
     Over one input an answer is a curve.  Over two it is drawn by lines of equal value, labelled; of a third
     input some values have panels of their own; of further ones, and of those that have one value, the title
@@ -149,12 +151,12 @@ def plot_maps(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], ax: Axes
 
 
 def _varied(inputs: Sequence[MapInput]) -> list[int]:
-    """Which inputs have several values; the first one where none has."""
+    """Return the indices of inputs with several values; the first one if none has."""
     return [i for i, each in enumerate(inputs) if len(each.values) > 1] or [0]
 
 
 def _grid(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], inches: float) -> tuple[int, int]:
-    """How many panels there are, and how many in a row of a width."""
+    """Return the number of panels, and how many of them fit into a row of a given width [inch]."""
     count, over = len([*_panels(inputs, answers)]), _varied(inputs)
     if len(over) < 2:
         return count, 1
@@ -163,9 +165,8 @@ def _grid(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], inches: floa
 
 
 def _thirds(given: MapInput) -> list[int]:
-    """Which values of a third input have a panel."""
-    count = len(given.values)
-    return np.unique(np.linspace(0, count - 1, min(count, _MOST_THIRD)).round().astype(int)).tolist()
+    """Return the indices of the values of a third input that have a panel."""
+    return evenly_spread(len(given.values), _MOST_THIRD).tolist()
 
 
 _Panel = tuple[str, np.ndarray, np.ndarray, dict[str, np.ndarray]]
@@ -189,7 +190,7 @@ def _panels(inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> Iterato
 
 
 def _set_up(ax: Axes, inputs: Sequence[MapInput], ylabel: str = "") -> None:
-    """Labels and scales of axes over inputs."""
+    """Set labels and scales of axes over inputs."""
     set_up_axes(ax, inputs[0].label, ylabel or inputs[-1].label)
     for given, scaled in zip(inputs, (ax.set_xscale, ax.set_yscale), strict=False):
         if given.is_logarithmic:
@@ -243,20 +244,21 @@ def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z
     levels = levels_of(known)
     pale = colors.ListedColormap(colormaps["YlGnBu"](np.linspace(*_PALE, 64)))
     bounds = np.union1d(levels, [np.nextafter(low, -np.inf), np.nextafter(high, np.inf)])
-    ax.contourf(x, y, _extended(z), bounds, cmap=pale, zorder=1)  # up to the edge of what is hatched
+    # Colours reach up to the edge of the hatched region.
+    ax.contourf(x, y, _extended(z), bounds, cmap=pale, zorder=1)
     drawn = ax.contour(x, y, z, levels, colors="0.25", linewidths=1.0, zorder=2)
     for level, paths in zip(levels.tolist(), drawn.allsegs, strict=True):
         _label_path(labels, f"{level:.{_DIGITS}g}", paths, color="0.1")
 
 
 def _extended(z: np.ndarray) -> np.ndarray:
-    """Values with those of the nearest place where there is none."""
+    """Fill places without a value with the value of the nearest place that has one."""
     _, (rows, columns) = _nearest_outside(~np.isfinite(z))
     return z[rows, columns]
 
 
 def _nearest_outside(region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Distances (ny, nx) from the nearest places outside a region, and their indices (2, ny, nx)."""
+    """Compute distances (ny, nx) from the nearest places outside a region, and their indices (2, ny, nx)."""
     from scipy.ndimage import distance_transform_edt
 
     distances, indices = distance_transform_edt(region, return_indices=True)
@@ -264,10 +266,11 @@ def _nearest_outside(region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def levels_of(known: np.ndarray) -> np.ndarray:
-    """Round values between the smallest and the largest: at equal steps, or 1, 2, 5, 10 over decades."""
+    """Choose round values between smallest and largest: at equal steps, or 1, 2, 5, 10 over decades."""
     from matplotlib.ticker import MaxNLocator
 
-    low, high = np.quantile(known, (_RARE, 1 - _RARE)).tolist()  # those of a few may be far off
+    # A few values may lie far away from all others.
+    low, high = np.quantile(known, (_RARE, 1 - _RARE)).tolist()
     if low > 0 and high > 10**_DECADES * low:
         decades = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
         steps = (1.0, 2.0, 5.0) if len(decades) < _LEVELS else (1.0,)
@@ -278,7 +281,7 @@ def levels_of(known: np.ndarray) -> np.ndarray:
 
 
 def _label_path(labels: PlacedLabels, text: str, paths: Sequence[np.ndarray], **style: Any) -> None:
-    """Label the longest of some paths, near its middle if there is room."""
+    """Label the longest of several paths, near its middle if there is room."""
     if paths:
         points = np.asarray(max(paths, key=len))
         from_middle = np.abs(np.arange(len(points)) - (len(points) - 1) / 2)
@@ -310,7 +313,7 @@ def _hatch(ax: Axes, x: np.ndarray, y: np.ndarray, lacking: np.ndarray) -> None:
 def _name_regions(
     ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, lacking: np.ndarray, why: np.ndarray
 ) -> None:
-    """Name each region without an answer in its middle."""
+    """Write the reason in the middle of each region without an answer."""
     for name in np.unique(why[lacking]).tolist():
         region = lacking & (why == name)
         depth = _nearest_outside(np.pad(region, 1))[0][1:-1, 1:-1]

@@ -11,13 +11,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.text import Text
 
-_APART = 2.0  # least distance of two texts [px]
-_MOST = 80  # places of a text that are tried
+_APART = 2.0  # least distance between two texts [px]
+_MOST = 80  # largest number of places around a point that are tried for its text
 _POINT = 5.0  # half the size of a marked point [px]
 _ON_IT = np.zeros((1, 2))
-_WAYS = np.array(
-    [(1, 0.2), (-1, 0.2), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)]
-)  # to a text beside it
+# Directions, from a point, in which a place for its text is tried.
+_WAYS = np.array([(1, 0.2), (-1, 0.2), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)])
 _HALO: dict[str, Any] = {
     "boxstyle": "square,pad=0.1",
     "facecolor": "white",
@@ -40,14 +39,14 @@ class PlacedLabels(Artist):
 
     def __init__(self, ax: Axes) -> None:
         super().__init__()
-        self.set_in_layout(False)  # they lie within the axes
+        self.set_in_layout(False)  # texts lie within the axes, so that the layout needs no room for them
         self.set_zorder(6)
         self._texts: list[tuple[Text, np.ndarray, np.ndarray]] = []
         self._points = np.empty((0, 2))
         ax.add_artist(self)
 
     def add(self, text: str, places: np.ndarray, beside: bool = False, **style: Any) -> None:
-        """Add a text; those that are added first choose first.
+        """Add a text; texts that are added first choose first.
 
         Parameters
         ----------
@@ -73,17 +72,17 @@ class PlacedLabels(Artist):
             self._points = np.vstack([self._points, places])
 
     def get_children(self) -> list[Artist]:
-        """The texts."""
+        """Return the texts."""
         return [text for text, *_ in self._texts]
 
     def draw(self, renderer: Any) -> None:
-        """Place and draw the texts."""
+        """Place the texts, and draw them."""
         assert self.axes is not None
         frame, marked = self.axes.bbox, self.axes.transData.transform(self._points)
         ends = np.array([[frame.x0, frame.y0], [frame.x1, frame.y1]])
         taken = np.hstack([marked - _POINT, marked + _POINT])
         for text, places, ways in self._texts:
-            text.set_visible(True)  # what is not, has no size
+            text.set_visible(True)  # an invisible text has no size
             box = text.get_window_extent(renderer)
             half = np.array([box.width, box.height]) / 2 + _APART
             at = self.axes.transData.transform(places)[:, None] + ways * (half + _POINT)
@@ -100,7 +99,7 @@ class PlacedLabels(Artist):
 
 
 def _overlap(boxes: np.ndarray, taken: np.ndarray) -> np.ndarray:
-    """Whether boxes (n, 4) overlap one of others (m, 4), shape (n,)."""
+    """Decide whether boxes (n, 4) overlap any of others (m, 4), shape (n,)."""
     low, high = boxes[:, None, :2], boxes[:, None, 2:]
     each = np.all((low < taken[:, 2:]) & (taken[:, :2] < high), axis=-1)
     return np.asarray(np.any(each, axis=-1))

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from beamdyn.common.plots import axes_and_lines
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
-from beamdyn.common.results.pictures import COLOURS, add_legend
-from beamdyn.common.results.pictures import save_figure as save_figure  # exported with the plots
+from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
+from beamdyn.common.results.pictures import save_figure as save_figure  # exported together with the plots
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_MOST_THICK = 2000  # samples above which a line over time is drawn thin
+_MOST_THICK = 2000  # number of samples above which a line over time is drawn thin
 
 
 # Over speed ------------------------------------------------------------------------------------------
@@ -118,7 +114,8 @@ def _plot_over_speed(
     values, speeds = np.asarray(values), units.speed_unit().of(np.asarray(speeds))
     ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), quantity)
     axes_and_lines.draw_lines(ax, speeds, values.T, labels or _number_modes(values.shape[1]))
-    ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)  # also where every mode is nan
+    # Sets the limits also where every mode is nan.
+    ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
     return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed, units=units)
 
 
@@ -136,7 +133,7 @@ def mark_critical(
     label : str
         Name of the critical speed.
     units : DisplayUnits, optional
-        Units of the axes; the arrays are SI.
+        Units of the axes; `speed` is SI.
 
     Returns
     -------
@@ -247,46 +244,8 @@ def plot_response(
     drawn = (length.of(np.where(np.asarray(row) > 0, row, np.nan)) for row in rows.values())
     axes_and_lines.draw_lines(ax, speed.of(np.asarray(speeds)), drawn, list(rows))
     for line in ax.lines[1:]:
-        line.set(linestyle="--", linewidth=1.2)  # mostly on top of the other
+        line.set(linestyle="--", linewidth=1.2)  # thin, as it mostly lies on top of the other
     if (np.asarray(amplitude) > 0).any():
-        ax.set_yscale("log")
-    return add_legend(ax)
-
-
-def plot_harvest(
-    speeds: np.ndarray,
-    power: np.ndarray,
-    resonances: np.ndarray,
-    ax: Axes | None = None,
-    units: DisplayUnits = SI_UNITS,
-) -> Axes:
-    """Draw harvested power over speed with a logarithmic scale, and the speeds of resonance.
-
-    Parameters
-    ----------
-    speeds : ndarray, shape (S,)
-        Angular speeds [rad/s].
-    power : ndarray, shape (S,)
-        Mean power [W]; nan leaves a gap.
-    resonances : ndarray, shape (r,)
-        Speeds of resonance [rad/s].
-    ax : Axes, optional
-        Where to draw; new axes if not given.
-    units : DisplayUnits, optional
-        Units of the axes; the arrays are SI.
-
-    Returns
-    -------
-    Axes
-    """
-    speed = units.speed_unit()
-    ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), "mean power [W]")
-    drawn = np.where(np.asarray(power) > 0, power, np.nan)
-    axes_and_lines.draw_lines(ax, speed.of(np.asarray(speeds)), [drawn], ["harvested"])
-    for k, at in enumerate(speed.of(np.asarray(resonances))):
-        label = "" if k else "resonance without a load"
-        ax.axvline(at, color="0.6", linestyle=":", linewidth=1.0, label=label)
-    if (drawn > 0).any():
         ax.set_yscale("log")
     return add_legend(ax)
 
@@ -348,17 +307,12 @@ def plot_branches(
     """
     ax = axes_and_lines.new_axes() if ax is None else ax
     for colour, (name, speeds, tip, stable) in zip(COLOURS, branches, strict=False):
-        lost = ~stable  # drawn with the points beside these, so that lines meet
+        lost = ~stable  # unstable points, with their neighbours, so that lines meet
         around = lost | np.r_[False, lost[:-1]] | np.r_[lost[1:], False]
         for where, style, word in ((stable, "-", "stable"), (around, "--", "unstable")):
             if where.any():
-                ax.plot(
-                    units.speed_unit().of(speeds),
-                    np.where(where, tip, np.nan),
-                    style,
-                    color=colour,
-                    label=f"{name}, {word}",
-                )
+                x, y = units.speed_unit().of(speeds), np.where(where, tip, np.nan)
+                ax.plot(x, y, style, color=colour, label=f"{name}, {word}")
     ax.set(xlabel=axes_and_lines.speed_label(units), ylabel="tip deflection over the length")
     ax.legend()
     return ax
@@ -428,5 +382,5 @@ def plot_frequency_response(
 
 
 def _number_modes(count: int) -> list[str]:
-    """Names of modes for the legend."""
+    """Return names of modes for the legend."""
     return [f"mode {i}" for i in range(1, count + 1)]

@@ -10,16 +10,15 @@ import numpy as np
 
 from beamdyn.common.plots import axes_and_lines
 from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
-from beamdyn.common.results.pictures import COLOURS, add_legend
+from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.contour import ContourSet
 
-_COLOURS_OF_SIGN, _LEVELS = "RdBu_r", np.linspace(-1, 1, 21)  # of surfaces
+_COLOURS_OF_SIGN, _LEVELS = "RdBu_r", np.linspace(-1, 1, 21)  # colours and levels of surfaces
 _FLAT = 1e-6  # relative deflection below which a surface has no nodal lines
-_ASIDE = 0.4  # largest displacement drawn along the width, over it
-_PAGE, _MARGIN = (6.5, 4.6), 0.45  # inches for panels, and between two
+_ASIDE = 0.4  # largest displacement along the width that is drawn, over the width
+_PAGE, _MARGIN = (6.5, 4.6), 0.45  # size of a page for panels, and distance between two [inch]
 
 
 def plot_shapes(
@@ -110,7 +109,7 @@ def plot_surfaces(
     x : ndarray, shape (n,)
         Positions along the strip [m].
     y : ndarray, shape (n, k)
-        Positions across it [m].
+        Positions across the strip [m].
     shapes : ndarray, shape (m, n, k)
         Deflections of the modes out of the strip, real, in any unit.
     across : ndarray, shape (m, n)
@@ -138,7 +137,7 @@ def plot_surfaces(
 
 
 def _panels_in_a_row(count: int, length: float, width: float) -> int:
-    """How many panels in a row show strips of one size largest."""
+    """Return the number of panels in a row with which strips of one size are drawn largest."""
     rows = ((columns, -(-count // columns)) for columns in range(1, count + 1))
     sizes = {
         columns: min((_PAGE[0] / columns - _MARGIN) / length, (_PAGE[1] / rows - _MARGIN) / width)
@@ -154,7 +153,7 @@ def _draw_surface(
     unit = units.length_unit("m")
     x, y = unit.of(np.broadcast_to(x[:, None], y.shape)), unit.of(y)
     colours = ax.contourf(x, y, shape, levels=_LEVELS, cmap=_COLOURS_OF_SIGN)
-    if np.abs(shape).max() > _FLAT:  # not of rounding
+    if np.abs(shape).max() > _FLAT:  # nodal lines of rounding errors are not drawn
         ax.contour(x[1:], y[1:], shape[1:], levels=[0.0], colors="black", linewidths=1.2)
     outline = [np.concatenate([of[:, 0], of[-1], of[::-1, -1]]) for of in (x, y)]
     ax.plot(*outline, color="0.3", linewidth=0.8)
@@ -179,7 +178,7 @@ def _set_up_shapes(ax: Axes | None, units: DisplayUnits = SI_UNITS) -> Axes:
 
 
 def plot_bent_beam(along: np.ndarray, across: np.ndarray, ax: Axes | None = None, title: str = "") -> Axes:
-    """Draw a bent beam to one scale: its positions along the straight beam and across it, over its length."""
+    """Draw a bent beam to scale: positions along the straight beam and across it, over its length."""
     ax = axes_and_lines.new_axes() if ax is None else ax
     ax.plot(along, across, color=COLOURS[0])
     ax.plot([0, 1], [0, 0], color="0.7", linewidth=0.8)

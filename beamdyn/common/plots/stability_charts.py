@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
 from beamdyn.common.inputs.designs import VariedInput
 from beamdyn.common.plots.axes_and_lines import set_up_axes
-from beamdyn.common.results.pictures import COLOURS, add_legend
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 
 _SIGNS = {1.0: "Krein sign +", -1.0: "Krein sign -", 0.0: "multipliers"}
-_FEW = 0.6  # size of a mark of an undecided point [points]
+_FEW = 0.6  # size of a mark of an undecided point [pt]
 
 
 def plot_multipliers(
@@ -29,17 +26,18 @@ def plot_multipliers(
         some = sign == value
         if some.any():
             at = multipliers[some]
-            ax.errorbar(
-                np.real(at),
-                np.imag(at),
-                error[some],
-                error[some],
-                fmt="o",
-                color=colour,
-                label=name,
-                capsize=2,
-            )
+            bars = {"xerr": error[some], "yerr": error[some], "capsize": 2}
+            ax.errorbar(np.real(at), np.imag(at), fmt="o", color=colour, label=name, **bars)
     ax.set_aspect("equal")
+    return add_legend(ax)
+
+
+def plot_exponent(rate: float, error: float, ax: Axes | None = None) -> Axes:
+    """Draw the largest growth rate [1/s] with its error, beside 0, above which motion grows."""
+    ax = set_up_axes(ax, "growth rate [1/s]", "")
+    ax.axvline(0.0, color="0.5", linewidth=1.0, label="limit of growth")
+    ax.errorbar([rate], [0.0], xerr=[error], fmt="o", color=COLOURS[0], capsize=4, label="largest exponent")
+    ax.set_yticks([])
     return add_legend(ax)
 
 
@@ -59,7 +57,7 @@ def plot_stability_chart(
     ax : Axes, optional
         Where to draw; new axes if not given.
     """
-    ax = set_up_axes(ax, *(each.label for each in inputs))
+    ax = set_up_axes(ax, *(replace(each, name=each.in_words).label for each in inputs))
     first, second = (each.values for each in inputs)
     grows = np.isfinite(rate)
     if grows.any():
@@ -75,7 +73,7 @@ def plot_stability_chart(
 
 
 def _limit(first: np.ndarray, second: np.ndarray, grows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The line between what grows and what does not, its pieces apart by nan."""
+    """Return the line between points with and without growth, its pieces separated by nan."""
     from contourpy import contour_generator
 
     if min(grows.shape) < 2:

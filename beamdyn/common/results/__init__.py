@@ -1,1 +1,1 @@
-"""What results are made of: columns, statements, errors, units of display; saved, loaded, and as one line."""
+"""Parts of results: columns, statements, errors, display units; saving, loading, and one-line summaries."""

@@ -1,4 +1,4 @@
-"""Columns of results as data: files, data frames and display units follow from name, unit and values."""
+"""Columns of results as data: name, unit and values, from which files, data frames and tables follow."""
 
 from __future__ import annotations
 
@@ -52,27 +52,27 @@ class Column:
 
     @property
     def head(self) -> str:
-        """The head in files: "frequency_Hz_1"."""
+        """Head of the column in files: "frequency_Hz_1"."""
         return "_".join(filter(None, (self.name, unit_in_heads(self.unit), str(self.number))))
 
     @property
     def title(self) -> str:
-        """The head in tables: "frequency [Hz]"."""
+        """Head of the column in tables: "frequency [Hz]"."""
         words = self.words or f"{self.name.replace('_', ' ')} {self.number}".rstrip()
         return f"{words} [{self.unit}]" if self.unit else words
 
     @property
     def plain(self) -> list[Any]:
-        """The values as Python's numbers and words."""
+        """Values as Python's numbers and words."""
         return self.values.tolist() if isinstance(self.values, np.ndarray) else [*self.values]
 
     def in_units(self, units: DisplayUnits, usual: str = "m") -> Column:
-        """A column of the same values in the display unit of their quantity; lengths usually in `usual`."""
+        """Convert the column to the display unit of its quantity; lengths to `usual` if none is set."""
         shown = {"rad/s": units.speed_unit, "m": lambda: units.length_unit(usual)}.get(self.unit)
         return self if shown is None else self.times(shown().per_si, shown().name)
 
     def times(self, factor: float, unit: str) -> Column:
-        """A column of the values, if they are numbers, times a factor, in the unit that they then have."""
+        """Multiply the values, if they are numbers, by a factor; name the unit that they then have."""
         if factor == 1.0:
             return self
         values = [each * factor if isinstance(each, float | int) else each for each in self.plain]
@@ -80,7 +80,7 @@ class Column:
         return replace(self, values=values, unit=unit, error=error, beyond=beyond)
 
     def at(self, rows: Sequence[int] | np.ndarray) -> Column:
-        """The column in some rows, which count from 0."""
+        """Return the column with only some rows, which count from 0."""
         values, cells = (each and [each[row] for row in rows] for each in (self.plain, self.cells))
         error, beyond = (None if each is None else each[rows] for each in (self.error, self.beyond))
         return replace(self, values=values, error=error, beyond=beyond, cells=cells)
@@ -105,18 +105,18 @@ class Columns:
         yield from zip(*(column.plain for column in self.columns), strict=True)
 
     def at(self, rows: Sequence[int] | np.ndarray) -> Columns:
-        """A copy with some of the rows, which count from 0."""
+        """Return the columns with only some rows, which count from 0."""
         return Columns(*(column.at(rows) for column in self.columns), title=self.title, note=self.note)
 
     def in_units(self, units: DisplayUnits) -> Columns:
-        """A copy in display units; a column stays where another has its quantity in that unit."""
+        """Convert to display units; a column stays where another one has its quantity in that unit."""
         heads = {column.head for column in self.columns}
         shown = ((column, column.in_units(units)) for column in self.columns)
         return Columns(*(column if new.head in heads else new for column, new in shown))
 
 
 def columns_of_rows(names: Iterable[tuple[str, str] | str], rows: Iterable[Sequence[Any]]) -> Columns:
-    """Columns from rows; names with a unit are pairs of both."""
+    """Make columns from rows; names with a unit are given as pairs."""
     heads = [(name, "") if isinstance(name, str) else name for name in names]
     cells = [*zip(*rows, strict=True)] or [()] * len(heads)
     return Columns(*(Column(name, each, unit) for (name, unit), each in zip(heads, cells, strict=True)))
@@ -125,22 +125,22 @@ def columns_of_rows(names: Iterable[tuple[str, str] | str], rows: Iterable[Seque
 def column_named(
     name: str, values: np.ndarray | Sequence[Any], unit: str, number: object = "", **shown: Any
 ) -> Column:
-    """A column of a quantity with a name of its own, such as an input; the head of a rate has "1_per_s"."""
+    """Make a column of a quantity with its own name, such as an input; the head of a rate has "1_per_s"."""
     return Column(f"{name}_1" if unit.startswith("1") else name, values, unit, number, **shown)
 
 
 def attributes(things: Iterable[Any], path: str) -> list[Any]:
-    """An attribute of each of several things, such as "line.name"."""
+    """Return an attribute, such as "line.name", of each of several objects."""
     return [*map(attrgetter(path), things)]
 
 
 def unit_in_heads(unit: str) -> str:
-    """A unit as a part of a head: "m_per_N"; empty of a pure number."""
+    """Return a unit as a part of a head, such as "m_per_N"; empty for a pure number."""
     words = unit.replace("/", " per ").split()
     return "_".join(words[1:] if words[:1] == ["1"] else words)
 
 
 def name_in_heads(name: str, signs: str = ".") -> str:
-    """A name as a part of a head: what is no letter, digit or one of the signs becomes "_"."""
+    """Return a name as a part of a head: all but letters, digits and given signs become "_"."""
     kept = (c if (c.isascii() and c.isalnum()) or c in signs else " " for c in name)
     return "_".join("".join(kept).split())

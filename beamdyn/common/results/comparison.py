@@ -8,18 +8,18 @@ from beamdyn.common.results.digits import supported
 
 
 class Verdict:
-    """Whether a published number and ours agree, as far as that was to be expected."""
+    """Base of verdicts on whether a published number and the computed one agree, as far as expected."""
 
     reason: str
 
     @property
     def agrees(self) -> bool:
-        """Whether they agree."""
+        """Whether the numbers agree."""
         raise NotImplementedError
 
     @property
     def as_expected(self) -> bool:
-        """Whether they agree, or differ for a known reason."""
+        """Whether the numbers agree, or differ for a known reason."""
         return self.agrees != bool(self.reason)
 
     @property
@@ -39,13 +39,13 @@ class Comparison(Verdict):
     what : str
         Name of the value.
     source : str
-        Who published it.
+        Who published the value.
     published : float or pair of floats
         The value, or the ends of the interval in which it is said to lie.
     ours : float
         Our value.
     error : float
-        Its estimated absolute error.
+        Estimated absolute error of the computed value.
     decimals : int
         Decimals printed by the source.
     reason : str
@@ -62,13 +62,13 @@ class Comparison(Verdict):
 
     @property
     def deviation(self) -> float:
-        """Ours less the published value; of an interval, less the nearest of it."""
+        """Computed less published value; for an interval, less its nearest point."""
         ends = self.published if isinstance(self.published, tuple) else (self.published,) * 2
         return self.ours - min(max(self.ours, ends[0]), ends[1])
 
     @property
     def bound(self) -> float:
-        """Largest deviation of values that agree: the source's rounding and our error."""
+        """Largest deviation of values that agree: the source's rounding and the error of the computed one."""
         rounding = 0.0 if isinstance(self.published, tuple) else 0.5 * 10.0**-self.decimals
         return rounding + self.error
 
@@ -78,7 +78,7 @@ class Comparison(Verdict):
         return abs(self.deviation) <= self.bound
 
     def cells(self) -> list[str]:
-        """Its row of the table."""
+        """Return the row of the comparison in a table."""
         ends = self.published if isinstance(self.published, tuple) else (self.published,)
         deviation = supported(self.deviation, self.error, 2)
         if len(ends) > 1 and self.deviation == 0:

@@ -1,23 +1,23 @@
-"""Numbers as text with the digits that their error justifies."""
+"""Numbers as text, with the digits that their error justifies."""
 
 from __future__ import annotations
 
 import math
 
-_DIGITS = 10  # most that a table shows
+_DIGITS = 10  # largest number of digits that a table shows
 
 
 def supported(value: float, error: float, most: int = _DIGITS) -> str:
-    """A number rounded so that half a unit of its last digit is not below its error.
+    """Round a number so that half a unit of its last digit is not below its error.
 
     Parameters
     ----------
     value : float
         The number.
     error : float
-        Its absolute error.
+        Absolute error of the number.
     most : int
-        Most significant digits.
+        Largest number of significant digits.
 
     Returns
     -------
@@ -43,7 +43,7 @@ def supported(value: float, error: float, most: int = _DIGITS) -> str:
 
 
 def supported_or_range(value: float, error: float, most: int = _DIGITS) -> str:
-    """As `supported`, and "number ± error" where one digit is sure, which rounds far more than the error."""
+    """Word a number like `supported`, but as "number ± error" where only one digit is sure."""
     text = supported(value, error, most)
     if "±" in text or not (0 < 2 * error < abs(value) < math.inf):
         return text
@@ -52,26 +52,26 @@ def supported_or_range(value: float, error: float, most: int = _DIGITS) -> str:
 
 
 def _with_error(value: float, error: float) -> str:
-    """A number with the digits up to the first of its error, and that error with one digit."""
+    """Word a number with the digits up to the first of its error, and that error with one digit."""
     last = math.floor(math.log10(error))
     digits = max(math.floor(math.log10(abs(value))) - last, 0) + 1
     return f"{value:#.{digits}g} ± {error:.1g}".replace(". ", " ").replace(".e", "e")
 
 
 def told_from(value: float, limit: float) -> str:
-    """A number with two digits, or as many as tell it from a limit that it is beside."""
+    """Word a number with two digits, or as many as tell it from a limit beside it."""
     texts = (f"{value:.{digits}g}" for digits in range(2, 18))
     return next((text for text in texts if float(text) != limit), f"{value:g}")
 
 
 def percent(value: float, sign: str = "") -> str:
-    """A relative number in percent with two digits, never with a positive exponent; a sign "+" is kept."""
+    """Word a relative number in percent with two digits, never with a positive exponent."""
     digits = f"{100 * value:{sign}.2g}"
     return f"{100 * value:{sign}.0f} %" if "e+" in digits else f"{digits} %"
 
 
 def count_sure(text: str, error: float) -> int:
-    """Number of characters of a number's text up to the last digit whose half unit is not below an error.
+    """Count the characters of a number's text up to the last digit that its error supports.
 
     Parameters
     ----------

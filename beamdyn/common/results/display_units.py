@@ -1,22 +1,18 @@
-"""Units in which results are shown to people: tables, columns of CSV files and pictures; all else is SI."""
+"""Units in which tables, columns of CSV files and pictures are shown; everything else is in SI."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from math import pi
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, one_of
-from beamdyn.common.results.one_line import spanned
+from beamdyn.common.results.one_line import known_digits, spanned
 
-if TYPE_CHECKING:
-    from typing import Self
-
-
-# By kind of quantity: how many of each unit make one of SI, which stands first.
+# By kind of quantity: how many of each unit make one of the SI unit, which comes first.
 _PER_SI = {
     "speed": {"rad/s": 1.0, "rpm": 30 / pi, "deg/s": 180 / pi},
     "length": {"m": 1.0, "mm": 1e3, "cm": 1e2, "um": 1e6, "in": 1 / 0.0254, "ft": 1 / 0.3048},
@@ -24,26 +20,26 @@ _PER_SI = {
 
 
 class ShownUnit(NamedTuple):
-    """A unit in which a quantity is shown.
+    """A unit in which a quantity is shown, and its size.
 
     Parameters
     ----------
     name : str
         Such as "rpm".
     per_si : float
-        How many make one of SI.
+        Number of this unit in one SI unit.
     """
 
     name: str
     per_si: float
 
     def of(self, values: Any) -> Any:
-        """Values in this unit, from SI."""
+        """Convert values from SI to this unit."""
         return values * self.per_si
 
     def say(self, value: float, digits: int = 6) -> str:
         """A value with its unit, from SI."""
-        return f"{value * self.per_si:.{digits}g} {self.name}"
+        return f"{known_digits(value * self.per_si):.{digits}g} {self.name}"
 
 
 @dataclass(frozen=True)
@@ -78,7 +74,10 @@ class DisplayUnits:
 
     @classmethod
     def of(cls, given: DisplayUnits | Mapping[str, str] | None) -> DisplayUnits:
-        """Make them of a mapping such as {"speed": "rpm"}; raises a ValueError for an unknown kind."""
+        """Make display units from a mapping such as {"speed": "rpm"}.
+
+        Raise a ValueError for an unknown kind.
+        """
         if isinstance(given, cls):
             return given
         kinds = [each.name for each in fields(cls)]
@@ -91,16 +90,16 @@ class DisplayUnits:
         return cls(**(given or {}))
 
     def with_others(self, given: DisplayUnits | Mapping[str, str] | None) -> DisplayUnits:
-        """A copy with the given units in place of its own."""
+        """Return a copy with the given units in place of its own."""
         new = DisplayUnits.of(given)
         return DisplayUnits(new.speed or self.speed, new.length or self.length)
 
     def speed_unit(self) -> ShownUnit:
-        """Unit of speeds: rad/s if none was given."""
+        """Return the unit of speeds; rad/s if none was given."""
         return self._unit("speed", "rad/s")
 
     def length_unit(self, usual: str = "mm") -> ShownUnit:
-        """Unit of lengths, or the one that is usual in a place if none was given."""
+        """Return the unit of lengths, or the one that is usual in a place if none was given."""
         return self._unit("length", usual)
 
     def _unit(self, kind: str, usual: str) -> ShownUnit:
@@ -112,26 +111,26 @@ SI_UNITS = DisplayUnits()
 
 
 class InDisplayUnits:
-    """Base of what is shown in units: those of its scene, if it has one, or others."""
+    """Base of classes that are shown in units: those of their scene, if they have one, or others."""
 
     @property
     def display_units(self) -> DisplayUnits:
-        """Units of its tables, columns and pictures: those of its scene, unless `in_units` gave others."""
+        """Units of tables, columns and pictures: those of the scene, unless `in_units` gave others."""
         given = vars(self).get("_display_units")
         return given or getattr(getattr(self, "scene", None), "units", SI_UNITS)
 
     def say_speed(self, speeds: np.ndarray | float) -> str:
-        """A speed, or from where to where several go, in its display unit, for the headline."""
+        """Word a speed, or the range of several, in its display unit."""
         unit = self.display_units.speed_unit()
         return spanned(np.multiply(speeds, unit.per_si), unit.name)
 
     def say_length(self, lengths: np.ndarray | float) -> str:
-        """A length, or from where to where several go, in its display unit, for the headline."""
+        """Word a length, or the range of several, in its display unit."""
         unit = self.display_units.length_unit()
         return spanned(np.multiply(lengths, unit.per_si), unit.name)
 
     def in_units(self, speed: str = "", length: str = "") -> Self:
-        """A copy with tables, columns and pictures in other units; its numbers stay SI.
+        """Return a copy with tables, columns and pictures in other units; its numbers stay SI.
 
         Parameters
         ----------
@@ -153,6 +152,6 @@ class InDisplayUnits:
 
 
 def known_unit(kind: str, name: str) -> str:
-    """The name of a unit if it is one in which a kind of quantity can be shown, else ""."""
+    """Return the name of a unit in which a kind of quantity can be shown; "" if it is none."""
     name = name.replace(" ", "")
     return name if name in _PER_SI[kind] else ""

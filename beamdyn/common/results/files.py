@@ -1,4 +1,4 @@
-"""Files that are written: tried before, written aside, and put in their place in one step."""
+"""Writing of files: tried beforehand, written under another name, and put in their place in one step."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-ASIDE = ".unfinished-"  # begins the name of a file that is still being written
+ASIDE = ".unfinished-"  # start of the name of a file that is still being written
 
 
 def as_path(name: str, value: object, wanted: str = "a file") -> Path:
-    """The path that an argument is.
+    """Return an argument as a path.
 
     Parameters
     ----------
@@ -30,7 +30,8 @@ def as_path(name: str, value: object, wanted: str = "a file") -> Path:
         If it is neither text nor a path.
     """
     if not isinstance(value, str | os.PathLike):
-        from beamdyn.common.inputs.checks import InvalidValue  # with numpy, which help does without
+        # Imported here, since it loads numpy, which help does without.
+        from beamdyn.common.inputs.checks import InvalidValue
 
         raise InvalidValue(name, value, f"give the name of {wanted}, as text or path")
     return Path(value)
@@ -85,7 +86,7 @@ def check_writable(
     if not stream and not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {target.parent}; create it first")
     if not stream:
-        try:  # to write an empty file beside it, and its name
+        try:  # writes an empty file in the same folder, and tries whether the system accepts the file's name
             _empty_file(target.parent, path.suffix).unlink()
             with suppress(FileNotFoundError):
                 target.stat()
@@ -96,22 +97,22 @@ def check_writable(
 
 
 def _is_stream(path: Path) -> bool:
-    """Whether it is a device, a pipe, or a name of an open file such as /dev/stdout: nothing to replace."""
+    """Whether a path is a device, a pipe or an open file such as /dev/stdout, which cannot be replaced."""
     named = os.path.abspath(path.parent) in ("/dev", "/dev/fd", "/proc/self/fd")
     return os.path.exists(path) and (named or not os.path.isfile(path))
 
 
 def same_file(one: str | Path, other: str | Path) -> bool:
-    """Whether two paths lead to one file or folder, by links or another spelling; it need not exist."""
+    """Whether two paths lead to the same file or folder, by links or another spelling."""
     try:
         return os.path.samefile(one, other)
-    except (OSError, ValueError):  # one of them does not exist
+    except (OSError, ValueError):  # one of the two does not exist
         return os.path.realpath(one) == os.path.realpath(other)
 
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """Give a temporary file to write; when all is written, it takes the place of `path` in one step.
+    """Yield the path of a temporary file, which replaces `path` in one step when all is written.
 
     Whenever the program ends, the file at `path` is the old one or the new one, whole.  Where `path` is a
     link, what it points to is replaced; a device or a pipe receives what was written.
@@ -147,7 +148,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
             if target.exists():
                 shutil.copymode(target, aside)
             with aside.open("rb+") as file:
-                os.fsync(file.fileno())  # it takes the place of the other not before it is on the disk
+                os.fsync(file.fileno())  # the new file must be on the disk before it replaces the old one
             os.replace(aside, target)
     except OSError as error:
         raise OSError(f"{path}: it could not be written ({error.strerror or error}){kept}") from None
@@ -159,13 +160,13 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write a text file in UTF-8 aside, and put it in its place; see `replacing`."""
+    """Write a text file in UTF-8 under another name, and put it in its place; see `replacing`."""
     with replacing(path) as aside:
         aside.write_text(text, encoding="utf-8", errors="replace", newline="")
 
 
 def _empty_file(folder: Path, suffix: str) -> Path:
-    """A new file, with the permissions that the user's files have."""
+    """Make an empty file with the user's usual permissions."""
     path = folder / f"{ASIDE}{os.urandom(6).hex()}{suffix}"
     os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     return path

@@ -1,4 +1,4 @@
-"""What the numbers of a result mean, as plain data: outputs, files and tables are made from it."""
+"""Meanings of the numbers of a result as plain data, from which outputs, files and tables are made."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Meaning:
 
 @cache
 def meanings(kind: type) -> dict[str, Meaning]:
-    """Meanings of the fields of a result's class that state one, in their order."""
+    """Return the meanings of the fields of a result's class that have one, in order."""
     hints = get_type_hints(kind, include_extras=True).items()
     stated = ((name, part) for name, hint in hints for part in get_args(hint) if isinstance(part, Meaning))
     return dict(stated)

@@ -1,16 +1,18 @@
-"""What objects are, in one line: ``repr`` of results and of what a user describes."""
+"""One-line summaries: ``repr`` of results and of objects that a user makes."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 import numpy as np
 
-LONGEST = 100  # letters of a line
-_FEW = 4  # numbers that are listed
+LONGEST = 100  # largest number of characters of a line
+_FEW = 4  # number of values up to which a line lists each
 _DIGITS = 4
 
 
@@ -22,21 +24,21 @@ class OneLine:
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        if "__repr__" not in vars(cls):  # a dataclass keeps a method that its class has
+        if "__repr__" not in vars(cls):  # a dataclass keeps a method that its class defines
             cls.__repr__ = OneLine.__repr__
 
     def headline(self) -> Iterable[str]:
-        """Parts of the line that shows an object; a class that defines none shows the fields it was given."""
+        """Return the parts of the line that shows the object; by default, the fields that it was given."""
         return given_fields(self)
 
     def __repr__(self) -> str:
         name = type(self).__name__
         try:
             parts = [" ".join(part.split()) for part in self.headline() if part]
-        except Exception:  # an incomplete object may raise anything, in a debugger or amid an error
+        except Exception:  # an incomplete object, in a debugger or amid an error, may raise anything
             parts = ["..."]
         line = f"{name}({', '.join(parts)})"
-        for kept in range(len(parts) - 1, 0, -1):  # as many parts as a line takes
+        for kept in range(len(parts) - 1, 0, -1):  # keeps as many parts as fit on a line
             if len(line) <= LONGEST:
                 return line
             line = f"{name}({', '.join(parts[:kept])}, ...)"
@@ -44,24 +46,24 @@ class OneLine:
 
 
 def shortened(text: str, most: int) -> str:
-    """A text, cut with three points after at most so many letters."""
+    """Cut a text, with three points, to a number of letters."""
     return text if len(text) <= most else f"{text[: most - 3].rstrip(' ,')}..."
 
 
 def given_fields(thing: Any) -> Iterator[str]:
-    """Name and value of each field of a dataclass that has not its default value, in few letters."""
+    """Yield name and value, in few letters, of each field of a dataclass that is not at its default."""
     for each in dataclasses.fields(thing) if dataclasses.is_dataclass(thing) else ():
         value = getattr(thing, each.name)
         try:
             usual = each.default is not dataclasses.MISSING and bool(value == each.default)
-        except ValueError:  # of arrays
+        except ValueError:  # raised by the comparison of arrays
             usual = False
         if each.repr and not usual:
             yield f"{each.name}={brief(value)}"
 
 
 def brief(value: object) -> str:
-    """A value in few letters: arrays and containers by their size."""
+    """Word a value in few letters: arrays and containers by their size."""
     match value:
         case bool() | None:
             return str(value)
@@ -91,25 +93,44 @@ def _shape(value: np.ndarray) -> str:
 # Parts of lines -------------------------------------------------------------------------------------
 
 
+_IS_PRELIMINARY: ContextVar[bool] = ContextVar("numbers are preliminary", default=False)
+_OF_PRELIMINARY = 3  # significant digits of a preliminary number, whose error is some thousandths of it
+
+
+@contextmanager
+def few_digits() -> Iterator[None]:
+    """Within it, numbers are written with the digits that a preliminary result has."""
+    token = _IS_PRELIMINARY.set(True)
+    try:
+        yield
+    finally:
+        _IS_PRELIMINARY.reset(token)
+
+
+def known_digits(value: float) -> float:
+    """A number, rounded to the digits of a preliminary result within `few_digits`."""
+    return float(f"{value:.{_OF_PRELIMINARY}g}") if _IS_PRELIMINARY.get() else value
+
+
 def number(value: Any, unit: str = "") -> str:
-    """A number with four digits and its unit."""
+    """A number with four digits and its unit; with fewer within `few_digits`."""
     size = float(value) if not isinstance(value, complex) else abs(value)
     if not math.isfinite(size):
         return f"{size:g}{unit and ' ' + unit}" if not math.isnan(size) else "none"
-    size += 0.0  # a negative zero becomes 0
+    size = known_digits(size) + 0.0  # a negative zero becomes 0
     text = f"{size:.0f}" if 1e3 <= abs(size) < 1e6 else f"{size:.{_DIGITS}g}"
     return f"{text}{unit and ' ' + unit}"
 
 
 def listed(values: Iterable[Any], unit: str = "") -> str:
-    """Numbers, the first of many: "66.02, 413.8, 1158, ... Hz"."""
+    """Word numbers, the first ones of many: "66.02, 413.8, 1158, ... Hz"."""
     each = [*values]
     more = ", ..." if len(each) > _FEW else ""
     return f"{', '.join(map(number, each[:_FEW]))}{more}{unit and ' ' + unit}" if each else ""
 
 
 def spanned(values: np.ndarray | Sequence[float], unit: str = "") -> str:
-    """From where to where numbers go: "0 to 150 rad/s"."""
+    """Word the range of numbers: "0 to 150 rad/s"."""
     known = np.asarray(values, dtype=float).ravel()
     known = known[np.isfinite(known)]
     if not known.size:
@@ -119,12 +140,12 @@ def spanned(values: np.ndarray | Sequence[float], unit: str = "") -> str:
 
 
 def counted(count: int, word: str, many: str = "") -> str:
-    """A number of things: "1 mode", "3 modes"."""
+    """Word a number of things: "1 mode", "3 modes"."""
     return f"{count} {word if count == 1 else many or word + 's'}"
 
 
 def error_at_most(error: Any, unit: str = "") -> str:
-    """The largest error with one digit, rounded up: "error <= 2e-12"; in words where it is not known."""
+    """Word the largest error with one digit, rounded up, such as "error <= 2e-12", or that it is unknown."""
     each = np.ravel(np.asarray(error, dtype=float))
     each = each[~np.isnan(each)]
     if not each.size:
@@ -135,11 +156,11 @@ def error_at_most(error: Any, unit: str = "") -> str:
     return f"error <= {rounded_up(largest)}{unit and ' ' + unit}"
 
 
-_ROUNDED = 1 - 1e-12  # 5e-8 with an error in its last bit is no 6e-8
+_ROUNDED = 1 - 1e-12  # factor so that an error in the last bit does not turn 5e-8 into 6e-8
 
 
 def rounded_up(value: float) -> str:
-    """A number that is not negative with one digit, not below it but for rounding."""
+    """Word a number of 0 or more with one digit, rounded up."""
     if not value:
         return "0"
     place = math.floor(math.log10(value))
@@ -147,12 +168,12 @@ def rounded_up(value: float) -> str:
 
 
 def states(status: Iterable[Any], usual: Sequence[str]) -> str:
-    """How many are in which state other than the usual ones: "2 divergence"."""
+    """Word how many have each unusual status, such as "2 divergence"; empty if none has."""
     names, counts = np.unique([str(s).partition(":")[0] for s in np.ravel([*status])], return_counts=True)
     others = [f"{c} {n}" for n, c in zip(names.tolist(), counts.tolist(), strict=True) if n not in usual]
     return ", ".join(others)
 
 
 def warned(warnings: Sequence[str]) -> str:
-    """How many warnings there are; nothing without."""
+    """Word the number of warnings; empty if there are none."""
     return counted(len(warnings), "warning") if len(warnings) else ""

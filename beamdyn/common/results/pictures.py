@@ -1,4 +1,4 @@
-"""Pictures as files, the colours of their lines, and several results on one pair of axes."""
+"""Pictures: writing them as files, the colours of lines, and several results on the same axes."""
 
 from __future__ import annotations
 
@@ -15,12 +15,16 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+else:
+    # Annotations name them, of other modules, too; matplotlib is loaded where something is drawn.
+    Artist = Axes = Figure = Any
 
 # Okabe and Ito's colours, which colour-blind people can tell apart; without yellow, pale on white.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 DASHES = ("-", "--", "-.", ":")
-_MOST_INSIDE = 6  # entries above which the legend stands beside the axes
-_LONGEST_INSIDE = 28  # letters of an entry above which it stands below them
+_MOST_INSIDE = 6  # largest number of entries of a legend inside the axes; with more it stands beside them
+# Largest number of letters in an entry of a legend inside the axes; with a longer entry it stands below them.
+_LONGEST_INSIDE = 28
 SUFFIXES = (".png", ".svg", ".pdf")
 ANIMATION_SUFFIXES = (".gif",)
 
@@ -52,8 +56,8 @@ def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> 
         If it cannot be written.
     """
     path = check_writable(path, SUFFIXES, force)
-    figure: Any = drawn.figure  # that of axes may be a subfigure, that of a figure is itself
-    content = BytesIO()  # matplotlib does not close a file that it cannot write
+    figure: Any = drawn.figure  # the figure of axes may be a subfigure; that of a figure is itself
+    content = BytesIO()  # written in memory first, as matplotlib does not close a file that it cannot write
     figure.figure.savefig(content, format=path.suffix[1:].lower(), dpi=150, bbox_inches="tight")
     with replacing(path) as aside:
         aside.write_bytes(content.getvalue())
@@ -90,7 +94,7 @@ def save_animation(
 
     path = check_writable(path, ANIMATION_SUFFIXES, force)
     writer = PillowWriter(fps=rate)  # pyright: ignore[reportArgumentType]  (any rate will do)
-    with replacing(path) as aside, rc_context({"savefig.bbox": None}):  # all frames have one size
+    with replacing(path) as aside, rc_context({"savefig.bbox": None}):  # all frames have the same size
         writer.setup(figure, str(aside), dpi)
         for _ in frames:
             writer.grab_frame()
@@ -98,7 +102,7 @@ def save_animation(
 
 
 def add_legend(ax: Axes) -> Axes:
-    """Add a legend: beside the axes if it has many entries, below them if these are long."""
+    """Add a legend: inside the axes, beside them if it has many entries, or below them if these are long."""
     labels = ax.get_legend_handles_labels()[1]
     place: dict[str, Any] = {"loc": "best"}
     if max(map(len, labels), default=0) > _LONGEST_INSIDE:
@@ -111,21 +115,21 @@ def add_legend(ax: Axes) -> Axes:
 
 
 def figure_of(draw: Callable[[Axes], object], size: tuple[float, float] = (7.5, 4.8)) -> Figure:
-    """Make a figure, of a size in inches, of what a function draws on axes; nobody has to close it."""
+    """Make a figure, of a size [inch], of what a function draws on axes; it need not be closed."""
     figure = new_figure(*size)
     draw(figure.subplots())
     return figure
 
 
 def new_axes(width: float = 7.5, height: float = 4.8) -> Axes:
-    """Axes of a new figure of a size in inches, which matplotlib keeps to show it."""
+    """Make axes of a new figure of a size [inch], which matplotlib keeps to show it."""
     from matplotlib import pyplot
 
     return pyplot.subplots(figsize=(width, height), layout="constrained")[1]
 
 
 def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Figure:
-    """An empty figure of a size in inches; constrained, its parts make room for one another."""
+    """Make an empty figure of a size [inch], whose constrained layout keeps its parts apart."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout=layout)
@@ -158,15 +162,16 @@ def labelled(plot: Callable[..., Axes]) -> Callable[..., Axes]:
 
 
 def _marks(ax: Axes) -> Iterator[Artist]:
-    """Lines, areas, bars, each of their rectangles, and names in a picture."""
+    """Yield lines, areas, bars with their rectangles, and texts on axes."""
     marks: Any = (*ax.lines, *ax.collections, *ax.containers, *ax.patches, *ax.texts)
     yield from marks
 
 
 def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
-    """Put a label before the names of what was drawn last, in colours that were not there before.
+    """Put a label before the names of what was drawn last, and change its colours if they are taken.
 
-    Each of our own colours becomes one behind those taken, or a free one if these do not do.
+    Each colour of `COLOURS` that it has moves on by the number of colours taken, or to a free colour if that
+    leads beyond the last one.
     """
     new = [mark for mark in _marks(ax) if not any(mark is old for old in before)]
     taken, own = _colours(before), _colours(new)
@@ -186,7 +191,7 @@ def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
 
 
 def _name(mark: Artist) -> str:
-    """Its entry in the legend, if it has one."""
+    """Return the name of a mark in the legend; empty if it has none."""
     label = str(mark.get_label())
     return "" if label.startswith("_") else label
 
@@ -196,19 +201,20 @@ def _colours(marks: Iterable[Artist]) -> set[int]:
 
 
 def _place(mark: Artist) -> int | None:
-    """Which of our colours a line, an area or a name has; None if it has none of them."""
+    """Return the index of a mark's colour among `COLOURS`; None if it has none of them."""
     from matplotlib.colors import to_hex
 
     given: Any = getattr(mark, "get_color", None) or getattr(mark, "get_facecolor", None)
     colour = None if given is None else given()
     if colour is not None and not isinstance(colour, str):
         colour = colour[0] if len(colour) and not isinstance(colour[0], float) else colour
-    known = {to_hex(each): place for place, each in enumerate(COLOURS[:-1])}  # black is that of marks, too
+    # Without black, in which other marks are drawn, too.
+    known = {to_hex(each): place for place, each in enumerate(COLOURS[:-1])}
     return None if colour is None or not len(colour) else known.get(to_hex(colour))
 
 
 def _recolour(mark: Artist, moves: Mapping[int, int]) -> None:
-    """Give a line, an area, a bar or a name another colour; past the last one, a line is dashed."""
+    """Give a mark another colour; a line beyond the last colour is dashed."""
     place, line = _place(mark), hasattr(mark, "get_linestyle")
     if place is None or place not in moves:
         return

@@ -1,4 +1,4 @@
-"""Published numbers, one TOML file per paper, as package data."""
+"""Published numbers, one TOML file for each paper, as package data."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def load(package: str, name: str) -> dict[str, Any]:
-    """Contents of the file ``<name>.toml`` in a package.
+    """Read the file ``<name>.toml`` in a package.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def load(package: str, name: str) -> dict[str, Any]:
 
 
 def available(package: str) -> list[str]:
-    """Names that `load` accepts, sorted."""
+    """Return the names that `load` accepts, sorted."""
     names = (file.name for file in files(package).iterdir())
     return sorted(name.removesuffix(".toml") for name in names if name.endswith(".toml"))
 

@@ -1,4 +1,4 @@
-"""Objects whose arrays cannot be written, and which are pickled by their fields."""
+"""Base classes of dataclasses whose arrays cannot be written, and which are pickled by their fields."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 
 class FieldsOnly:
-    """Base of dataclasses that are pickled by their fields, without what they have computed and kept."""
+    """Base of dataclasses that are pickled by their fields, without cached properties."""
 
     def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
         fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]  (subclasses are dataclasses)
@@ -31,7 +31,7 @@ class ReadOnlyArrays:
 
 
 def make_read_only(holder: Any) -> None:
-    """Put read-only views in place of the arrays in the public fields of a dataclass."""
+    """Replace the arrays in the public fields of a dataclass by read-only views."""
     for each in dataclasses.fields(holder):
         if each.repr:
             value = getattr(holder, each.name)
@@ -40,7 +40,7 @@ def make_read_only(holder: Any) -> None:
 
 
 def _viewed(value: Any) -> Any:
-    """An array, or a container of arrays, as one that cannot be written; other values as they are."""
+    """Return a read-only view of an array, or of the arrays in a container; other values as they are."""
     if isinstance(value, np.ndarray):
         view = value.view()
         view.flags.writeable = False

@@ -1,4 +1,4 @@
-"""Base of all results: data with a provenance, which show and save themselves."""
+"""Bases of results: data with a provenance, which can be shown and saved."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from beamdyn._version import __version__
 from beamdyn.common.results.display_units import DisplayUnits, InDisplayUnits
 from beamdyn.common.results.files import as_path, check_writable, write_text
 from beamdyn.common.results.one_line import OneLine, brief, shortened, warned
@@ -28,15 +30,15 @@ if TYPE_CHECKING:
 # Records with a schema version and a checksum --------------------------------------------------------
 
 
-SCHEMA = 1  # raised when older records can no longer be read
+SCHEMA = 1  # version of the format of stored results, raised when older records can no longer be read
 
 
 class DamagedRecord(ValueError):
-    """A record that is damaged, was changed, or is of another schema; the message says which."""
+    """Raised for a record that is damaged, changed, or of another schema; the message says which."""
 
 
 def seal(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Add the schema version and a checksum.
+    """Add the schema version and a checksum to a record.
 
     Parameters
     ----------
@@ -103,22 +105,22 @@ class Saved:
     kept: ClassVar[tuple[str, ...]] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings; complex numbers as [real, imaginary]."""
+        """Return the result as plain numbers, lists and strings; complex numbers as [real, imaginary]."""
         fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]  (subclasses are dataclasses)
         return {f.name: plain(getattr(self, f.name)) for f in fields if f.repr}
 
     def loadable(self) -> Saved | None:
-        """The result that `load` makes of this one's JSON; None if it makes none."""
+        """Return the result that `load` makes from this one's JSON; None if it makes none."""
         return self
 
     def to_json(self) -> str:
-        """The result as JSON: the numbers of `to_dict` for any program, and all that `load` needs.
+        """Return the result as JSON: the numbers of `to_dict` for any program, and all that `load` needs.
 
         Numbers that are not finite are null, but `load` gets them back.
         """
         values, result = nullified(self.to_dict()), self.loadable()
         record: dict[str, Any] = {}
-        if result is not None:  # also what it has computed and kept, such as a truncation error
+        if result is not None:  # includes cached values, such as a truncation error
             names = {f.name for f in dataclasses.fields(result)}  # pyright: ignore[reportArgumentType]
             computed = {key: value for key, value in vars(result).items() if key not in names}
             kept = {
@@ -212,11 +214,11 @@ def load(path: str | Path) -> Any:
 
 
 Units = DisplayUnits | Mapping[str, str] | None
-_MOST_PARTS = 6  # most parts of a headline that nobody wrote
+_MOST_PARTS = 6  # largest number of parts of a headline, if a class of results does not choose them
 
 
 class Shown(OneLine, InDisplayUnits):
-    """Base of dataclasses that show themselves; their `plot`, if they have one, is given their label.
+    """Base of dataclasses with tables and pictures; their `plot`, if they have one, takes their label.
 
     The tables are those in the views of the package of the class, which stand at the edge.
     """
@@ -227,7 +229,7 @@ class Shown(OneLine, InDisplayUnits):
             cls.plot = labelled(vars(cls)["plot"])  # pyright: ignore[reportAttributeAccessIssue]
 
     def headline(self) -> Iterable[str]:
-        """What the result says in one line: its main numbers with units, their error, and what is amiss.
+        """Yield the parts of the result's one-line summary: main numbers with units, error, and cautions.
 
         Of a class that says nothing else, the first public fields, and how many warnings there are.
         """
@@ -245,11 +247,11 @@ class Shown(OneLine, InDisplayUnits):
         return getattr(getattr(self, "scene", None), "label", "")
 
     def without_waiting(self) -> Any:
-        """A copy without the parts that would have to be computed first; see `_repr_html_`."""
+        """Return a copy without the parts that would have to be computed first; see `_repr_html_`."""
         return self
 
     def to_table(self, units: Units = None) -> str:
-        """The table that the command prints, as text.
+        """Return the table that the command prints, as text.
 
         Parameters
         ----------
@@ -259,7 +261,7 @@ class Shown(OneLine, InDisplayUnits):
         return _views().text_of(_shown_in(self, units))
 
     def to_pandas(self, units: Units = None) -> DataFrame:
-        """The columns of the CSV file as a data frame of pandas, indexed by what they are given over.
+        """Return the columns of the CSV file as a data frame of pandas, indexed by what they are given over.
 
         Its ``attrs`` hold the class, the label, the warnings and the provenance of the result.
 
@@ -276,12 +278,12 @@ class Shown(OneLine, InDisplayUnits):
         return _views().frame_of(_shown_in(self, units))
 
     def _repr_html_(self) -> str:
-        """Table and picture for notebooks, without what takes long and was not asked for."""
+        """Return table and picture for notebooks, without parts that take long to compute."""
         return _views().html_of(self.without_waiting())
 
 
 def _views() -> Any:
-    """How results are shown: what the package has named, found when it is needed."""
+    """Import the module that shows results, which the package has named, when it is needed."""
     return import_module(MEDIA[-1])
 
 
@@ -294,7 +296,7 @@ __all__ = ["Provenance", "Result", "Units", "load", "plain"]
 
 @dataclass(frozen=True)
 class Provenance:
-    """How a result was computed.
+    """How a result was computed: version, method, comparison, and time.
 
     Parameters
     ----------
@@ -312,6 +314,11 @@ class Provenance:
     method: str
     compared_with: str
     wall_time: float
+
+    @classmethod
+    def since(cls, start: float, method: str, compared_with: str = "") -> Provenance:
+        """Make the provenance of a result whose computation began at a time of `time.perf_counter` [s]."""
+        return cls(__version__, method, compared_with, perf_counter() - start)
 
 
 class Result(Shown, Saved, ReadOnlyArrays):

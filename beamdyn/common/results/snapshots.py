@@ -1,8 +1,8 @@
-"""Objects made of data as JSON's types, for reading, and for making them again to the bit.
+"""Objects as values of JSON's types: for reading, and to make them again, equal to the bit.
 
 Numbers, strings, statements, arrays, containers, dataclasses and named tuples of this package are data.
-What is not (a function, an object of another package's class) is left out, and stands in the object that
-comes back as a `LeftOut`.
+Anything else (a function, an object of another package's class) is left out; in the object that is made
+again, a `LeftOut` takes its place.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from beamdyn.common.words import Words
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON's types, with complex numbers as pairs and numbers that are not finite kept."""
+    """Convert a value to JSON's types; complex numbers become pairs, and numbers that are not finite stay."""
     if isinstance(value, np.ndarray):
         value = np.stack([value.real, value.imag], axis=-1) if np.iscomplexobj(value) else value
         return value.tolist()
@@ -48,12 +48,12 @@ def nullified(value: Any) -> Any:
 
 
 _ADDED = "added"
-ADDED_LATER = {_ADDED: True}  # metadata of a field that earlier files lack: its default is what they meant
+ADDED_LATER = {_ADDED: True}  # metadata of a field that earlier files lack, for which its default holds
 _PACKAGES = ("beamdyn", "brakes")  # packages whose classes may be named in a file
 
 
 class LeftOut:
-    """Stands for a part of an object that its file does not hold: using it raises a ValueError.
+    """Placeholder of a part of an object that its file does not hold; using it raises a ValueError.
 
     Parameters
     ----------
@@ -68,19 +68,19 @@ class LeftOut:
         return f"<left out: {self.what}>"
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__") or name == "what":  # what Python itself looks for
+        if name.startswith("__") or name == "what":  # attributes that Python itself looks for
             raise AttributeError(name)
         self()
 
     def __call__(self, *arguments: object, **options: object) -> Any:
-        """Raise the ValueError."""
+        """Raise the ValueError that names the part that the file does not hold."""
         raise ValueError(
             f"the file does not hold {self.what}, which is no data; compute the result again to use it"
         )
 
 
 def encode(value: Any) -> Any:
-    """Represent an object by JSON's types.
+    """Represent an object by values of JSON's types.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def decode(value: Any) -> Any:
 
 
 def _decode_object(content: list[Any]) -> Any:
-    """An object with the fields as they were, without the checks and conversions of its construction."""
+    """Make an object with its fields as they were, without the checks of its construction."""
     name, values = content
     kind = _find_class(name)
     optional = _defaults(kind)
@@ -172,7 +172,7 @@ def _fields(kind: Any) -> tuple[str, ...]:
 
 
 def _defaults(kind: Any) -> dict[str, Any]:
-    """Fields of a dataclass that a file of an earlier version may lack, with what stands for them."""
+    """Return the fields of a dataclass that a file of an earlier version may lack, with their defaults."""
     every = dataclasses.fields(kind) if dataclasses.is_dataclass(kind) else ()
     given = (f for f in every if f.default is not dataclasses.MISSING)
     return {f.name: f.default for f in given if not f.compare or _ADDED in f.metadata}
@@ -183,7 +183,7 @@ def _name(kind: type) -> str:
 
 
 def _find_class(name: str) -> Any:
-    """The class of a name; one whose module has moved since the file was written is looked for by its own."""
+    """Return the class of a name; if its module has moved, search the package for the class."""
     module, _, kind = name.partition(":")
     package = module.partition(".")[0]
     for place in chain((module,), _modules_that_define(kind, package)) if package in _PACKAGES else ():
@@ -197,7 +197,7 @@ def _find_class(name: str) -> Any:
 
 
 def _modules_that_define(kind: str, package: str) -> Iterator[str]:
-    """Modules of this package whose source defines a class of a name."""
+    """Yield the modules of a package whose source defines a class of a name."""
     folder = Path(__file__).parents[3] / package
     for file in sorted(folder.rglob("*.py")):
         if f"\nclass {kind}(" in (text := file.read_text(encoding="utf-8")) or f"\nclass {kind}:" in text:

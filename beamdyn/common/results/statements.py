@@ -1,7 +1,7 @@
-"""Warnings, refusals and remarks as data: sentences whose kind programs ask for; and warnings of Python.
+"""Warnings, refusals and remarks as data: sentences with a kind that programs can ask for.
 
-As a string each is the sentence itself, in SI units; speeds and inputs in it are numbers, which a medium puts
-into the units in which it shows them.
+As a string, each is the sentence in SI units; speeds and inputs in it are numbers, which a medium converts to
+the units that it shows.  Python's warnings of results outside linear theory are issued here, too.
 """
 
 from __future__ import annotations
@@ -12,13 +12,9 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Any, ParamSpec, SupportsFloat, TypeVar
+from typing import Any, ParamSpec, Self, SupportsFloat, TypeVar
 
-from beamdyn.common.words import Part, Words, worded
-
-if TYPE_CHECKING:
-    from typing import Self
-
+from beamdyn.common.words import InputName, Part, Words, worded
 
 # Kinds of statements that programs ask for.
 OUTSIDE = "outside linear theory"  # the beam bends further than the theory of the answer allows
@@ -33,7 +29,7 @@ LIMITS = "limits"  # limits of other validity: large strain, few vibrations
 
 
 class Speeds(Part):
-    """Speeds in a text: "20 rad/s", or from where to where they go, "20 to 35 rad/s".
+    """Speeds in a text: "20 rad/s", or a range of them, "20 to 35 rad/s".
 
     Parameters
     ----------
@@ -53,11 +49,11 @@ class Speeds(Part):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """The speeds, and the digits by name."""
+        """Return the speeds, and the digits by name, as arguments that make an equal object."""
         return self.values, {"digits": self.digits}
 
     def in_units(self, units: Any) -> str:
-        """The speeds in a display unit."""
+        """Word the speeds in a display unit."""
         unit = units.speed_unit()
         return _spanning([unit.of(value) for value in self.values], self.digits, unit.name)
 
@@ -88,12 +84,18 @@ class InputValue(Part):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Name, value and unit, and the digits by name."""
+        """Return name, value and unit, and the digits by name, as arguments that make an equal object."""
         return (self.name, self.value, self.unit), {"digits": self.digits}
 
     def in_units(self, units: Any) -> str:
-        """The input with its value in a display unit, if it is a speed."""
-        return f"{self.name} = {units.speed_unit().say(self.value)}" if self.unit == "rad/s" else str(self)
+        """Word the input with its value, in a display unit if it is a speed."""
+        if self.unit == "rad/s":
+            return self.said(units.speed_unit().say(self.value))
+        return self.said(f"{self.value:.{self.digits}g} {self.unit}".rstrip())
+
+    def said(self, value: str) -> Words:
+        """Word the input with a text for its value."""
+        return Words(InputName(self.name), f" = {value}")
 
 
 def _spanning(numbers: Iterable[float], digits: int, unit: str) -> str:
@@ -144,35 +146,35 @@ class Statement(Words):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """The parts, and the data by name."""
+        """Return the parts, and the data by name, as arguments that make an equal object."""
         data = {"kind": self.kind, "quantity": self.quantity, "value": self.value, "limit": self.limit}
         return self.parts, data | {"remedy": self.remedy}
 
 
 def kind_of(sentence: str) -> str:
-    """The kind of a statement; empty for a sentence that is none, as in files of older versions."""
+    """Return the kind of a statement; empty for a plain sentence, as in files of older versions."""
     return sentence.kind if isinstance(sentence, Statement) else ""
 
 
 def of_kind(sentences: Iterable[str], *kinds: str) -> list[str]:
-    """The sentences that are statements of some kinds."""
+    """Return those sentences that are statements of given kinds."""
     return [said for said in sentences if kind_of(said) in kinds]
 
 
 def after(words: str, sentence: str) -> str:
-    """A sentence with words before it, such as the name of the scene that it is about: still a statement."""
+    """Return a sentence with words before it, such as the name of a scene; a statement stays a statement."""
     given, data = sentence.arguments() if isinstance(sentence, Statement) else ((sentence,), {})
     return Statement(words, *given, **data) if data else Words(words, *given)
 
 
 def joined(separator: str, texts: Iterable[str]) -> Words:
-    """Texts with a separator between them, which keep what they know of speeds."""
+    """Join texts with a separator; parts with speeds stay convertible."""
     parts = [part for text in texts for part in (separator, text)]
     return Words(*parts[1:])
 
 
 def said_in(units: Any, text: str) -> str:
-    """A text with the speeds that it knows in a display unit."""
+    """Return a text with its speeds in display units."""
     return worded(text, lambda part: part.in_units(units))
 
 
@@ -219,7 +221,7 @@ def announced(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answ
 
 
 def announced_of_plain_beam(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
-    """Make an analysis about the straight beam alone warn; physics "auto" does not bend its beam."""
+    """Make an analysis of the straight beam alone warn, without advice on physics "auto"."""
     return _announcing(analysis, "")
 
 
@@ -243,7 +245,7 @@ def announce(sentences: tuple[str, ...], remedy: str = _REMEDY) -> None:
 
 @contextmanager
 def unannounced() -> Iterator[None]:
-    """Within it, analyses issue no such warnings: their results are parts of another."""
+    """Suppress warnings of results outside linear theory in this context, for analyses within others."""
     before = _within_another.set(True)
     try:
         yield

@@ -1,3 +1,3 @@
-"""Shared by the interactive programs: descriptions of screens, forms, the state of a design, the page."""
+"""Parts shared by the interactive programs: descriptions of screens, forms, designs and the page."""
 
-HOME = "127.0.0.1"  # the address at which only this computer reaches a server
+HOME = "127.0.0.1"  # address of a server that only this computer can reach

@@ -1,4 +1,4 @@
-"""The command that serves an interactive program."""
+"""The command that serves an interactive program in the browser."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LARGEST_PORT = 65535
 
 
 def add_command(app: App, program: Callable[[], Program], port: int, about: str) -> None:
-    """Give a program's command line the command `app`.
+    """Add the command `app` to the command line of a program.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Data of a page that the browser holds: a tab's designs, what is being typed, named designs, look, links."""
+"""Data that the browser stores for a page: a tab's designs, unfinished input, named designs, look, links."""
 
 from __future__ import annotations
 
@@ -13,19 +13,20 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.screens.form_entries import Entries, read_entry, unit_of, usual_unit
 
-_LONGEST = 80  # characters of a name
-_MOST = 100  # named designs
-_LONGEST_LINK, _LARGEST = 30_000, 200_000  # characters of a link, and bytes of what it holds
+_LONGEST = 80  # largest number of characters in the name of a stored design
+_MOST = 100  # largest number of designs stored under names
+# Largest number of characters in a link, and of bytes in the design that the link holds.
+_LONGEST_LINK, _LARGEST = 30_000, 200_000
 _SOURCE = "the link"
 
 
 def call(function: str, *given: Any) -> str:
-    """Script that calls a function of page.js with values of JSON's types, and returns what it returns."""
+    """Write a script that calls a function of page.js with JSON values, and returns its result."""
     return f"return {function}({', '.join(map(json.dumps, given))});"
 
 
 def named_designs(stored: str | None) -> dict[str, tuple[str, Entries]]:
-    """Document and entries of each named design that the browser has stored; malformed ones are left out."""
+    """Read the named designs that the browser has stored: document and entries; leave out malformed ones."""
     try:
         held = json.loads(stored or "{}")
     except ValueError:
@@ -43,7 +44,7 @@ def _are_texts(values: Iterable[object]) -> bool:
 
 
 def refused_name(name: str, present: Mapping[str, object]) -> str:
-    """Why a design cannot be stored under a name; empty if it can."""
+    """Word why a design cannot be stored under a name; empty if it can."""
     if not name.strip():
         return "give the design a name"
     if len(name) > _LONGEST:
@@ -54,7 +55,7 @@ def refused_name(name: str, present: Mapping[str, object]) -> str:
 
 
 def read_typed(typed: Any, entries: Entries, inputs: list[Input]) -> Entries:
-    """Entries with the texts that were typed but not yet stored, read as the form reads them."""
+    """Return entries updated by texts that were typed but not yet stored, read as the form reads them."""
     known = {entry.path: entry for entry in inputs}
     found = dict(entries)
     for path, text in typed.items() if isinstance(typed, dict) else ():
@@ -66,7 +67,7 @@ def read_typed(typed: Any, entries: Entries, inputs: list[Input]) -> Entries:
 
 @dataclass(frozen=True)
 class LinkedDesign:
-    """A design in a link.
+    """A design that is encoded in a link.
 
     Parameters
     ----------
@@ -83,7 +84,7 @@ class LinkedDesign:
     options: Mapping[str, str]
 
     def as_fragment(self) -> str:
-        """The part of an address after "#", of letters, digits, "-", "_" and "=".
+        """Encode the design as the part of an address after "#": letters, digits, "-", "_" and "=".
 
         Raises
         ------
@@ -98,7 +99,7 @@ class LinkedDesign:
 
     @classmethod
     def of_fragment(cls, fragment: str) -> LinkedDesign:
-        """The design in the part of an address after "#".
+        """Decode the design in the part of an address after "#".
 
         Raises
         ------

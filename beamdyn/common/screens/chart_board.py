@@ -1,4 +1,4 @@
-"""The charts of a screen on the page."""
+"""The charts of a screen, as elements of the page."""
 
 from __future__ import annotations
 
@@ -16,11 +16,12 @@ from beamdyn.common.screens.chart_options import marks_of, options_of
 from beamdyn.common.screens.page_writer import PageWriter
 
 _HOW = "A chart that has the focus is zoomed by + and -, moved by the arrow keys, and shown whole by 0."
-_NO_TOOLBOX = {"toolbox": {"show": False}}  # while something is held: it would be made anew for each picture
+# While something is held the toolbox is hidden, as it would be made anew for each picture.
+_NO_TOOLBOX = {"toolbox": {"show": False}}
 
 
 class _ShownChart:
-    """A chart below its heading on the page; its element is kept and given new data."""
+    """A chart below its heading; its element is kept when the chart changes, and given new data."""
 
     def __init__(self, writer: PageWriter) -> None:
         self._writer = writer
@@ -30,19 +31,19 @@ class _ShownChart:
             self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
             self.element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
         self.element.on("keydown", js_handler=f"(event) => zoomChart(event, {self.element.id})")
-        # What the component restores is what it was given first: the present data follow.
+        # The component restores the data that it was given first: send the present data after that.
         self.element.on("chart:restore", self.update, args=[])
 
     @property
     def id(self) -> int:
-        """Number of its element."""
+        """Identifier of the chart's element."""
         return self.element.id
 
-    def fill(self, chart: Chart) -> None:
-        """Show another chart."""
+    def fill(self, chart: Chart, options: dict[str, Any]) -> None:
+        """Show another chart, of which these are the options without its cursor."""
         self.heading.set_text(chart.title)
-        last, self._options = self._options, options_of(chart)
-        self._options["toolbox"]["feature"]["mySave"][":onclick"] = "saveChart"
+        series = [marks_of(chart), *options["series"][1:]]
+        last, self._options = self._options, _saved_by_script(options) | {"series": series}
         with self.element.props.suspend_updates():
             self.element.props["aria-label"] = chart.words
         if self._writer.is_ahead:
@@ -53,13 +54,13 @@ class _ShownChart:
             self.update()
 
     def update(self) -> None:
-        """Tell NiceGUI what is shown; not while something is held, as that takes time for each number."""
+        """Send the chart to the browser through NiceGUI, which takes time for each number."""
         with self.element.props.suspend_updates():
             self.element.props["options"] = self._options
         self.element.update()
 
     def move_cursor(self, chart: Chart) -> None:
-        """Show the marks of a chart, of which nothing else has changed."""
+        """Move the marks of the chart; all else is unchanged."""
         self._options["series"][0] = marks_of(chart)
         self.element.run_chart_method("setOption", {"series": self._options["series"][:1]})
 
@@ -78,28 +79,33 @@ class ChartBoard:
     def __init__(self, words: str, writer: PageWriter) -> None:
         self._writer = writer
         self._made: list[_ShownChart] = []
-        self._charts: list[Chart] = []  # that are shown
-        self._shown: list[dict[str, Any]] = []  # their options without their cursors
+        self._charts: list[Chart] = []  # charts on the page
+        self._shown: list[dict[str, Any]] = []  # options of these charts, without the cursor
+        self._sums: list[int] = []  # checksums of each chart's options
         self._column: Any = ui.element("div").classes("w-full charts")
         self._column.props["data-words"] = words
         self._how: Any = ui.label(_HOW).classes("status")
         self._how.set_visibility(False)
 
     def _options_without_cursor(self, chart: Chart, i: int) -> dict[str, Any]:
-        """Options of a chart; those that are shown where nothing else than its cursor has changed."""
+        """Return the options of chart i, the ones shown if only its cursor has changed."""
         if i < len(self._charts):
             shown, rest = self._charts[i], [each.name for each in fields(Chart) if each.name != "cursor"]
             if all(getattr(shown, name) is getattr(chart, name) for name in rest):
                 return self._shown[i]
         return options_of(replace(chart, cursor=None))
 
+    def _sum_of(self, i: int, options: dict[str, Any], last: dict[str, Any]) -> int:
+        """The checksum of a chart's options; that of the last ones where these are the same."""
+        return self._sums[i] if options is last else crc32(json.dumps(options).encode())
+
     def _elements(self) -> Iterator[Any]:
-        """Places and headings of the charts."""
+        """Yield the elements of all charts and headings."""
         for made in self._made:
             yield from (made.place, made.heading)
 
     def show(self, charts: Sequence[Chart]) -> None:
-        """Show these charts in place of the last ones."""
+        """Show these charts in place of the previous ones."""
         while len(self._made) < len(charts):
             with self._column:
                 self._made.append(_ShownChart(self._writer))
@@ -109,18 +115,27 @@ class ChartBoard:
             for i, made in enumerate(self._made):
                 made.place.set_visibility(i < len(charts))
             if last != self._shown:
-                self._column.props["data-picture"] = f"{crc32(json.dumps(self._shown).encode()):08x}"
+                self._sums = [*map(self._sum_of, count(), self._shown, [*last, *[{}] * len(charts)])]
+                self._column.props["data-picture"] = "-".join(f"{each:08x}" for each in self._sums)
                 self._column.update()
                 self._how.set_visibility(bool(charts))
             for i, (made, chart) in enumerate(zip(self._made, charts, strict=False)):
                 if i < len(last) and (last[i] is self._shown[i] or last[i] == self._shown[i]):
                     made.move_cursor(chart)
                 else:
-                    made.fill(chart)
+                    made.fill(chart, self._shown[i])
+
+
+def _saved_by_script(options: dict[str, Any]) -> dict[str, Any]:
+    """Options by which the page's own script saves the chart."""
+    toolbox = options["toolbox"]
+    feature = toolbox["feature"]
+    saving = feature["mySave"] | {":onclick": "saveChart"}
+    return options | {"toolbox": toolbox | {"feature": feature | {"mySave": saving}}}
 
 
 def _without_scripts(options: dict[str, Any]) -> dict[str, Any]:
-    """Options without those that the component reads as scripts, which do not change."""
+    """Return options without those that are scripts (named with ":"), which do not change."""
     return {
         name: _without_scripts(value) if isinstance(value, dict) else value
         for name, value in options.items()

@@ -1,4 +1,4 @@
-"""Charts as options of the chart component of the page: hover, zoom, saving as a picture."""
+"""Options of the chart component of the page for a chart: hover, zoom, saving as a picture."""
 
 from __future__ import annotations
 
@@ -12,33 +12,35 @@ import numpy as np
 from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve
 from beamdyn.common.drawing.strokes import INKS
 
-_DIGITS = 5  # digits of numbers on the page; those of places on an axis are over its length
-_MOST_DIGITS = 10  # digits of a curve that varies little
-_WIDE = 0.15  # share of the axis: a narrower band has no room for its text
-_COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")  # roles of curves, in turn
-# Colours of a chart that drawings have no role for, on light ground; the page sets those on dark ground.
+_DIGITS = 5  # digits of numbers on the page; for a place on an axis, digits of its share of the length
+_MOST_DIGITS = 10  # largest number of digits of the values of a curve that varies little
+_WIDE = 0.15  # share of the axis below which a band is too narrow for its text
+# Colours of curves, used in turn.
+_COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")
+# Colours of a chart that drawings do not have, on light ground; the page sets those on dark ground.
 _MORE = {"chart-4": "#a3527f", "chart-5": "#806000", "chart-6": "#6a35c9"}
 _MORE_DARK = {"chart-4": "#e59ac2", "chart-5": "#f5d76e", "chart-6": "#a98bff"}
-# What the chart component rounds steps of an axis to, for leading digits below a number.
+# Steps of an axis to which the chart component rounds, with the leading digits below which each holds.
 _STEPS = ((1, 1.5), (2, 2.5), (3, 4.0), (5, 7.0), (10, math.inf))
 _POWERS = "(x) => (x >= 1e-3 && x < 1e5) ? String(x) : x.toExponential(0).replace('+', '')"
-_FEW = 8  # decades of an axis up to which its small ticks are drawn, too
-_NAMED, _PALE = 12, 11  # sizes of letters [px]
-_WIDE_CHART = 700  # width from which on a chart is wide [px]
-_LETTERS, _LETTERS_WIDE = 52, 100  # letters in a row of the legend of a narrow chart, and of a wide one
+_FEW = 8  # largest number of decades of an axis at which small ticks are still drawn
+_NAMED, _PALE = 12, 11  # sizes of letters, of names and of numbers [px]
+_WIDE_CHART = 700  # least width of a wide chart [px]
+# Number of letters in a row of the legend, for a narrow chart and for a wide one.
+_LETTERS, _LETTERS_WIDE = 52, 100
 _SAVE_SIGN = "path://M4.7,22.9L29.3,45.5L54.7,23.4M4.6,43.6L4.6,58L53.8,58L53.8,43.6M29.2,45.1L29.2,0"
-_DASHES = ("dashed", "dotted", [10, 3, 2, 3], [2, 6])  # dashes of curves that are compared with, in turn
+_DASHES = ("dashed", "dotted", [10, 3, 2, 3], [2, 6])  # dashes of curves of a compared design, used in turn
 
 
 def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """At most so many points of a curve, which reach as far: its ends, and least and largest of its parts.
+    """Thin a curve to a number of points with the same range: its ends, and the extremes of its parts.
 
     Parameters
     ----------
     x, y : ndarray, shape (n,)
         The curve; x ascends.
     most : int
-        How many points may stay.
+        Largest number of points that stay.
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(x) <= most:
@@ -54,21 +56,22 @@ def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.nda
 
 
 def chart_colours(selector: str, dark: bool = False) -> str:
-    """Style rules for the colours that charts have beside those of drawings."""
+    """Write style rules for the colours that charts have in addition to those of drawings."""
     values = _MORE_DARK if dark else _MORE
     return f"{selector}{{{''.join(f'--{role}:{colour};' for role, colour in values.items())}}}"
 
 
 def options_of(chart: Chart) -> dict[str, Any]:
-    """The options of the chart component.
+    """Make the options of the chart component for a chart.
 
     Its colours are those of the page; no text is taken for HTML, and none for a script.
     """
-    needed = sum(len(each.name) + 8 for each in (*chart.curves, *chart.points))  # letters of the legend
+    # Number of letters in the legend.
+    needed = sum(len(each.name) + 8 for each in (*chart.curves, *chart.points))
     narrow, wide = (
         {"bottom": 50 + 18 * min(math.ceil(needed / letters), 6)} for letters in (_LETTERS, _LETTERS_WIDE)
     )
-    no_dot = {"itemStyle": {"opacity": 0}}  # in the legend, except where points are marked
+    no_dot = {"itemStyle": {"opacity": 0}}  # hides dots in the legend, except where points are marked
     lines = ({"name": curve.name} | ({} if curve.points else no_dot) for curve in chart.curves)
     return {
         "animation": False,
@@ -86,9 +89,9 @@ def options_of(chart: Chart) -> dict[str, Any]:
             "inactiveColor": _paint("ghost"),
             "data": [*lines, *({"name": each.name} for each in chart.points)],
         },
-        "tooltip": {  # all curves at the x of the pointer; of curves over decades, one point
+        "tooltip": {  # the tooltip shows all curves at the pointer's x, or one point where x has decades
             "trigger": "item" if chart.x.logarithmic else "axis",
-            "renderMode": "richText",  # not HTML: names are shown as they are
+            "renderMode": "richText",  # no HTML, so that names are shown as they are
             "confine": True,
             "order": "seriesDesc",
             "textStyle": _letters(_NAMED),
@@ -113,7 +116,7 @@ def options_of(chart: Chart) -> dict[str, Any]:
 
 
 def _paint(role: str, area: bool = False) -> str:
-    """A colour of the page, by its role; that on light ground in a picture without the page."""
+    """Return a colour of the page by its role; pictures outside the page take its value on light ground."""
     if role in _MORE:
         return f"var(--{role},{_MORE[role]})"
     ink = INKS[role]
@@ -121,7 +124,7 @@ def _paint(role: str, area: bool = False) -> str:
 
 
 def _letters(size: int) -> dict[str, Any]:
-    """Style of a text whose letters have a size [px]."""
+    """Return the style of text in a size [px]."""
     return {"color": _paint("text"), "fontSize": size}
 
 
@@ -129,7 +132,7 @@ def _letters(size: int) -> dict[str, Any]:
 
 
 def _axis(axis: ChartAxis, values: Sequence[Any], upright: bool) -> dict[str, Any]:
-    """An axis; one of decades has a number at each power of ten, of which those that overlap are left out."""
+    """Make the options of an axis; an axis of decades has numbers at powers of ten unless they overlap."""
     line = {"lineStyle": {"color": _paint("axis")}}
     label: dict[str, Any] = _letters(_PALE) | {"hideOverlap": True}
     tick: dict[str, Any] = {"show": True} | line
@@ -161,14 +164,14 @@ def _axis(axis: ChartAxis, values: Sequence[Any], upright: bool) -> dict[str, An
 
 
 def _pointed(chart: Chart) -> dict[str, Any]:
-    """The line at the pointer, and the heading of what is said there: quantities and units."""
+    """Make the options of the line at the pointer, and the heading with quantities and units there."""
     heading = f"{chart.x.name} {{value}} {chart.x.unit}".rstrip() + f"\n{chart.y.title}"
     line = {"color": _paint("axis")}
     return {"axisPointer": {"label": {"show": False, "formatter": heading}, "lineStyle": line}}
 
 
 def _is_tick(low: float, high: float) -> bool:
-    """Whether the end of an axis is a multiple of the steps that the chart component makes."""
+    """Whether the upper end of an axis is a multiple of the step that the chart component chooses."""
     step = (high - low) / 5
     if not step > 0:
         return True
@@ -178,7 +181,7 @@ def _is_tick(low: float, high: float) -> bool:
 
 
 def _decades(axis: ChartAxis, values: Sequence[Any]) -> tuple[float, float]:
-    """Ends of an axis with decades: whole ones around the values, where they are not given."""
+    """Return the ends of an axis of decades: as given, else whole decades around the values."""
     known = np.concatenate([np.asarray(each, dtype=float).ravel() for each in values] or [np.empty(0)])
     known = np.log10(known[np.isfinite(known) & (known > 0)])
     known = known if len(known) else np.zeros(1)
@@ -188,7 +191,7 @@ def _decades(axis: ChartAxis, values: Sequence[Any]) -> tuple[float, float]:
 
 
 def _toolbox(title: str) -> dict[str, Any]:
-    """Signs above a chart: zoom, all of it, and saving under its title as a name."""
+    """Make the buttons above a chart: zoom, reset, and saving under the chart's title."""
     name = "-".join("".join(c if c.isalnum() else " " for c in title.lower()).split())
     return {
         "show": True,
@@ -208,7 +211,10 @@ def _toolbox(title: str) -> dict[str, Any]:
 
 
 def _series(chart: Chart) -> Iterator[dict[str, Any]]:
-    """Marks and bands first, in a series of their own, which a moving cursor alone replaces."""
+    """Yield the series of a chart.
+
+    Marks and bands come first, in a series that a moving cursor replaces alone.
+    """
     yield marks_of(chart)
     dashes = count()
     for i, (curve, role) in enumerate(zip(chart.curves, _roles(chart), strict=True)):
@@ -237,12 +243,12 @@ def _series(chart: Chart) -> Iterator[dict[str, Any]]:
 
 
 def _roles(chart: Chart) -> list[str]:
-    """The colour of each curve."""
+    """Return the colour role of each curve."""
     return ["ground" if n is None else _COLOURS[n % len(_COLOURS)] for n in chart.colour_numbers]
 
 
 def _line(curve: ChartCurve) -> dict[str, Any]:
-    """The line of a curve, its points as exact as they are seen; one between gaps is a dot."""
+    """Make the series of a curve, thinned to what can be seen; a point between gaps is a dot."""
     x, y = thinned(curve.x, curve.y, curve.most)
     known = np.pad(np.isfinite(y), 1)
     alone = known[1:-1] & ~known[:-2] & ~known[2:]
@@ -266,7 +272,7 @@ def _line(curve: ChartCurve) -> dict[str, Any]:
 
 
 def marks_of(chart: Chart) -> dict[str, Any]:
-    """The series of marks, bands and cursor; there is always one, so that another replaces it.
+    """Make the series of marks, bands and cursor; it is never missing, so that a later one replaces it.
 
     Marks are upright lines, in the colour of a curve where they are about one.
     """
@@ -306,7 +312,7 @@ def marks_of(chart: Chart) -> dict[str, Any]:
 
 
 def _bands(chart: Chart) -> Iterator[list[dict[str, Any]]]:
-    """Ends of each band, whose text stands there if it has room on the axis, as far as that is known."""
+    """Yield the ends of each band, with its text if the band is wide enough for it."""
     ends = [end for end in (chart.x.low, chart.x.high) if end is not None]
     ends += [float(x) for curve in chart.curves for x in np.asarray(curve.x)[[0, -1]]]
     least = _WIDE * (max(ends, default=0.0) - min(ends, default=0.0))
@@ -316,17 +322,17 @@ def _bands(chart: Chart) -> Iterator[list[dict[str, Any]]]:
 
 
 def _digits(y: np.ndarray) -> int:
-    """Digits of the heights of a line: as many more as these differ less; noise of rounding is not shown."""
+    """Return the digits of a curve's values: more if they differ little, but not those of rounding."""
     span, largest = (float(np.ptp(y)), float(np.abs(y).max())) if len(y) else (0.0, 0.0)
     more = math.ceil(math.log10(largest / span)) - 1 if span > 0 else 0
     return min(_DIGITS + max(more, 0), _MOST_DIGITS)
 
 
 def _place(value: float) -> float:
-    """A place on the axis of x, as exact as it is seen with a close-up of that axis."""
+    """Round a place on the x axis to what can be seen in a close-up."""
     return float(f"{value:.{2 * _DIGITS}g}")
 
 
 def _short(value: float, digits: int = _DIGITS) -> float:
-    """A number with the digits that are shown."""
+    """Round a number to the digits that are shown."""
     return float(f"{value:.{digits}g}")

@@ -1,4 +1,4 @@
-"""Comparison of two designs: inputs and results that differ, and the other design's drawing and curves."""
+"""Comparison of two designs: differing inputs and results, and the other design's drawing and curves."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-_MOST = 60  # differences of results that are listed
+_MOST = 60  # largest number of different results that a comparison lists
 _DASH = (4.0, 2.5)
 
 
 class Difference(NamedTuple):
-    """An input or result that differs: its name, its value here and that of the other design, as shown.
+    """An input or result that differs between two designs: its name, and both values as shown.
 
-    Both as numbers, too; None for what is no number.
+    It also has both values as numbers; None for a value that is no number.
     """
 
     words: str
@@ -37,7 +37,7 @@ class Difference(NamedTuple):
 
     @property
     def change(self) -> str:
-        """Relative difference of the value here from the other; "" unless both are numbers."""
+        """Relative difference of this design's value from the other's; "" unless both are numbers."""
         here, there = self.numbers
         return f"{100 * (here - there) / abs(there):+.3g} %" if here is not None and there else ""
 
@@ -45,7 +45,10 @@ class Difference(NamedTuple):
 def input_differences(
     here: Mapping[str, str], there: Mapping[str, str], inputs: Sequence[Input]
 ) -> Iterator[Difference]:
-    """Inputs whose texts differ, in their order; a default stands in brackets for what is not given."""
+    """Yield the inputs whose texts differ, in their order.
+
+    The default stands in brackets for an empty text.
+    """
     differ = differing(here, there)
     known = {entry.path: entry for entry in inputs}
     for path in (*known, *sorted(differ - {*known})):
@@ -59,7 +62,7 @@ def input_differences(
 
 
 def _value(text: str, entry: Input | None = None) -> float | None:
-    """The number in a text, for an input with a unit that in SI; None if it is none."""
+    """Return the number in a text, in SI if its input has a unit; None if there is no number."""
     try:
         number = float(text) if entry is None or not entry.quantity.unit else entry.quantity.convert(text)
     except ValueError:
@@ -70,7 +73,7 @@ def _value(text: str, entry: Input | None = None) -> float | None:
 def result_differences(
     here: Iterable[RenderableType], there: Iterable[RenderableType]
 ) -> Iterator[Difference]:
-    """Numbers that differ in tables which both designs have, as they are shown."""
+    """Yield the numbers that differ in tables that both designs have, as they are shown."""
     for one, other in zip(_tables(here), _tables(there), strict=False):
         if [c.header for c in one.columns] != [c.header for c in other.columns]:
             continue
@@ -96,7 +99,7 @@ def _tables(parts: Iterable[RenderableType]) -> Iterator[Table]:
 
 
 class _TableRow(NamedTuple):
-    """A row of a table: its number, words and unit, and its numbers by the heads of their columns."""
+    """A row of a table: its index, its words, and its numbers by the heads of their columns."""
 
     number: int
     words: str
@@ -105,18 +108,18 @@ class _TableRow(NamedTuple):
 
     @property
     def place(self) -> str:
-        """The first number of the row, such as the speed of which the others are results."""
+        """The first number of the row with its head, such as the speed to which the other numbers belong."""
         head, text = next(iter(self.numbers.items()), ("", ""))
         return f"{head.removeprefix(', ')} {text}"
 
     @property
     def counted(self) -> str:
-        """Words and number of the row."""
+        """Words of the row, with its number."""
         return ", ".join(filter(None, (self.words, f"row {self.number}")))
 
 
 def _naming(here: Sequence[_TableRow], there: Sequence[_TableRow]) -> Callable[[_TableRow], str]:
-    """Choose how rows of two tables are named: by words of their own, places that both have, or numbers."""
+    """Choose a function that names rows of two tables: by words, by places common to both, or by number."""
     if all(len({row.words for row in rows}) == len(rows) for rows in (here, there)):
         return lambda row: row.words or row.counted
     common = {row.place for row in here} & {row.place for row in there}
@@ -125,7 +128,7 @@ def _naming(here: Sequence[_TableRow], there: Sequence[_TableRow]) -> Callable[[
 
 
 def _rows(table: Table) -> Iterator[_TableRow]:
-    """Rows of a table; the head is "" of a single column of numbers."""
+    """Yield the rows of a table; a single column of numbers has the head ""."""
     heads = [str(column.header) for column in table.columns]
     words = {head for head, column in zip(heads, table.columns, strict=True) if column.justify == "left"}
     single = len(heads) - len(words) == 1
@@ -138,7 +141,7 @@ def _rows(table: Table) -> Iterator[_TableRow]:
 
 
 def differences_html(differences: Sequence[Difference], what: str, other: str) -> str:
-    """A table of differences in HTML, the first of many; a sentence where there is none."""
+    """Write an HTML table of differences, up to a limit; a sentence where there is none."""
     if not differences:
         return f"<p>The {escape(what)} are the same.</p>"
     rows = "".join(
@@ -157,7 +160,7 @@ def differences_html(differences: Sequence[Difference], what: str, other: str) -
 
 
 def headline_html(results: Sequence[KeyResult], other: Sequence[KeyResult] = (), name: str = "") -> str:
-    """The most important results in HTML, with those of another design beside them."""
+    """Write the most important results as HTML, beside those of another design."""
     theirs = dict(other)
     parts = []
     for words, value in results:
@@ -168,12 +171,12 @@ def headline_html(results: Sequence[KeyResult], other: Sequence[KeyResult] = (),
 
 
 def with_other_curves(charts: Sequence[Chart], other: Sequence[Chart], name: str) -> Sequence[Chart]:
-    """Charts with the curves of another design's charts, pale and dashed, if these have the same axes."""
+    """Add another design's curves to charts with the same axes, pale and dashed."""
     if [chart.x.title + chart.y.title for chart in charts] != [c.x.title + c.y.title for c in other]:
         return charts
 
     def around(axis: ChartAxis, there: ChartAxis) -> ChartAxis:
-        """An axis that spans both; an end that follows from the curves in one of them does so here."""
+        """Return an axis that spans both charts; an end that is automatic in either one stays automatic."""
         low = None if axis.low is None or there.low is None else min(axis.low, there.low)
         high = None if axis.high is None or there.high is None else max(axis.high, there.high)
         return replace(axis, low=low, high=high)
@@ -189,7 +192,7 @@ def with_other_curves(charts: Sequence[Chart], other: Sequence[Chart], name: str
 
 
 def with_ghost(rows: Rows, other: Rows, name: str) -> Rows:
-    """Drawings with the outlines of another design beneath them."""
+    """Draw the outlines of another design beneath drawings."""
     if [len(row) for row in rows] != [len(row) for row in other]:
         return rows
 

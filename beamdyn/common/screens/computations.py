@@ -1,4 +1,4 @@
-"""Computations of a page: one at a time, then the newest of those asked for meanwhile; downloads."""
+"""Computations of a page: one runs at a time, and only the latest of those requested meanwhile follows."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from nicegui import background_tasks, ui
 
 from beamdyn.common.screens.processes import TakesTooLong
 
-SOON = 0.15  # time after which the page says that it computes [s]; the message is there within 0.3 s
+SOON = 0.15  # time after which the page says that it computes [s]; the message is visible within 0.3 s
 _LOG = logging.getLogger(__name__)
-_PATIENCE = 2.0  # time after which what is no longer wanted is ended [s]; another process takes 1 s to start
+_PATIENCE = 2.0  # time after which an unwanted computation is ended [s]; a new process takes 1 s to start
 
 
 class LatestComputation:
-    """The computation that is under way, and the one that follows it.
+    """The running computation of a page, and the one that follows it.
 
     Parameters
     ----------
@@ -50,16 +50,27 @@ class LatestComputation:
         self._show, self._fail, self._tell = settle, fail, tell
         self._wanted: Callable[[], asyncio.Future[Any]] | None = None
         self._future: asyncio.Future[Any] | None = None
+        self._gives_way = self._wanted_gives_way = False  # what is under way, and what follows it
         self._task: asyncio.Task[None] | None = None
 
     @property
     def busy(self) -> bool:
-        """Whether something is under way."""
+        """Whether a computation is running."""
         return self._task is not None
 
-    def want(self, start: Callable[[], asyncio.Future[Any]]) -> None:
-        """Start a computation, or let it follow the one under way in place of another that waited."""
-        self._wanted = start
+    def want(self, start: Callable[[], asyncio.Future[Any]], gives_way: bool = False) -> None:
+        """Start a computation, or let it follow the one under way in place of another that waited.
+
+        Parameters
+        ----------
+        start : callable
+            ``start()``: the future of the computation.
+        gives_way : bool
+            Whether it takes long and is ended as soon as something newer is wanted.
+        """
+        self._wanted, self._wanted_gives_way = start, gives_way
+        if self._task is not None and self._future is not None and self._gives_way:
+            self._future.cancel()
         if self._task is None:
             future = self._next()
             if future.done():
@@ -68,20 +79,21 @@ class LatestComputation:
                 self._task = background_tasks.create(self._follow(future))
 
     def cancel(self) -> None:
-        """End the computation under way; nothing follows it."""
+        """Cancel the running computation, and the one that waits."""
         self._wanted = None
         if self._future is not None:
             self._future.cancel()
 
     async def done(self) -> None:
         """Wait until no computation is under way."""
-        if self._task is not None:
+        while self._task is not None:
             await asyncio.wait([self._task])
 
     def _next(self) -> asyncio.Future[Any]:
-        """Start what is wanted; the future of what cannot be started holds the error."""
+        """Start the computation that waits; if that fails, return a future that holds the error."""
         assert self._wanted is not None
         start, self._wanted = self._wanted, None
+        self._gives_way = self._wanted_gives_way
         try:
             self._future = start()
         except Exception as error:
@@ -92,29 +104,32 @@ class LatestComputation:
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
         try:
             self._show(future, last)
-        except Exception as error:  # whatever it is: the page must not go on saying that it computes
+        except Exception as error:  # any exception at all: the page must not go on saying that it computes
             _LOG.exception("what has been computed cannot be shown")
             self._fail(error)
 
     @property
     def words(self) -> str:
-        """How long it has taken, and will if it is as the last time; empty within the first second."""
+        """Word the time taken, and the time left if this takes as long as the last.
+
+        Empty in the first second.
+        """
         if self.waited < 1:
             return ""
         left = self.usual - self.waited
         return f"{self.waited:.0f} s" + (f", about {left:.0f} s left" if left >= 1 else "")
 
     def _count(self, waited: float) -> None:
-        """Tell that it takes long, and each second how long."""
+        """Store the time waited, and tell the page once a second that the computation takes long."""
         tells = not self.slow or int(waited) > int(self.waited)
         self.slow, self.waited = True, waited
         if tells:
             self._tell()
 
     async def _follow(self, future: asyncio.Future[Any]) -> None:
-        """Show what is under way when it is done, and so with what was wanted meanwhile.
+        """Wait for the running computation, and show its result; then go on with the one wanted meanwhile.
 
-        What takes long and is no longer wanted is ended.
+        A computation that takes long and is no longer wanted is ended.
         """
         try:
             while True:
@@ -130,12 +145,81 @@ class LatestComputation:
                 if self._wanted is None:
                     break
                 done, future = future, self._next()
-                await asyncio.sleep(0)  # it is on its way before the last one is shown, which takes its time
+                # The new computation is sent off before the last result is shown, which takes time.
+                await asyncio.sleep(0)
                 if not done.cancelled():
                     self._settle(done, False)
         finally:
             self._task, self.slow, self.waited = None, False, 0.0
         self._settle(future, True)
+
+
+class BusyRow:
+    """A row that says that something is being computed, and for how long, with a button to cancel it.
+
+    Parameters
+    ----------
+    cancel : callable
+        Cancels the computation.
+    words : str
+        What is computed, for those who do not see it; empty where that is said beside it.
+    """
+
+    def __init__(self, cancel: Callable[[], object], words: str = "") -> None:
+        self._row: Any = ui.row().classes("items-center gap-2")
+        with self._row:
+            said = f'role="status" aria-label="{words}"' if words else 'aria-hidden="true"'
+            ui.spinner(size="sm").props(said)
+            self._time: Any = ui.label().classes("status")
+            ui.button("Cancel", on_click=cancel).props("dense outline no-caps size=sm")
+        self._row.set_visibility(False)
+
+    def show(self, busy: bool, time: str = "") -> None:
+        """Show the row with the time taken so far, or hide it."""
+        self._row.set_visibility(busy)
+        self._time.set_text(time)
+
+
+class FileMaking:
+    """A file that is made for download: its name while that takes long, for how long, and a button to end it.
+
+    A file that is asked for meanwhile follows.
+    """
+
+    def __init__(self) -> None:
+        self._way = LatestComputation(self._settle, self._fail, self._tell)
+        self._name = ""
+        self._row: Any = ui.element("div").classes("making")
+        with self._row:
+            self._busy = BusyRow(self._way.cancel, "a file is being made")
+
+    def want(self, name: str, start: Callable[[], asyncio.Future[str]]) -> None:
+        """Have a file of a name made by what ``start()`` returns, and download it."""
+        self._name = name
+        self._way.want(start)
+
+    def close(self) -> None:
+        """End what is under way: the page is gone."""
+        self._way.cancel()
+
+    def _tell(self) -> None:
+        self._busy.show(self._way.slow, f"{self._name} {self._way.words}".rstrip())
+
+    def _settle(self, future: asyncio.Future[str], last: bool) -> None:
+        if self._row.is_deleted:
+            return
+        self._tell()
+        with self._row:  # notifications go to the page that has this row
+            if future.cancelled():
+                ui.notify(f"{self._name} was cancelled")
+            elif isinstance(error := future.exception(), TakesTooLong | BrokenExecutor):
+                ui.notify(f"{self._name} was given up: {error}", type="negative")
+            else:
+                ui.download.content(future.result().encode(), self._name)
+
+    def _fail(self, error: Exception) -> None:
+        with self._row:
+            ui.notify(f"{self._name} was given up: {error}", type="negative")
 
 
 async def download(making: asyncio.Future[Any], name: str) -> None:

@@ -1,4 +1,4 @@
-"""Controls of a drawing: a slider that the page moves itself, a button that plays it, and branches."""
+"""Controls of a drawing: a slider that the page moves itself, a player of it, and a choice of branches."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screen_parts import Slider
 
 _OFTEN = (
-    0.03  # least time between two messages of a slider that is dragged, or two pictures of one played [s]
+    0.03  # least time between two messages of a dragged slider, or between two pictures of a played one [s]
 )
-_LONGEST = 0.2  # most time by which one picture advances the motion, so that it does not jump [s]
-_STILL = 1.0  # time that each picture stays where reduced motion is preferred [s]
-_STILLS = 4  # pictures from one end to the other where reduced motion is preferred
-_PATIENCE = 3.0  # time after which a page that has painted nothing counts as not seen [s]
+_LONGEST = 0.2  # longest time by which one picture of a played motion advances, so that it does not jump [s]
+_REST = 0.3  # time after a release or a step by key, after which a slider is at rest [s]
+_STILL = 1.0  # time for which each picture stays where reduced motion is preferred [s]
+_STILLS = 4  # number of pictures from one end to the other where reduced motion is preferred
+_PATIENCE = 3.0  # time without painting, after which a page counts as not visible [s]
 
-# What has been sent is there when the script runs, and painted after the next frame has been begun.
+# All that was sent is in the page when this script runs, and is painted once the next frame has begun.
 _PAINTED = """return new Promise(done => requestAnimationFrame(() => setTimeout(() => {{
   const seen = getHtmlElement({id})?.offsetParent;
   done(!seen ? "away" : matchMedia("(prefers-reduced-motion: reduce)").matches ? "still" : "moving");
@@ -28,7 +29,7 @@ _PAINTED = """return new Promise(done => requestAnimationFrame(() => setTimeout(
 
 
 class DragSlider(ui.slider, component="drag_slider.js"):
-    """A slider that the page moves itself, and that reports while it is dragged: it does not wait for us.
+    """A slider that the page itself moves, and that reports while dragged, without waiting for the server.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ class DragSlider(ui.slider, component="drag_slider.js"):
         self.on("drag", lambda e: dragged(*e.args), throttle=_OFTEN)
 
     def put(self, place: float, writer: PageWriter) -> None:
-        """Move it to a position; in the page itself while the writer is ahead of NiceGUI."""
+        """Move the slider to a position; directly in the page while the writer is ahead of NiceGUI."""
         with writer.writing(self):
             self.set_value(place)
         if writer.is_ahead:
@@ -53,7 +54,7 @@ class DragSlider(ui.slider, component="drag_slider.js"):
 
 
 class Player:
-    """A slider above a drawing, and a button that plays and pauses it; so does the space bar on the slider.
+    """A slider above a drawing, with a button (or the space bar) that plays and pauses it.
 
     The slider moves on when the page has painted the last picture, so that pictures never pile up.  Moving it
     by hand pauses it, and so does a page that is not seen.  Where the browser prefers reduced motion, a few
@@ -72,7 +73,9 @@ class Player:
     def __init__(self, motion: Slider, writer: PageWriter, turned: Callable[[], object]) -> None:
         self._motion, self._writer, self._turned = motion, writer, turned
         self._task: asyncio.Task[None] | None = None
-        self._sets, self._swings = False, False  # whether it moves by itself, or is dragged
+        # Whether the player sets the slider, and whether a hand moves it.
+        self._sets, self._swings = False, False
+        self._rest: asyncio.TimerHandle | None = None
         last, marks = motion.last, ", ".join(f"{i}: '{mark}'" for i, mark in enumerate(motion.marks))
         with ui.row().classes("stroke w-full"):
             self._slider = DragSlider(
@@ -91,21 +94,32 @@ class Player:
 
     @property
     def moves(self) -> bool:
-        """Whether it plays or is dragged."""
+        """Whether the slider is played or moved by hand, also by single steps."""
         return self.plays or self._swings
 
     def _swing(self, place: float, done: bool) -> None:
-        self._swings = not done
+        self._swings = True
         with self._writer.writing(self._slider):
             self._slider.set_value(place)
+        if self._rest is not None:
+            self._rest.cancel()
+        if done:  # another step of a key may follow soon
+            self._rest = asyncio.get_running_loop().call_later(_REST, self._stop)
+
+    def _stop(self) -> None:
+        """Come to rest, and tell NiceGUI what has been written into the page."""
+        self._swings = False
+        if not self._slider.is_deleted:
+            with self._slider:
+                self._writer.synchronize()
 
     @property
     def plays(self) -> bool:
-        """Whether it plays."""
+        """Whether the slider is being played."""
         return self._task is not None
 
     def toggle(self) -> None:
-        """Play; or pause."""
+        """Start playing if at rest; else pause."""
         if self.plays:
             self.pause()
         else:
@@ -113,7 +127,7 @@ class Player:
             self._show_button()
 
     def pause(self) -> None:
-        """Stop at the present position."""
+        """Pause at the present position."""
         task, self._task = self._task, None
         if task is not None:
             self._show_button()
@@ -130,7 +144,7 @@ class Player:
         task = asyncio.current_task()
         elapsed, last = self._motion.elapsed(self.place), time.monotonic()
         while self._task is task and not self._slider.is_deleted:
-            try:  # wait until the page has painted what it was sent
+            try:  # waits until the page has painted what it was sent
                 code = _PAINTED.format(id=self._button.id)
                 seen = await self._button.client.run_javascript(code, timeout=_PATIENCE)
             except TimeoutError:
@@ -153,7 +167,7 @@ class Player:
 
 
 class BranchChoice:
-    """Buttons that choose which branch of an answer is drawn; hidden where the answer has a single one.
+    """Buttons that choose which branch of an answer is drawn; hidden if the answer has only one.
 
     Parameters
     ----------
@@ -170,7 +184,7 @@ class BranchChoice:
         self._row.set_visibility(False)
 
     def choose(self, answer: Any, branches: Mapping[str, Any]) -> Any:
-        """The chosen branch of an answer: the first one until another is chosen."""
+        """Return the chosen branch of an answer; the first one until another is chosen."""
         names = [*branches]
         if names != self._toggle.options:
             kept = self._toggle.value if self._toggle.value in names else next(iter(names), None)

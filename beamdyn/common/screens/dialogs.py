@@ -1,4 +1,4 @@
-"""Dialogs of the page: a file to open, named designs and examples, and the link to a design."""
+"""Dialogs of the page: opening a file, named designs and examples, and the link to a design."""
 
 from __future__ import annotations
 
@@ -11,13 +11,14 @@ from nicegui import ui
 
 from beamdyn.common.screens.examples import Example
 from beamdyn.common.screens.form_entries import Entries
+from beamdyn.common.screens.screens import Document
 
-_LARGEST = 200_000  # bytes of a file that is opened
+_LARGEST = 200_000  # largest number of bytes of an opened file
 _TOO_LARGE = f"the file is larger than {_LARGEST} bytes"
 
 
 class FileDialog:
-    """A dialog that opens a TOML file, or says why it cannot be opened.
+    """A dialog that opens a TOML file, or tells why it cannot be opened.
 
     Parameters
     ----------
@@ -38,22 +39,22 @@ class FileDialog:
             ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
 
     def ask(self) -> None:
-        """Ask for a file."""
+        """Open the dialog, so that a file can be chosen."""
         self._upload.reset()
         self.refuse("")
 
     def refuse(self, sentence: str) -> None:
-        """Say why a design cannot be opened."""
+        """Show why a file cannot be opened, and stay open."""
         self._said.set_text(sentence)
         self._dialog.open()
 
     def close(self) -> None:
-        """Close it: the file is open."""
+        """Close the dialog."""
         self._dialog.close()
 
     async def _uploaded(self, event: Any) -> None:
         name, content = event.file.name, await event.file.read()
-        if len(content) > _LARGEST:  # whatever the browser has let through
+        if len(content) > _LARGEST:  # checked here, whatever the browser has let through
             return self._said.set_text(_TOO_LARGE)
         try:
             text = content.decode("utf-8-sig")
@@ -63,7 +64,7 @@ class FileDialog:
 
 
 class DesignsDialog:
-    """A dialog that lists designs.
+    """A dialog that lists named designs and examples.
 
     Parameters
     ----------
@@ -97,9 +98,12 @@ class DesignsDialog:
             ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
 
     def show(
-        self, kept: Mapping[str, tuple[str, Entries]], examples: Sequence[Example], document: str
+        self, kept: Mapping[str, tuple[str, Entries]], examples: Sequence[Example], document: Document
     ) -> None:
-        """Open the dialog; only designs of the document in front can be compared."""
+        """Open the dialog with these designs; only those of the document in front can be compared.
+
+        An example opens in that if it reads the same kind of file as the example's own.
+        """
         self._said.set_text("")
         self._list.clear()
         with self._list:
@@ -107,12 +111,12 @@ class DesignsDialog:
             if not kept:
                 ui.label("None yet.").classes("status")
             for name, (kind, entries) in kept.items():
-                self._row(name, kind, lambda entries=entries: entries, kind == document, deletes=True)
+                self._row(name, kind, lambda entries=entries: entries, kind == document.name, deletes=True)
             ui.html("Examples", tag="h3", sanitize=False)
             for example in examples:
-                kind = example.document.name
-                opened = partial(example.document.opened, example.text, example.name)
-                self._row(example.title, kind, opened, kind == document)
+                own = document if example.document.check is document.check else example.document
+                opened = partial(own.opened, example.text, example.name)
+                self._row(example.title, own.name, opened, own is document)
         self._dialog.open()
 
     def _row(
@@ -139,7 +143,7 @@ class DesignsDialog:
 
 
 class LinkDialog:
-    """A dialog with a link, or with the reason why there is none."""
+    """A dialog with the link to a design, or with the reason why there is none."""
 
     def __init__(self) -> None:
         with ui.dialog() as self._dialog, ui.card().classes("designs"):
@@ -153,7 +157,8 @@ class LinkDialog:
                 self._copy: Any = ui.button("Copy").props("no-caps")
                 ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
         field = json.dumps(f"#{self._link.html_id}")
-        take = f"document.querySelector({field})"  # the field itself: attributes stand there
+        # The element with the field's id, which is the input or contains it.
+        take = f"document.querySelector({field})"
         self._copy.on(
             "click",
             js_handler=f"""() => {{
@@ -162,12 +167,12 @@ class LinkDialog:
         )
 
     async def show(self, fragment: str) -> None:
-        """Show the link with this part after "#"."""
+        """Show the link whose part after "#" is given."""
         address = await ui.run_javascript("return location.origin + location.pathname;", timeout=10)
         self._show_link(f"{address}#{fragment}", "")
 
     def refuse(self, sentence: str) -> None:
-        """Say why there is no link."""
+        """Show why there is no link."""
         self._show_link("", sentence)
 
     def _show_link(self, link: str, sentence: str) -> None:

@@ -14,14 +14,14 @@ from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.screen_parts import Handle
 
 _OFTEN = 0.03  # least time between two messages of a moving handle [s]
-_PAUSE = 0.01  # pause after a drawing, for it to be sent and later places to arrive [s]
-# Functions of page.js: they send where the pointer is, and the way of an arrow key.
+_PAUSE = 0.01  # pause after a drawing, in which it is sent and later places may arrive [s]
+# Functions of page.js that send the place of the pointer, and the direction of an arrow key.
 _HOLD, _KEY = "(event) => holdHandle(event, emit)", "(event) => stepHandle(event, emit)"
-_FAR = 10  # arrow keys' steps with shift
+_FAR = 10  # factor of a step by arrow key with shift
 
 
 class DraggableDrawing:
-    """A drawing with its handles.
+    """A drawing with handles that can be dragged.
 
     Parameters
     ----------
@@ -49,7 +49,8 @@ class DraggableDrawing:
         self._sheet = Sheet("")
         self._wanted: tuple[int, Place, bool] | None = None
         self._follows = False
-        self._stepped_to: dict[int, Place] = {}  # where keys have moved points that are not drawn again yet
+        # Places to which keys have moved handles, until they are drawn there.
+        self._stepped_to: dict[int, Place] = {}
         self._handles: list[Any] = []
         self._places: dict[int, str] = {}
         self._said: Any = ui.label()
@@ -64,7 +65,7 @@ class DraggableDrawing:
         self._how.set_visibility(False)
 
     def show(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
-        """Show a drawing; `words` describes the position of each handle for screen readers."""
+        """Show a drawing, with words for screen readers on the position of each handle."""
         parts, self.view = (self._said, self._board, self._machine, self._how), sheet.view
         with self._writer.writing(*parts, *self._handles):
             self._said.set_text(sheet.said)
@@ -76,11 +77,11 @@ class DraggableDrawing:
             self._how.set_visibility(bool(sheet.handles))
             for element in self._handles:
                 toggle(element, "away", not sheet.handles)
-            if sheet.handles:  # without new ones the last stay, hidden: one may be held
+            if sheet.handles:  # without new handles the last ones stay, hidden, as one may be held
                 self._put_handles(sheet, words)
 
     def _put_handles(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
-        """Move the handles to their places, with a message to the page only for those that have changed."""
+        """Move handles to their places, with a message to the page only for those that have changed."""
         labels = [handle.label for handle in sheet.handles]
         if labels != [handle.label for handle in self._sheet.handles]:
             for element in self._handles:
@@ -113,11 +114,11 @@ class DraggableDrawing:
         self._moved(handle, self._stepped_to[i], True)
 
     def forget_steps(self) -> None:
-        """Let steps by keys start from the points as drawn, once the drawing shows the present entries."""
+        """Forget the steps that arrow keys have made, once the drawing shows the present entries."""
         self._stepped_to.clear()
 
     async def _pulled(self, i: int, event: Any) -> None:
-        """Move to the latest place received; places that arrive while one is drawn are skipped."""
+        """Move a handle to its latest place received; places that arrive while one is drawn are skipped."""
         x, y, done = event.args
         self._wanted = (i, (x, y), done)
         if self._follows:

@@ -11,14 +11,14 @@ from textwrap import shorten
 
 from beamdyn.common.screens.screens import Document, Program
 
-_LONGEST = 110  # characters of a title
-_SENTENCE = re.compile(r"\.\s+(?=[A-Z])")  # its end
+_LONGEST = 110  # largest number of characters of a title
+_SENTENCE = re.compile(r"\.\s+(?=[A-Z])")  # end of a sentence
 _CLAUSE = re.compile(r"[;:,] ")
 
 
 @dataclass(frozen=True)
 class Example:
-    """An example of a program.
+    """An example that comes with a program.
 
     Parameters
     ----------
@@ -38,24 +38,24 @@ class Example:
     text: str
 
 
-_KNOWN: dict[str, tuple[Example, ...]] = {}  # examples by program: it takes a second to check them
+_KNOWN: dict[str, tuple[Example, ...]] = {}  # checked examples by program, kept as the check takes a second
 
 
 def examples_of(program: Program) -> tuple[Example, ...]:
-    """The examples that one of a program's documents accepts, in the order of their names."""
+    """Return the examples that one of a program's documents accepts, by name."""
     if program.name not in _KNOWN:
         _KNOWN[program.name] = tuple(_accepted(program))
     return _KNOWN[program.name]
 
 
 def examples_folder() -> Path:
-    """The examples of the installed package, or of the source tree around it."""
+    """Return the folder of examples of the installed package, or of the source tree around it."""
     packed = Path(__file__).with_name("shipped_examples")
     return packed if packed.is_dir() else Path(__file__).parents[3] / "examples"
 
 
 def _accepted(program: Program) -> Iterator[Example]:
-    """Check the TOML files of the examples."""
+    """Yield the TOML files that a document of the program accepts."""
     folder = examples_folder()
     found = [file for place in (folder, folder / "calipers") for file in place.glob("*.toml")]
     for file in sorted(found, key=lambda file: file.name):
@@ -67,7 +67,7 @@ def _accepted(program: Program) -> Iterator[Example]:
 
 
 def _title(text: str, name: str) -> str:
-    """The first sentence of the comment at the head of a file, or its clauses that are not too long.
+    """Return the first sentence of the comment at a file's head, shortened to whole clauses.
 
     The file's name where there is none.
     """

@@ -1,4 +1,4 @@
-"""The panel of a screen that asks backwards: where an input has to be for a result to be what is wanted."""
+"""The panel of questions backwards on a screen: which value of an input gives a result its wanted value."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from nicegui import ui
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.rendering import picture
 from beamdyn.common.screens import page_tasks
-from beamdyn.common.screens.computations import LatestComputation
+from beamdyn.common.screens.computations import BusyRow, LatestComputation
 from beamdyn.common.screens.form_entries import Entries, is_bare, tables_of
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_writer import toggle
@@ -23,14 +23,14 @@ _WITHIN = "from:to:samples unit; if empty, from a tenth to ten times its value"
 
 
 class FindPanel:
-    """A panel below a screen's results that asks backwards, and can be folded.
+    """A panel below a screen's results for questions backwards, which can be folded.
 
     Parameters
     ----------
     work : OpenDocument
         The document.
     screen : Screen
-        Which of its screens.
+        The screen of the document on which the panel stands.
     backwards : Backwards
         The questions that the screen offers.
     solver : RunsTasks
@@ -41,7 +41,7 @@ class FindPanel:
         self.work, self.screen, self.backwards, self._solver = work, screen, backwards, solver
         self._way = LatestComputation(self._settle, self._fail, self._tell)
         self._asked: Entries | None = None  # the design of the last question
-        self._units: dict[str, str] = {}  # of the results offered
+        self._units: dict[str, str] = {}  # units of the results offered
         self._fold: Any = ui.expansion("Find an input", on_value_change=self.state)
         with self._fold.classes("w-full section").props("dense"):
             with ui.row().classes("w-full"):
@@ -52,10 +52,7 @@ class FindPanel:
                 self._target: Any = ui.input("is").classes("grow")
             with ui.row().classes("items-center"):
                 ui.button("Find", on_click=self.ask).props("no-caps")
-                self._busy: Any = ui.row().classes("items-center")
-                with self._busy:
-                    ui.spinner(size="sm").props('role="status" aria-label="searching"')
-                    ui.button("Cancel", on_click=self.close).props("outline no-caps")
+                self._busy = BusyRow(self.close, "searching")
             self._late: Any = ui.label("An input has changed since: this answer is stale.").classes("status")
             self._found: Any = ui.html("", sanitize=False).classes("w-full shown").props('role="alert"')
         self._tell()
@@ -65,12 +62,12 @@ class FindPanel:
         return made.classes("grow")
 
     def state(self) -> None:
-        """While it is open: update the inputs and results offered, and grey a stale answer."""
+        """Update the inputs and results offered, and grey a stale answer, if the panel is open."""
         if not self._fold.value:
             return
         needed = self.work.needed(self.screen)
         self._offer(self._input, [*inputs_with_value(self.work, self.screen)])
-        with suppress(ConfigError):  # then the screen says what is wrong
+        with suppress(ConfigError):  # an error is shown by the screen itself
             self._units = dict(self.backwards.units(tables_of(needed, self.work.inputs)))
             self._offer(self._result, [*self._units])
             self._name_unit()
@@ -85,7 +82,7 @@ class FindPanel:
         self._target.props["suffix"] = self._units.get(self._result.value, "")
 
     def ask(self) -> None:
-        """Search; what is found is shown when it comes."""
+        """Start the search; its answer is shown when it comes."""
         within, target = ((field.value or "").strip() for field in (self._within, self._target))
         unit = self._units.get(self._result.value, "") if is_bare(target) else ""
         sought = f"{self._input.value}={within}" if within else f"{self._input.value}"
@@ -97,14 +94,14 @@ class FindPanel:
         self.state()
 
     def close(self) -> None:
-        """End the search that is under way."""
+        """Cancel the running search."""
         self._way.cancel()
 
     def _tell(self) -> None:
-        self._busy.set_visibility(self._way.slow)
+        self._busy.show(self._way.slow, self._way.words)
 
     def _settle(self, future: asyncio.Future[str], last: bool) -> None:
-        """Show what has been found, or why that has not been done."""
+        """Show the inputs that a question backwards has found, or why it has found none."""
         if self._found.is_deleted:
             return
         self._tell()

@@ -1,4 +1,4 @@
-"""A form made from the descriptions of inputs: a field for each, with its symbol, unit, bounds and help."""
+"""Forms made from descriptions of inputs: a field for each, with symbol, unit, bounds and help."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screen_parts import Drag, Preset
 from beamdyn.common.screens.screens import Screen
 
-_FEW = 3  # fewest fields that are folded, and most of a table of defaults that is open at first
+_FEW = 3  # least number of fields that are folded; a table of defaults with as many or fewer is open at first
 
 
 class Form:
-    """The fields of the tables of a screen.
+    """The fields of a screen's tables.
 
     Parameters
     ----------
     work : OpenDocument
         The document, whose entries stand in the fields at first.
     screen : Screen
-        Which of its screens.
+        The screen of the document on which the form stands.
     inputs : sequence of Input
         Inputs that have a field, if they are in one of the screen's tables.
     changed : callable
@@ -56,10 +56,10 @@ class Form:
         self.fields: dict[str, Any] = {}
         self.typed: dict[str, str] = {}
         self._inputs = {entry.path: entry for entry in inputs}
-        self._units: dict[str, str] = {}  # of bare numbers, by path
+        self._units: dict[str, str] = {}  # units for bare numbers, by path
         self._tables: dict[str, Any] = {}
-        self._places: dict[str, Any] = {}  # places of the fields
-        self._rest: dict[str, Any] = {}  # folded parts of tables
+        self._places: dict[str, Any] = {}  # elements around the fields, by path
+        self._rest: dict[str, Any] = {}  # folded parts of tables, by path
         self._drags = {drag.path: drag for drag in screen.drags}
         for section in screen.sections:
             chosen = [entry for entry in inputs if form_entries.table_of(entry.path) == section]
@@ -70,7 +70,7 @@ class Form:
     def _section(
         self, section: str, chosen: Sequence[Input], presets: Sequence[Preset], work: OpenDocument
     ) -> None:
-        """A table of the form: what is given, needed or moved by a slider; the rest is folded."""
+        """Make a table of the form: given, needed and slider-driven fields first, the rest folded."""
         entries, drags = work.entries, self._drags
         first = [e for e in chosen if e.required or e.path in drags or entries.get(e.path, "")]
         rest = [entry for entry in chosen if entry not in first]
@@ -99,7 +99,7 @@ class Form:
                 self._field(entry, entries.get(entry.path, ""))
 
     def _preset(self, preset: Preset) -> None:
-        """A list that fills in several fields; it shows the choice that stands there, if one does."""
+        """Make a list that fills in several fields, and shows the choice that they agree with, if any."""
 
         def fill(choice: str | None) -> None:
             for path, text in preset.choices.get(choice or "", {}).items():
@@ -115,7 +115,7 @@ class Form:
 
     def _field(self, entry: Input, text: str) -> None:
         made = self._select(entry, text) if form_entries.options_of(entry) else self._input(entry, text)
-        made.without_auto_validation()  # mistakes are marked by the answer, not by the field
+        made.without_auto_validation()  # mistakes are marked once the answer comes, not by the field
         made.classes("w-full").props(
             f'dense outlined stack-label hide-hint hide-bottom-space data-path="{entry.path}"'
         )
@@ -127,7 +127,7 @@ class Form:
             self._slider(self._drags[entry.path], entry, made)
 
     def _slider(self, drag: Drag, entry: Input, field: Any) -> None:
-        """A slider that writes into a field and follows what is written there, limited to its range."""
+        """Make a slider that writes into a field and follows what is written there, within its range."""
 
         def place() -> float | None:
             text = self._read(entry.path).text
@@ -138,7 +138,7 @@ class Form:
                 return None
 
         def write(at: float | None) -> None:
-            if at is not None and at != place():  # otherwise it has followed the field
+            if at is not None and at != place():  # equal if the slider has only followed the field
                 field.set_value(f"{at:g} {drag.unit}".rstrip())
 
         def hold(held: bool) -> None:
@@ -182,7 +182,7 @@ class Form:
         )
         field.props("debounce=100 autocomplete=off spellcheck=false" + " autogrow" * several)
 
-        def tidy() -> None:  # what was read replaces what was typed when the field is left
+        def tidy() -> None:  # on leaving the field, the text as read replaces the text as typed
             read = self._read(entry.path)
             if read.remark and not field.error:
                 field.set_value(read.text)
@@ -206,12 +206,15 @@ class Form:
         self._changed(entry.path, read.text)
 
     def _read(self, path: str) -> form_entries.Reading:
-        """The text of a field, as it is read."""
+        """Return the reading of a field's text."""
         typed = self.fields[path].value or ""
         return form_entries.read_entry(typed, self._inputs[path], self._units.get(path, ""))
 
     def _unit_button(self, entry: Input, field: Any, units: Sequence[str]) -> None:
-        """A button whose menu converts the field's value to another unit; made at the first click."""
+        """Make a button with a menu of units, to which the field's value is converted.
+
+        The menu is filled when the button is first clicked.
+        """
 
         def put(unit: str) -> None:
             self._units[entry.path] = unit
@@ -227,7 +230,7 @@ class Form:
         button.props(f'flat dense round size=sm aria-label="unit of {form_entries.name_words(entry)}"')
 
     def put(self, entries: Mapping[str, str]) -> None:
-        """Show these entries; fields that show theirs already are left alone."""
+        """Show entries in the fields; leave alone those that show theirs already."""
         for path, field in self.fields.items():
             if self._read(path).text != entries.get(path, ""):
                 field.set_value(entries.get(path, ""))
@@ -235,14 +238,14 @@ class Form:
                     self._rest[path].open()
 
     def write(self, texts: Mapping[str, str]) -> None:
-        """Write texts into their fields, also during a drag; paths without a field are passed over."""
+        """Write texts into fields, also during a drag; ignore paths without a field."""
         fields = {path: self.fields[path] for path in texts if path in self.fields}
         with self._writer.writing(*fields.values()):
             for path, field in fields.items():
                 field.set_value(texts[path])
 
     def hide(self, paths: Collection[str]) -> None:
-        """Hide these fields, and tables that have no others; show the rest."""
+        """Hide the fields of given paths, and tables with no others; show all other fields."""
         shown = {form_entries.table_of(path) for path in self.fields if path not in paths}
         for path, place in self._places.items():
             place.set_visibility(path not in paths)
@@ -250,7 +253,7 @@ class Form:
             table.set_visibility(section in shown)
 
     def mark(self, mistakes: Mapping[str, Sequence[str]]) -> None:
-        """Mark the fields with mistakes, clear the others, and open folded tables with a mistake."""
+        """Mark the fields with mistakes, clear the others, and unfold tables with a mistake."""
         for path, field in self.fields.items():
             said = mistakes.get(path)
             field.error = " ".join(said) if said else None
@@ -258,7 +261,7 @@ class Form:
                 self._unfold(path)
 
     def _unfold(self, path: str) -> None:
-        """Open the table that holds a field, and its folded part if it is there."""
+        """Unfold the table that holds a field, and its folded part if the field is in that."""
         self._tables[form_entries.table_of(path)].open()
         if path in self._rest:
             self._rest[path].open()

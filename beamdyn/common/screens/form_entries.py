@@ -1,4 +1,4 @@
-"""Texts of the fields of a form: names and defaults of inputs, how what is typed is read, and TOML tables."""
+"""Texts of a form's fields: names and defaults of inputs, readings of what is typed, and TOML tables."""
 
 from __future__ import annotations
 
@@ -18,8 +18,9 @@ from beamdyn.common.edge.file_words import say
 from beamdyn.common.edge.inputs import Input, Lines, Quantity, parts_of
 from beamdyn.common.edge.units import show
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
+from beamdyn.common.words import name_in_words
 
-Entries = dict[str, str]  # text of each field by the path of its input; "" if empty
+Entries = dict[str, str]  # text of each field by the path of its input; "" for an empty field
 
 _UNITS = {
     "m": ("m", "cm", "mm", "in"),
@@ -36,7 +37,7 @@ _UNITS = {
 
 
 def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
-    """The entries for these tables; values without a field are kept as entries, too."""
+    """Return the entries for tables; values without a field become entries, too."""
     found = {entry.path: "" for entry in inputs}
     leaves = {*found}
 
@@ -53,7 +54,7 @@ def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
 
 
 def _lined(value: Any) -> str:
-    """A value as TOML; a list of tables, or of rows of plain numbers, with a line for each.
+    """Write a value as TOML; a list of tables, or of rows of plain numbers, has a line for each.
 
     Points are no such rows: their coordinates have units.
     """
@@ -68,7 +69,7 @@ def _is_list_of(kind: type, value: Any) -> bool:
 
 
 def has_rows(entry: Input) -> bool:
-    """Whether an input is a list of tables or of rows, or a text, which takes several lines."""
+    """Whether an input takes several lines: a list of tables or of rows, or a long text."""
     if isinstance(entry.quantity, Lines):
         return True
     parts = (part for kind in parts_of(entry.kind) if get_origin(kind) is list for part in get_args(kind))
@@ -78,7 +79,7 @@ def has_rows(entry: Input) -> bool:
 def tables_of(
     entries: Mapping[str, str], inputs: Sequence[Input], names: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """The tables for these entries, as tomllib would read them; empty fields are left out.
+    """Return the tables for entries, as tomllib would read them; empty fields are left out.
 
     Parameters
     ----------
@@ -102,11 +103,13 @@ def tables_of(
 
 
 def _value(text: str, entry: Input | None) -> Any:
-    """The text as a TOML value: a number, list or table if the input is one, else a string."""
+    """Read a text as a TOML value: a number, list or table if the input is one, else a string."""
     if entry is not None:
         is_text = entry.kind is str or (get_origin(entry.kind) is not list and str in get_args(entry.kind))
-        if entry.choices or is_text:
-            return next((choice for choice in entry.choices if str(choice) == text), text)
+        if text in map(str, entry.choices):
+            return next(choice for choice in entry.choices if str(choice) == text)
+        if is_text or (entry.choices and not _takes_numbers(entry)):
+            return text
         if entry.quantity.unit and text[0] not in "[{":
             return text
     try:
@@ -115,8 +118,13 @@ def _value(text: str, entry: Input | None) -> Any:
         return text
 
 
+def _takes_numbers(entry: Input) -> bool:
+    """Whether the input may be a number, even if there are words to choose from."""
+    return bool({float, int} & {*parts_of(entry.kind)})
+
+
 def toml_of(tables: Mapping[str, Any]) -> str:
-    """Tables as the text of a TOML file."""
+    """Write tables as the text of a TOML file."""
 
     def lines(tables: Mapping[str, Any], prefix: str) -> Iterator[str]:
         nested = {key: value for key, value in tables.items() if isinstance(value, dict)}
@@ -134,12 +142,12 @@ def toml_of(tables: Mapping[str, Any]) -> str:
 
 
 def _key(name: str) -> str:
-    """A key, in quotes where it needs them."""
+    """Write a key, in quotes where it needs them."""
     return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else toml_value(name)
 
 
 def toml_value(value: Any) -> str:
-    """A value on one line of TOML."""
+    """Write a value as one line of TOML."""
     match value:
         case bool():
             return str(value).lower()
@@ -155,9 +163,9 @@ def toml_value(value: Any) -> str:
 def by_field(
     error: Exception, inputs: Sequence[Input], entries: Mapping[str, str] = MappingProxyType({})
 ) -> dict[str, list[str]]:
-    """The sentences of an error by the path of the field that each is about; "" for no single field.
+    """Sort the sentences of an error by the path of the field each is about; "" for no single field.
 
-    One on the value of a field has it as it stands there, among the entries.
+    A sentence on the value of a field quotes the text in the field.
     """
     paths = [entry.path for entry in inputs]
     if not isinstance(error, ConfigError):
@@ -167,23 +175,24 @@ def by_field(
         return {path: [reason_of(error) if isinstance(error, ArithmeticError) else say(error)]}
     sentences: dict[str, list[str]] = {}
     for sentence, place in zip(error.mistakes, error.paths, strict=True):
-        around = [path for path in paths if f"{place}.".startswith(f"{path}.")]  # it may lie within an input
+        # The place of the error may lie within an input.
+        around = [path for path in paths if f"{place}.".startswith(f"{path}.")]
         sentences.setdefault(max(around, key=len, default=""), []).append(sentence)
     return sentences
 
 
 def units_for(unit: str) -> tuple[str, ...]:
-    """Units in common use for an SI unit."""
+    """Return the units in common use for an SI unit."""
     return _UNITS.get(unit, (unit,) if unit else ())
 
 
 def units_of(entry: Input) -> tuple[str, ...]:
-    """Units in common use for an input."""
+    """Return the units in common use for an input."""
     return *units_for(entry.quantity.unit), *entry.quantity.further_units
 
 
 def in_unit(text: str, quantity: Quantity, target: str) -> str:
-    """The quantity, or list of quantities, in another unit; the text unchanged if it is no such quantity."""
+    """Convert a quantity, or a list of them, to another unit; return any other text unchanged."""
     try:
         if text.startswith("["):
             return toml_value([in_unit(part, quantity, target) for part in tomllib.loads(f"v = {text}")["v"]])
@@ -196,13 +205,13 @@ def in_unit(text: str, quantity: Quantity, target: str) -> str:
 _NUMBER = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
 _BARE = re.compile(_NUMBER, re.ASCII)
 _QUANTITY = re.compile(rf"({_NUMBER})(\s*[^\d\s.,+-].*|\s+1/.*)?", re.ASCII | re.DOTALL)
-_PAIR = re.compile(r"\s*;\s*|\s*,\s+")  # between the coordinates of a point
-_USUAL = {"m": "mm", "rad": "deg"}  # units shown before one has been chosen
+_PAIR = re.compile(r"\s*;\s*|\s*,\s+")  # pattern of the separator of a point's coordinates
+_USUAL = {"m": "mm", "rad": "deg"}  # units shown until one is chosen, for SI units
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A text as it was read.
+    """A text with the way it was read.
 
     Parameters
     ----------
@@ -229,13 +238,13 @@ def read_entry(typed: str, entry: Input, unit: str) -> Reading:
         The unit shown, which a bare number is given.
     """
     if isinstance(entry.default, tuple) and len(parts := _PAIR.split(typed.strip("() "))) == 2:
-        # They are the coordinates of a point, such as "26.9, 4" or "26.9 mm, 4 mm".
+        # These parts are coordinates of a point, such as "26.9, 4" or "26.9 mm, 4 mm".
         each = [_QUANTITY.fullmatch(part.strip()) for part in parts]
         made = [f"{m[1].replace(',', '.')} {(m[2] or '').strip() or unit}".strip() for m in each if m]
         text = toml_value(made)
         return Reading(text, f"read as {text}") if len(made) == 2 else Reading(typed)
     match = _QUANTITY.fullmatch(typed.strip())
-    is_number = entry.quantity.unit or {float, int} & {*parts_of(entry.kind)}
+    is_number = entry.quantity.unit or _takes_numbers(entry)
     if match is None or entry.choices or not is_number:
         return Reading(typed)
     number, given = match[1].replace(",", "."), (match[2] or "").strip()
@@ -251,7 +260,7 @@ def is_bare(typed: str) -> bool:
 
 
 def unit_of(text: str, entry: Input) -> str:
-    """The unit of a text, if it is a quantity of its input; "" if it is not."""
+    """Return the unit in a text, if it is a quantity of its input; else ""."""
     match = _QUANTITY.fullmatch(text.strip())
     unit = (match[2] or "").strip() if match else ""
     try:
@@ -262,7 +271,7 @@ def unit_of(text: str, entry: Input) -> str:
 
 
 def usual_unit(unit: str) -> str:
-    """The unit that a field of an SI unit has as long as none has been chosen."""
+    """Return the unit that a field shows for an SI unit until another is chosen."""
     return _USUAL.get(unit, unit)
 
 
@@ -270,47 +279,47 @@ NOT_GIVEN = "not given"
 
 
 def label(entry: Input) -> str:
-    """Name and symbol of an input."""
+    """Return the name and symbol of an input."""
     symbol = entry.quantity.symbol
     return f"{name_words(entry)}, {symbol}" if symbol and symbol != entry.name else name_words(entry)
 
 
 def label_html(entry: Input) -> str:
-    """The label as HTML, with the symbol typeset as in a sketch."""
+    """Return the label as HTML, with the symbol typeset as in a sketch."""
     words, _, symbol = label(entry).rpartition(", ")
     return f"{escape(words)}, {symbol_html(symbol)}" if words else escape(symbol)
 
 
 def help_of(entry: Input) -> str:
-    """Meaning, unit and bounds, and whether it may be left out."""
+    """Return meaning, unit and bounds of an input, and whether it may be left out."""
     return entry.help if entry.required else f"{entry.help}; not required"
 
 
 def name_words(entry: Input) -> str:
     """Name of an input in words, with the names of tables nested in its table before it."""
-    return (entry.path.partition(".")[2] or entry.path).replace(".", " ").replace("_", " ")
+    return name_in_words(entry.path.partition(".")[2] or entry.path)
 
 
 def table_of(path: str) -> str:
-    """Name of the table that holds an input; "" outside any."""
+    """Return the name of the table that holds an input; "" outside any table."""
     return path.partition(".")[0] if "." in path else ""
 
 
 def heading_of(section: str, headings: Mapping[str, str]) -> str:
-    """Heading of a table of the form."""
+    """Return the heading of a table of the form."""
     return headings.get(section, section.replace("_", " ").capitalize() or "General")
 
 
 def options_of(entry: Input) -> tuple[str, ...]:
-    """The words or numbers from which an input is chosen; none where it is typed."""
+    """Return the words or numbers from which an input is chosen; empty where it is typed."""
     if entry.kind is bool:
         return ("true", "false")
-    few = all(isinstance(choice, str | int) for choice in entry.choices)
+    few = all(isinstance(choice, str | int) for choice in entry.choices) and not _takes_numbers(entry)
     return tuple(str(choice) for choice in entry.choices) if entry.choices and few else ()
 
 
 def default_words(entry: Input) -> str:
-    """The default value, as a user would type it."""
+    """Return the default value as a user would type it."""
     if entry.default is None or entry.default in ("", [], ()):
         return NOT_GIVEN
     value, unit = entry.default, entry.quantity.unit

@@ -1,4 +1,4 @@
-"""Draggable points of a drawing: their positions in the picture, and the field values for a new position."""
+"""Handles of a drawing: their places in the picture, and the texts of fields for a new place."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.screens.screens import Screen
 
 Place = tuple[float, float]
-_NARROW = 400.0  # width of the paper on a narrow page [pt]
-_ANGLE = math.radians(0.1)  # step to which an angle is rounded [rad]
+_NARROW = 400.0  # width of a drawing's paper on a narrow page [pt]
+_ANGLE = math.radians(0.1)  # step to which angles are rounded [rad]
 
 
 # In the picture -----------------------------------------------------------------------------------------
@@ -33,7 +33,7 @@ _ANGLE = math.radians(0.1)  # step to which an angle is rounded [rad]
 
 @dataclass(frozen=True)
 class Viewport:
-    """Position of the first drawing of a picture in that picture.
+    """Place of the first drawing within a picture, for conversion of points.
 
     Parameters
     ----------
@@ -47,12 +47,12 @@ class Viewport:
     layout: Layout
 
     def place(self, point: Place) -> Place:
-        """The place of a point of the drawing, in parts of the picture, from its top left corner."""
+        """Convert a point of the drawing to a place in parts of the picture, from its top left corner."""
         x, y = self.layout.fit.to_paper(point) / self._size
         return float(x), float(y)
 
     def point(self, place: Place) -> Place:
-        """The point of the drawing at a place of the picture."""
+        """Convert a place of the picture to the point of the drawing there."""
         x, y = self.layout.fit.from_paper(np.multiply(place, self._size))
         return float(x), float(y)
 
@@ -87,16 +87,16 @@ class Sheet:
 
     @cached_property
     def text(self) -> str:
-        """The SVG file of the drawing, or why there is none."""
+        """Text of the SVG file of the drawing, or of why there is none."""
         return as_file(self.element) if self.element else self.said
 
     @property
     def name(self) -> str:
-        """Name of the picture, a checksum of its content."""
+        """Name of the picture: a checksum of its content."""
         return f"p{crc32((self.element or self.said).encode()):08x}"
 
     def place(self, handle: Handle) -> Place:
-        """The place of a handle in the picture."""
+        """Return the place of a handle in the picture."""
         assert self.view is not None
         x, y = handle.at
         return self.view.place((handle.scale * x, handle.scale * y))
@@ -111,7 +111,7 @@ def draw_sheet(
     name: str = "",
     narrow: bool = False,
 ) -> Sheet:
-    """The drawing of an answer with its handles.
+    """Draw an answer, with its handles.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def draw_sheet(
     other : sequence of sequences of Drawing
         Drawings of another design, to be drawn beneath.
     name : str
-        Name of that design.
+        Name of the other design.
     narrow : bool
         Whether the page is narrow: then drawings stand below one another, on narrow paper.
     """
@@ -137,7 +137,7 @@ def draw_sheet(
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)
             marks = len(screen.slider.marks) if screen.slider is not None and view is None else 0
-            if marks:  # the first drawing keeps room for its shapes at each mark of the slider
+            if marks:  # the first drawing leaves room for its shapes at every mark of the slider
                 corners = [screen.drawings(answer, float(mark))[0][0].extent() for mark in range(marks)]
                 rows = _with_first(rows, room=np.vstack(corners))
             rows = with_ghost(rows, other, name) if other else rows
@@ -155,18 +155,18 @@ def draw_sheet(
 
 
 def _with_first(rows: Rows, **changes: Any) -> Rows:
-    """Drawings of which the first is changed."""
+    """Return rows of drawings with the first drawing changed."""
     (first, *others), *more = rows
     return [[replace(first, **changes), *others], *more]
 
 
-# In the fields ------------------------------------------------------------------------------------------
+# What a moved handle writes into the fields of the form --------------------------------------------------
 
 
 def changed_texts(
     handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]
 ) -> Entries:
-    """Texts of the fields that change when a handle is moved, by path.
+    """Return the texts of the fields that change when a handle is moved, by path.
 
     Parameters
     ----------
@@ -184,16 +184,16 @@ def changed_texts(
 
 
 def describe_place(handle: Handle, entries: Mapping[str, str], inputs: Sequence[Input]) -> str:
-    """Position of a handle in words, by the fields that it sets."""
+    """Word the position of a handle, by the fields that it sets."""
     texts = _texts(handle, handle.at, entries, inputs)
     return ", ".join(f"{path.rpartition('.')[2].replace('_', ' ')} {text}" for path, text in texts.items())
 
 
 def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]) -> Entries:
-    """Texts of the fields that a handle sets; parts of old texts that still hold are kept."""
+    """Return the texts of the fields that a handle sets; parts of old texts that still hold are kept."""
     known, texts = {entry.path: entry for entry in inputs}, {}
     for path, value in handle.moved(*target).items():
-        if path in known:  # the drawing may be that of another kind, the last good one
+        if path in known:  # a drawing that is stale may be of another kind, with other inputs
             text, unit = entries.get(path, ""), known[path].quantity.unit
             if isinstance(value, tuple):
                 pairs = zip(value, _coordinates(text, known[path]), strict=True)
@@ -204,7 +204,7 @@ def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Se
 
 
 def _coordinates(text: str, entry: Input) -> Sequence[str]:
-    """Texts of a point's coordinates: as given, or the defaults."""
+    """Return the texts of a point's coordinates: as given, or the defaults."""
     if not text.strip() and isinstance(entry.default, tuple):
         return [f"{1e3 * value:.6g} mm" for value in entry.default]
     values = tables_of({"point": text}, ()).get("point")
@@ -212,7 +212,10 @@ def _coordinates(text: str, entry: Input) -> Sequence[str]:
 
 
 def _number(value: float, text: str, unit: str, grain: float) -> str:
-    """A quantity in the unit of the old text, rounded; the old text if it agrees within rounding."""
+    """Write a quantity in the unit of the old text, rounded.
+
+    Keep the old text if it agrees within rounding.
+    """
     grain = grain if unit == "m" else _ANGLE
     try:
         if abs(quantity(text, unit) - value) <= grain / 2:

@@ -1,4 +1,4 @@
-"""The page's style and scripts, and the bar at its head: screens, undo and redo, designs, files, look."""
+"""Style and scripts of the page, and the bar at its head: screens, undo and redo, designs, files, look."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ STYLE = (
 
 
 def scripts_of(program: str) -> str:
-    """The scripts of a program's page as HTML.
+    """Return the scripts of a program's page as HTML.
 
     Parameters
     ----------
@@ -45,14 +45,14 @@ _LOOKS = {"": ("brightness_auto", None), "light": ("light_mode", False), "dark":
 
 
 class Header:
-    """The bar, with a tab for each screen.
+    """The bar at the head of the page, with a tab for each screen.
 
     Parameters
     ----------
     title : str
         Title of the program.
     screens : sequence of str
-        Names of its screens.
+        Names of the screens of the program.
     turned : callable
         Called when another screen has been chosen.
     files : mapping

@@ -1,4 +1,4 @@
-"""Lists of named items on the page: added and removed by buttons, joined by choosing names."""
+"""Editing lists of named items on the page: buttons add and remove items, chosen names join them."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from nicegui import ui
 from beamdyn.common.screens.lists import Cell, Entries, Item, ListGroup, Lists, gone_with
 from beamdyn.common.screens.page_writer import PageWriter
 
-Put = Callable[[Item, str, str], object]  # item, key of its cell, and text
+Put = Callable[[Item, str, str], object]  # a function of an item, the key of its cell, and the new text
 
-_READ = 10_000  # how long a notice stays [ms]
+_READ = 10_000  # time for which a notice stays [ms]
 
 
 class ItemRow:
@@ -59,7 +59,7 @@ class ItemRow:
             self._bin.props("flat dense round size=sm")
 
     def _make_field(self, cell: Cell) -> None:
-        """Make the field of a cell, in which another text is chosen, or typed until the field is left."""
+        """Make the field of a cell: a choice, or text that counts when the field is left."""
 
         def text() -> str:
             return next(each.text for each in self._item.cells if each.key == cell.key)
@@ -68,7 +68,7 @@ class ItemRow:
             if (now := made.value or "") != text():
                 self._put(self._item, cell.key, now)
             if not cell.options:
-                made.set_value(text())  # what is not taken goes back
+                made.set_value(text())  # a text that is not accepted is undone
 
         made: Any
         if cell.options:
@@ -96,12 +96,12 @@ class ItemRow:
         return [self._fields[cell.key] for cell in self._item.cells if not cell.options]
 
     def fits(self, item: Item) -> bool:
-        """Whether its fields are those of an item: by key, label, and whether they are chosen from."""
+        """Whether the row's fields suit an item: the same keys and labels, chosen or typed alike."""
         kinds = ([(c.key, c.label, bool(c.options)) for c in each.cells] for each in (self._item, item))
         return next(kinds) == next(kinds)
 
     def show(self, item: Item) -> None:
-        """Show another item; a field whose text is the same as before keeps what is being typed."""
+        """Show another item; a field whose text is unchanged keeps what is being typed."""
         before, self._item = self._item, item
         for old, cell in zip(before.cells, item.cells, strict=True):
             field = self._fields[cell.key]
@@ -113,7 +113,7 @@ class ItemRow:
             self._say_names()
 
     def delete(self) -> None:
-        """Remove it from the page."""
+        """Remove the row from the page."""
         self._row.delete()
 
 
@@ -126,7 +126,7 @@ def _chosen(cell: Cell) -> str | None:
 
 
 class GroupRows:
-    """A group of items on the page: their rows, and buttons that add one.
+    """The rows of a group of items, and buttons that add one.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ class GroupRows:
         self.show(group.items)
 
     def show(self, items: Sequence[Item]) -> None:
-        """Show these items; rows are kept as far as their fields fit."""
+        """Show these items; keep rows as far as their fields suit."""
         pairs = zip(self.rows, items, strict=False)
         kept = [*takewhile(lambda pair: pair[0].fits(pair[1]), pairs)]
         for row in self.rows[len(kept) :]:
@@ -168,7 +168,7 @@ class GroupRows:
 
 
 class ListEditor:
-    """The lists of a screen.
+    """The editor of all lists of a screen.
 
     Parameters
     ----------
@@ -208,12 +208,12 @@ class ListEditor:
         self._advise(now())
 
     def show(self, entries: Mapping[str, str]) -> None:
-        """Show other entries in the lists, and say what is missing."""
+        """Show entries in the lists, and say what is missing."""
         self.follow(entries)
         self._advise(entries)
 
     def follow(self, entries: Mapping[str, str]) -> None:
-        """Show other entries in the lists."""
+        """Show entries in the lists."""
         rows = [row for group in self._groups for row in group.rows]
         with self._writer.writing(*(field for row in rows for field in row.texts)):
             for shown, group in zip(self._groups, self._lists.groups(entries), strict=True):

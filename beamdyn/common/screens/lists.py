@@ -1,4 +1,4 @@
-"""Lists of named items of a document, to which items are added: a form of fixed fields cannot show them."""
+"""Descriptions of lists of named items in a document, which a form of fixed fields cannot show."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Entries = dict[str, str]
 
 @dataclass(frozen=True)
 class Cell:
-    """A value of an item.
+    """A value of an item, with the values that it can be chosen from.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class ListGroup:
 
 
 def gone_with(item: Item, before: Sequence[ListGroup], after: Sequence[ListGroup]) -> list[str]:
-    """Names of further items that have gone with one that was removed, since they refer to it."""
+    """Return the names of items that went with a removed one, as they refer to it."""
 
     def names(groups: Sequence[ListGroup]) -> Counter[str]:
         return Counter(one.name for group in groups for one in group.items)

@@ -1,17 +1,19 @@
-"""A document that one client has open: its entries and their history, latest answers, and mistakes."""
+"""A document that one client has open: its entries and their history, its answers, and mistakes."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from functools import partial
-from time import monotonic
+from time import monotonic, perf_counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.file_words import on_form
 from beamdyn.common.edge.inputs import Input
+from beamdyn.common.results.one_line import few_digits
 from beamdyn.common.screens.form_entries import Entries, by_field, heading_of, tables_of, toml_of
 from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.common.screens.screens import Document, Screen
@@ -20,8 +22,8 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
-_MOST = 200  # states that are kept
-_TOGETHER = 1.0  # time within which changes of the same fields are one step [s]
+_MOST = 200  # largest number of states of a document that undo can bring back
+_TOGETHER = 1.0  # time within which changes of the same fields count as one step of undo [s]
 
 
 class History:
@@ -36,10 +38,10 @@ class History:
     def __init__(self, first: Entries) -> None:
         self._states, self._place = [dict(first)], 0
         self._changed: frozenset[str] = frozenset()
-        self._when = -1.0  # of the last change [s]
+        self._when = -1.0  # time of the last change [s]
 
     def record(self, entries: Mapping[str, str], now: float | None = None) -> None:
-        """Add a state, if it differs from the one shown; states after that are forgotten.
+        """Add a state if it differs from the one shown, and forget the states after that one.
 
         Changes of the same fields in quick succession, as of a field that is typed into, are one step.
 
@@ -68,7 +70,7 @@ class History:
         self._changed = frozenset()
 
     def go(self, steps: int) -> Entries | None:
-        """Go so many steps forward, or back if negative; return that state, None if there is none."""
+        """Go a number of steps forward, or back if negative; return that state, None if there is none."""
         if not 0 <= self._place + steps < len(self._states):
             return None
         self._place += steps
@@ -77,26 +79,27 @@ class History:
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is a state before."""
+        """Whether there is an earlier state."""
         return self._place > 0
 
     @property
     def can_redo(self) -> bool:
-        """Whether there is a state after."""
+        """Whether there is a later state."""
         return self._place + 1 < len(self._states)
 
 
 def differing(one: Mapping[str, str], other: Mapping[str, str]) -> frozenset[str]:
-    """Paths of the entries that differ; an empty entry counts as one that is missing."""
+    """Return the paths of entries that differ; an empty entry equals a missing one."""
     return frozenset(path for path in {*one, *other} if one.get(path, "") != other.get(path, ""))
 
 
-_OPTION = re.compile(r"^# (\S+) = (.*)$", re.MULTILINE)  # in a file, as `OpenDocument.file` writes it
+# An option in the head of a file that `OpenDocument.file` has written.
+_OPTION = re.compile(r"^# (\S+) = (.*)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class ShownAnswer:
-    """An answer and what a screen shows of it.
+    """An answer, with what a screen shows of it.
 
     Parameters
     ----------
@@ -110,6 +113,14 @@ class ShownAnswer:
         The entries that were solved.
     headline : sequence of KeyResult
         The most important results.
+    rest : float
+        Time that all but its drawing took [s].
+    is_whole : bool
+        Whether tables and notes are those of the answer; else they wait.
+    is_rough : bool
+        Whether it was solved for the drawing alone, by `Screen.coarser`: it is preliminary.
+    picture : str
+        The picture of an answer for the drawing alone, in HTML, on a screen that has one.
     """
 
     answer: Any
@@ -117,13 +128,17 @@ class ShownAnswer:
     notes: Sequence[str]
     entries: Entries
     headline: Sequence[KeyResult] = ()
+    rest: float = 0.0
+    is_whole: bool = True
+    is_rough: bool = False
+    picture: str = ""
 
 
-Outcome = ShownAnswer | Mapping[str, list[str]]  # an answer, or what is wrong, by field
+Outcome = ShownAnswer | Mapping[str, list[str]]  # an answer, or mistakes by field
 
 
 class OtherDesign(NamedTuple):
-    """A design that the open one is compared with: its name and entries."""
+    """The design with which the open one is compared: its name and entries."""
 
     name: str
     entries: Entries
@@ -156,16 +171,16 @@ class OpenDocument:
         self.compared.clear()
 
     def wants_other(self, screen: Screen) -> bool:
-        """Whether the other design has not been solved yet for a screen."""
+        """Whether the other design still has to be solved for a screen."""
         return self.other is not None and screen.name not in self.compared
 
     def other_answer(self, screen: Screen) -> ShownAnswer | None:
-        """The answer to the other design, if it has one."""
+        """Return the answer to the other design; None if it has none."""
         found = self.compared.get(screen.name)
         return found if isinstance(found, ShownAnswer) else None
 
     def go(self, steps: int) -> bool:
-        """Undo if `steps` is negative, redo if it is positive; say whether there was such a step."""
+        """Undo if `steps` is negative, redo if it is positive; return whether there was such a step."""
         entries = self.history.go(steps)
         if entries is None:
             return False
@@ -174,12 +189,12 @@ class OpenDocument:
 
     @property
     def inputs(self) -> list[Input]:
-        """Descriptions of the inputs."""
+        """Descriptions of the inputs that the present entries have."""
         return self.document.inputs(self.entries)
 
     @property
     def idle(self) -> set[str]:
-        """Paths of inputs that have no effect beside the others, and are not given."""
+        """Return paths of inputs that are not given, and have no effect with the present entries."""
         return {path for path in self.document.idle(self.entries) if not self.entries.get(path, "").strip()}
 
     def open(self, text: str, source: str) -> None:
@@ -197,7 +212,7 @@ class OpenDocument:
         self.history.part()
 
     def recall(self, stored: Mapping[str, object]) -> bool:
-        """Take up entries from an earlier page, but for those changed since; say whether any differed."""
+        """Restore entries of an earlier page, except those changed since; return whether any differed."""
         base = self.document.base_entries
         changed = {path: text for path, text in self.entries.items() if base.get(path) != text}
         before = self.entries
@@ -205,25 +220,25 @@ class OpenDocument:
         return self.entries != before
 
     def text(self) -> str:
-        """The design as TOML, including entries with mistakes."""
+        """Return the design as TOML, including entries with mistakes."""
         tables = tables_of(self.entries, self.inputs)
         return toml_of({name: value for name, value in tables.items() if name not in self.document.beside})
 
     def file(self) -> str:
-        """The design as a TOML file, below comments with the options of the screens, which `open` reads."""
+        """Return the design as a TOML file; comments hold the options of the screens, which `open` reads."""
         options = "".join(f"# {path} = {self.entries[path]}\n" for path in self.document.aside)
         return "\n".join(filter(None, (options, self.text())))
 
     def put(self, path: str, text: str) -> None:
-        """Change one entry; entries of inputs that no longer exist are dropped."""
+        """Change one entry; drop entries of inputs that no longer exist."""
         self._replace_entries(self.entries | {path: text})
 
     def _replace_entries(self, entries: Entries) -> None:
-        """Replace the entries by these, as far as there are inputs for them."""
+        """Replace the entries, as far as there are inputs for them."""
         self.entries = {entry.path: entries.get(entry.path, "") for entry in self.document.inputs(entries)}
 
     def needed(self, screen: Screen) -> Entries:
-        """The entries that a screen's answer depends on."""
+        """Return the entries on which a screen's answer depends."""
         return {
             path: text.strip()
             for path, text in self.entries.items()
@@ -231,16 +246,20 @@ class OpenDocument:
         }
 
     def stale(self, screen: Screen) -> bool:
-        """Whether there is no answer to the present entries."""
+        """Whether a screen has no whole answer to the present entries."""
+        return not self.drawn(screen) or not self.answered[screen.name].is_whole
+
+    def drawn(self, screen: Screen) -> bool:
+        """Whether a screen has an answer to the present entries, at least what its drawing needs."""
         last = self.answered.get(screen.name)
-        return last is None or last.entries != self.needed(screen)
+        return last is not None and last.entries == self.needed(screen)
 
     def outdated(self, screen: Screen) -> bool:
-        """Whether there is an answer, but to earlier entries."""
+        """Whether a screen's answer is to earlier entries."""
         return screen.name in self.answered and self.stale(screen)
 
-    def attempt(self, screen: Screen, for_drawing: bool = False) -> Outcome:
-        """Solve the present entries, but keep neither the answer nor what is wrong.
+    def attempt(self, screen: Screen, for_drawing: bool = False, drawn: ShownAnswer | None = None) -> Outcome:
+        """Solve the present entries for a screen, without keeping the answer or the mistakes.
 
         Parameters
         ----------
@@ -249,27 +268,34 @@ class OpenDocument:
         for_drawing : bool
             Whether to solve as far as the drawing needs it, without tables and notes; else all, also what
             takes time, such as the model error.
+        drawn : ShownAnswer, optional
+            What was solved for the drawing of these entries, to be completed.
         """
         entries, inputs = self.needed(screen), self.inputs
         with on_form(partial(heading_of, headings=self.document.headings)):
             try:
-                return self._answer(screen, for_drawing)
+                return self._answer(screen, for_drawing, drawn)
             except (ValueError, ArithmeticError, NoAnswer) as error:
+                if for_drawing:  # the coarse solution may have no answer while the full one has
+                    return self.attempt(screen)
                 return by_field(error, inputs, entries)
 
-    def _answer(self, screen: Screen, for_drawing: bool) -> ShownAnswer:
-        entries = self.needed(screen)
+    def _answer(self, screen: Screen, for_drawing: bool, drawn: ShownAnswer | None) -> ShownAnswer:
+        entries, start = self.needed(screen), perf_counter()
         tables = tables_of(entries, self.inputs, screen.needs)
+        coarse = screen.coarser(tables)
         if for_drawing:
-            answer = screen.solve(screen.coarser(tables))
-            headline = (screen.quick_headline or screen.headline)(answer)
-            return ShownAnswer(answer, (), (), entries, [*headline])
-        answer = screen.solve(tables)
-        shown, notes = [*screen.tables(answer)], [*screen.notes(answer)]
-        return ShownAnswer(answer, shown, notes, entries, [*screen.headline(answer)])
+            answer, is_rough = screen.solve(coarse), coarse is not tables
+            with few_digits() if is_rough else nullcontext():
+                headline = [*(screen.quick_headline or screen.headline)(answer)]
+            return ShownAnswer(answer, (), (), entries, headline, 0.0, False, is_rough)
+        answer = screen.solve(tables) if drawn is None or drawn.is_rough else drawn.answer
+        start = perf_counter() if coarse is tables else start
+        shown, notes, headline = [*screen.tables(answer)], [*screen.notes(answer)], [*screen.headline(answer)]
+        return ShownAnswer(answer, shown, notes, entries, headline, perf_counter() - start)
 
     def keep(self, screen: Screen, outcome: Outcome) -> bool:
-        """Keep an answer; or keep the last one and say in `mistakes` why there is no other."""
+        """Keep an answer; or keep the last one, and store the mistakes that prevent another."""
         found = isinstance(outcome, ShownAnswer)
         if found:
             self.answered[screen.name] = outcome
@@ -277,5 +303,8 @@ class OpenDocument:
         return found
 
     def solve(self, screen: Screen) -> bool:
-        """Solve the present entries; on failure the last answer is kept, and `mistakes` says why."""
+        """Solve the present entries, and keep the answer or the mistakes.
+
+        Return whether there is an answer.
+        """
         return self.keep(screen, self.attempt(screen))

@@ -7,28 +7,27 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from nicegui import background_tasks, run, ui
+from nicegui import run, ui
 
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.browser_memory import LinkedDesign, call, named_designs, read_typed, refused_name
-from beamdyn.common.screens.computations import download
+from beamdyn.common.screens.computations import FileMaking
 from beamdyn.common.screens.dialogs import DesignsDialog, FileDialog, LinkDialog
 from beamdyn.common.screens.examples import examples_of
 from beamdyn.common.screens.form_entries import Entries
 from beamdyn.common.screens.header import BLUE, RED, STYLE, Header, scripts_of
 from beamdyn.common.screens.open_document import OpenDocument, OtherDesign
-from beamdyn.common.screens.page_tasks import outcome_of
 from beamdyn.common.screens.processes import RunsTasks
 from beamdyn.common.screens.screen_view import ScreenView
 from beamdyn.common.screens.screens import Document, Program, Screen
 
-_CONNECTS = 10.0  # how long a browser may take to connect before its page is let go [s]
-_ANSWERS = 60.0  # how long a browser may take to say what it has stored [s]
+_CONNECTS = 10.0  # time after which a page whose browser has not connected is dropped [s]
+_ANSWERS = 60.0  # time within which a browser must tell what it has stored [s]
 
 
 def add_style_and_scripts(program: Program) -> None:
-    """Add to every page of the process the style and scripts of a program."""
+    """Add a program's style and scripts to every page of the process."""
     ui.add_css(STYLE, shared=True)
     ui.add_body_html(scripts_of(program.name), shared=True)
 
@@ -64,7 +63,7 @@ class Page:
         self.places: dict[str, tuple[Document, Screen]] = {
             screen.name: (document, screen) for document in program.documents for screen in document.screens
         }
-        self._recalled = False  # until then nothing is stored: it would replace what is to be restored
+        self._recalled = False  # until stored data are restored nothing is stored, as it would replace them
         ui.colors(primary=BLUE, secondary="#444444", negative=RED)
         files = {
             "Open a file": lambda: self._file.ask(),
@@ -80,7 +79,10 @@ class Page:
             for name, (document, screen) in self.places.items():
                 with ui.tab_panel(name) as panel:
                     panel.props["data-document"] = document.name
-                    self.panels[name] = ScreenView(self.works[document.name], screen, self._edited, solver)
+                    self.panels[name] = ScreenView(
+                        self.works[document.name], screen, self._edited, self.open, solver
+                    )
+        self._making = FileMaking()
         self._designs = DesignsDialog(self._keep, self._open_design, self._compare, self._drop)
         self._link, self._file = LinkDialog(), FileDialog(self.open)
         self._entered()
@@ -88,29 +90,29 @@ class Page:
         ui.on("redo", self.redo)
         ui.on("typed", lambda event: self._run(f"heard({int(event.args)})"))
         ui.on("narrow", lambda event: self._be_narrow(event.args is True))
-        self._bar.client.on_delete(lambda: [panel.close() for panel in self.panels.values()])
+        self._bar.client.on_delete(lambda: [each.close() for each in (self._making, *self.panels.values())])
 
     def _run(self, script: str) -> None:
-        """Run a script by the page's own client: the element whose event is handled may be gone."""
+        """Run a script in the page's own client, since the element whose event is handled may be gone."""
         self._bar.client.run_javascript(script)
 
     @property
     def front(self) -> str:
-        """Name of the screen that is in front."""
+        """Name of the screen in front."""
         return str(self._bar.value)
 
     @property
     def current(self) -> tuple[Document, Screen]:
-        """The document and screen that are in front."""
+        """The document and screen in front."""
         return self.places[self.front]
 
     @property
     def work(self) -> OpenDocument:
-        """The document in front, as it is open."""
+        """The open document in front."""
         return self.works[self.current[0].name]
 
     def _turned(self) -> None:
-        """Another screen has been chosen: scroll to its top."""
+        """Show the screen that was chosen, from its top."""
         self._entered()
         self._remember()
         ui.run_javascript("window.scrollTo(0, 0)")
@@ -119,13 +121,13 @@ class Page:
         self.panels[self.front].enter()
         self._mark()
         if self.work.wants_other(self.current[1]):
-            background_tasks.create(self._solve_other(self.work, self.current[1]))
+            self.panels[self.front].comparison.solve()
 
     def _edited(self) -> None:
-        """Update which screens are stale after a change."""
+        """After a change of entries, update which screens are stale, the history and the stored data."""
         for panel in self.panels.values():
             panel.state()
-        if not any(panel.dragged for panel in self.panels.values()):  # a drag is one step
+        if not any(panel.dragged for panel in self.panels.values()):  # a whole drag counts as one step
             for work in self.works.values():
                 work.history.record(work.entries)
         self._mark()
@@ -136,13 +138,13 @@ class Page:
         self.header.mark(stale, self.work.history, self.work.other)
 
     def _bring(self, document: Document) -> None:
-        """Bring a document to the front whose design has been replaced."""
+        """Bring to the front a document whose design has been replaced."""
         if self.current[0] is not document:
             self._bar.set_value(document.screens[0].name)
         self._rebuild(document)
 
     def _rebuild(self, document: Document) -> None:
-        if self.current[0] is document:  # other screens are made up to date when they come to the front
+        if self.current[0] is document:  # other screens are updated when they come to the front
             self.panels[self.front].rebuild()
         if self._recalled:
             self._run(call("forgetTyped"))
@@ -152,11 +154,11 @@ class Page:
     # Undo and redo ----------------------------------------------------------------------------------
 
     def undo(self) -> None:
-        """Take the last change of the design in front back."""
+        """Undo the last change of the design in front."""
         self._go(-1)
 
     def redo(self) -> None:
-        """Make the change again that was taken back."""
+        """Redo the change that was undone last."""
         self._go(1)
 
     def _go(self, steps: int) -> None:
@@ -168,9 +170,13 @@ class Page:
     # Files ------------------------------------------------------------------------------------------
 
     def open(self, text: str, name: str) -> None:
-        """Open the text of a file as the document that accepts it, or show the parser's message."""
-        accepting = (document for document in self.program.documents if document.accepts(text))
-        document = next(accepting, self.current[0])
+        """Open the text of a file as the first document that accepts it, or show the parser's message.
+
+        The document in front is asked first.
+        """
+        front = self.current[0]
+        accepting = (each for each in (front, *self.program.documents) if each.accepts(text))
+        document = next(accepting, front)
         try:
             self.works[document.name].open(text, name)
         except ConfigError as error:
@@ -183,9 +189,12 @@ class Page:
         """Download the design in front as TOML."""
         ui.download.content(self.work.file().encode(), f"{self.work.document.name}.toml")
 
-    async def report(self) -> None:
+    def report(self) -> None:
         """Download the HTML report on the document in front, when all its screens have been solved."""
         document = self.current[0]
+        self._making.want(f"{document.name}.html", lambda: asyncio.ensure_future(self._report_on(document)))
+
+    async def _report_on(self, document: Document) -> str:
         sweeps = []
         for screen in document.screens:
             self.panels[screen.name].enter()
@@ -198,11 +207,10 @@ class Page:
         work = self.works[document.name]
         title = work.entries.get("title", "").strip() or f"{self.program.title}: {document.name}"
         given = dict(work.entries), dict(work.answered), title, sweeps
-        made = self.solver.submit(page_tasks.report, document, document.screens[0], *given)
-        await download(made, f"{document.name}.html")
+        return await self.solver.submit(page_tasks.report, document, document.screens[0], *given)
 
     def reset(self) -> None:
-        """Return to the base design."""
+        """Return to the base design of the document in front."""
         document = self.current[0]
         self.work.open(document.base, document.name)
         self._rebuild(document)
@@ -226,7 +234,7 @@ class Page:
         kept = {name: found for name, found in named_designs(stored).items() if found[0] in self.works}
         self._kept = kept
         examples = await run.io_bound(examples_of, self.program) or ()
-        self._designs.show(kept, examples, self.current[0].name)
+        self._designs.show(kept, examples, self.current[0])
 
     async def _keep(self, name: str) -> str:
         sentence = refused_name(name, self._kept)
@@ -252,26 +260,16 @@ class Page:
         self._entered()
 
     def stop_comparing(self) -> None:
-        """Show the design in front alone."""
+        """Stop comparing the design in front with another."""
         self.work.compare(None)
         for screen in self.current[0].screens:
             self.panels[screen.name].show()
         self._mark()
 
-    async def _solve_other(self, work: OpenDocument, screen: Screen) -> None:
-        """Have the other design solved for a screen, and show what differs when it is."""
-        other = work.other
-        assert other is not None
-        future = self.solver.submit(page_tasks.solve, work.document, screen, dict(other.entries))
-        await asyncio.wait([future])
-        if work.other is other:
-            work.compared[screen.name] = outcome_of(future, work, screen)
-            self.panels[screen.name].show()
-
     # Over a reload, or a restart of the program -----------------------------------------------------
 
     def _remember(self, heard: Mapping[str, Mapping[str, str]] | None = None) -> None:
-        """Store the entries and the name of the front screen in this tab of the browser."""
+        """Store the entries and the name of the screen in front in this tab of the browser."""
         if not self._recalled:
             return
         designs = {name: work.entries for name, work in self.works.items()}
@@ -287,7 +285,7 @@ class Page:
         self.header.show_look(stored.get("look") or "")
         self._be_narrow(stored.get("narrow") is True)
         typed, designs = stored.get("typed", {}), stored.get("designs", {})
-        for name, work in self.works.items():  # what is typed first comes before any design is stored
+        for name, work in self.works.items():  # unfinished input is restored before any design is stored
             entries = designs.get(name, work.document.base_entries)
             if work.recall(read_typed(typed.get(name), entries, work.document.inputs(entries))):
                 self._rebuild(work.document)
@@ -303,7 +301,7 @@ class Page:
             panel.be_narrow(narrow)
 
     def _follow(self, fragment: str) -> None:
-        """Open the design in a link, which is checked as a file is."""
+        """Open the design in a link, checked like a file."""
         try:
             design = LinkedDesign.of_fragment(fragment)
             work = self.works.get(design.document)

@@ -1,48 +1,69 @@
-"""Tasks of a page that run in any process: answers, sweeps, files, reports; and why there is no answer."""
+"""Tasks of a page that run in any process: answers, sweeps, files, reports; and reasons for no answer."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import BrokenExecutor
+from contextlib import nullcontext
+from dataclasses import replace
 from datetime import datetime
 from functools import partial
 from html import escape
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.html_report import further, report_page
 from beamdyn.common.edge.input_sweep import InputSweep
-from beamdyn.common.edge.rendering import csv_text, drawing, html, picture, png
+from beamdyn.common.edge.rendering import csv_text, drawing, html, in_haste, picture, png
 from beamdyn.common.edge.tables import FittedTable
 from beamdyn.common.inputs.checks import reason_of
+from beamdyn.common.results.one_line import few_digits
 from beamdyn.common.screens import form_entries
 from beamdyn.common.screens.open_document import OpenDocument, Outcome, ShownAnswer
 from beamdyn.common.screens.processes import TakesTooLong
 from beamdyn.common.screens.screens import Document, Screen
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 Swept = InputSweep | str  # a sweep, or why there is none
-Shown = Sequence[tuple[str, str, InputSweep]]  # sweeps that are shown: the screen's name, a title, the sweep
-_FEW = 3  # fields that are changed by hand between two answers; a file that is opened changes more
+# Sweeps that are shown, each with its screen's name and a title.
+Shown = Sequence[tuple[str, str, InputSweep]]
+# Largest number of fields that people change by hand between two answers; if more have changed, a file was
+# opened.
+_FEW = 3
 
 
-# Tasks: functions of a document, a screen, and what else is needed, which run in any process ---------------
+# Tasks: functions of a document, a screen, and further arguments, which run in any process
+# ----------------------
 
 
-def solve(document: Document, screen: Screen, entries: form_entries.Entries) -> Outcome:
-    """The whole answer to these entries, also what takes time; or what is wrong, by field."""
-    return _opened(document, entries).attempt(screen)
+def solve(
+    document: Document, screen: Screen, entries: form_entries.Entries, drawn: ShownAnswer | None = None
+) -> Outcome:
+    """Solve entries for a screen, with what is drawn first; return the answer, or mistakes by field."""
+    return _opened(document, entries).attempt(screen, drawn=drawn)
 
 
-def solve_for_drawing(document: Document, screen: Screen, entries: form_entries.Entries) -> Outcome:
-    """The answer as far as the drawing needs it, without tables and notes; or what is wrong, by field."""
-    return _opened(document, entries).attempt(screen, for_drawing=True)
+def solve_for_drawing(
+    document: Document, screen: Screen, entries: form_entries.Entries, narrow: bool = False
+) -> Outcome:
+    """The answer as far as the drawing needs it, without tables and notes; or what is wrong, by field.
+
+    Where the screen has a picture that other processes make, it comes with the answer, made in haste.
+    """
+    found = _opened(document, entries).attempt(screen, for_drawing=True)
+    if screen.picture is None or not isinstance(found, ShownAnswer) or found.is_whole:
+        return found
+    with few_digits() if found.is_rough else nullcontext():
+        return replace(found, picture=_picture(screen, found.answer, narrow, in_haste))
 
 
 def sweep(
     document: Document, screen: Screen, entries: form_entries.Entries, text: str, results: str
 ) -> Swept:
-    """A sweep of one of these entries, or why there is none."""
+    """Sweep one of the entries; return the sweep, or why there is none."""
     work = _opened(document, entries)
     assert screen.sweeps is not None
     try:
@@ -52,7 +73,7 @@ def sweep(
 
 
 def find(document: Document, screen: Screen, entries: form_entries.Entries, sought: str, so_that: str) -> str:
-    """The answer to a question backwards on these entries in HTML, or what is wrong with the question."""
+    """Answer a question backwards on entries, as HTML; or word what is wrong with the question."""
     work = _opened(document, entries)
     assert screen.backwards is not None
     try:
@@ -64,29 +85,33 @@ def find(document: Document, screen: Screen, entries: form_entries.Entries, soug
 
 
 def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
-    """One of the parts of an answer that fold out, in HTML."""
+    """Make a part of an answer that folds out, in HTML."""
     return screen.more[number].on_page(answer)
 
 
 def picture_part(document: Document, screen: Screen, answer: Any, narrow: bool) -> str:
     """The picture of an answer in HTML, for a narrow page or a wide one."""
+    return _picture(screen, answer, narrow)
+
+
+def _picture(screen: Screen, answer: Any, narrow: bool, *finish: Callable[[Figure], Figure]) -> str:
     draw = screen.picture
     assert draw is not None
-    return picture(drawing(lambda: draw(answer, narrow)), f"{screen.name}: picture of the result")
+    return picture(drawing(lambda: draw(answer, narrow), *finish), f"{screen.name}: picture of the result")
 
 
 def rows_file(document: Document, screen: Screen, answer: Any) -> str:
-    """The numbers of an answer as a CSV file; for a beam they include the model error, which takes time."""
+    """Write the numbers of an answer as a CSV file; for a beam with the model error, which takes time."""
     return csv_text(screen.rows(answer))
 
 
 def drawing_file(document: Document, screen: Screen, answer: Any, place: float, kind: str) -> bytes:
-    """The drawing of an answer as a file, "svg" or "png"."""
+    """Write the drawing of an answer as a file, "svg" or "png"."""
     return png(screen.draw(answer, place)) if kind == "png" else drawn(screen, answer, place).encode()
 
 
 def sweep_file(document: Document, screen: Screen, swept: InputSweep, kind: str) -> bytes:
-    """The picture of a sweep as a file, "svg" or "png"."""
+    """Draw the picture of a sweep as a file, "svg" or "png"."""
     assert screen.sweeps is not None
     draw = screen.sweeps.draw
     return png(draw(swept)) if kind == "png" else drawing(lambda: draw(swept)).encode()
@@ -100,7 +125,7 @@ def report(
     title: str,
     sweeps: Shown,
 ) -> str:
-    """The HTML report on a document with these answers, by the names of their screens."""
+    """Write the HTML report on a document with answers by the names of their screens."""
     work = _opened(document, entries)
     work.answered = dict(answered)
     by_name = {screen.name: screen for screen in document.screens}
@@ -118,12 +143,12 @@ def _opened(document: Document, entries: form_entries.Entries) -> OpenDocument:
 
 
 def drawn(screen: Screen, answer: object, place: float) -> str:
-    """The drawing of an answer, at a position of the slider, as SVG; a sentence if it cannot be drawn."""
+    """Draw an answer, at a position of the slider, as SVG; a sentence if it cannot be drawn."""
     return drawing(lambda: screen.draw(answer, place))
 
 
 def report_of(work: OpenDocument, title: str, sweeps: Iterable[tuple[str, str]] = ()) -> str:
-    """The HTML report on a document.
+    """Write the HTML report on a document.
 
     Parameters
     ----------
@@ -131,7 +156,7 @@ def report_of(work: OpenDocument, title: str, sweeps: Iterable[tuple[str, str]] 
         The document; in the report are tables and drawing of each screen whose answer is up to date, and
         every input, with its default where none is given.
     title : str
-        Above it.
+        Title of the report.
     sweeps : iterable of (title, picture)
         Sweeps that are shown, as HTML.
     """
@@ -149,7 +174,7 @@ def report_of(work: OpenDocument, title: str, sweeps: Iterable[tuple[str, str]] 
 
 
 def inputs_html(work: OpenDocument) -> str:
-    """A table of every input in HTML: name and symbol, value, whether it was given, and meaning."""
+    """Write an HTML table of all inputs: name and symbol, value, whether it was given, and meaning."""
     made, idle = FittedTable(("input", "value", "", "meaning"), (0, 1, 2, 3)), work.idle
     for entry in work.inputs:
         if entry.path not in idle:
@@ -165,7 +190,7 @@ def inputs_html(work: OpenDocument) -> str:
 
 
 def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Screen) -> Outcome:
-    """The outcome of a computation that is done; if it was ended: why, and what had changed.
+    """Return the outcome of a finished computation; if it was cancelled, why, and what had changed.
 
     That is said at the fields of the inputs that have changed since the last answer.
     """
@@ -184,7 +209,7 @@ def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Scre
 
 
 def changed(work: OpenDocument, screen: Screen) -> list[str]:
-    """Paths of the entries that have changed since the last answer of a screen; none where there is none."""
+    """Return the paths of entries changed since a screen's last answer; empty if there is none."""
     if (before := work.answered.get(screen.name)) is None:
         return []
     now = work.needed(screen)
@@ -192,7 +217,7 @@ def changed(work: OpenDocument, screen: Screen) -> list[str]:
 
 
 def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
-    """Mistakes on a screen, by the path of the field at fault.
+    """Return the mistakes on a screen, by the path of the field at fault.
 
     What is about no single field is about all that have changed since the last answer.  So is what is about
     others than these, if they are few: a top speed is refused since the beam has been made longer.
@@ -209,5 +234,5 @@ def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
 
 
 def _before(work: OpenDocument, screen: Screen, path: str) -> str:
-    """The text of an entry at the last answer."""
+    """Return the text of an entry at the last answer."""
     return work.answered[screen.name].entries.get(path) or "empty"

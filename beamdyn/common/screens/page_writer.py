@@ -1,4 +1,4 @@
-"""Changes during a drag, written into the page directly: NiceGUI would render the whole page for each."""
+"""Direct changes of the page during a drag, since NiceGUI would render the whole page for each."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _WRITTEN = ("innerHTML", "text", "value", "style", "class", "data-", "aria-")
 
 
 class PageWriter:
-    """Writes changes of elements into the page directly while a point or a slider is held.
+    """A writer that changes elements of the page directly while a point or a slider is held.
 
     NiceGUI renders the page as a whole for each change that it is told: 10 to 40 ms where the form is long.
     It is told of what has been written when nothing is held any longer.
@@ -31,12 +31,12 @@ class PageWriter:
 
     @property
     def is_ahead(self) -> bool:
-        """Whether something is held, or NiceGUI has not been told all that was written."""
+        """Whether something is held, or NiceGUI has not yet been told all that was written."""
         return self._held() or bool(self._untold)
 
     @contextmanager
     def writing(self, *elements: Any) -> Iterator[None]:
-        """Within it, changes of these elements are written into the page directly.
+        """Write changes of elements, made within this context, directly into the page.
 
         Written are text, content, style, classes and attributes, and the text of a field, but no other
         property of a component.
@@ -47,7 +47,7 @@ class PageWriter:
         before = {element: _written(element) for element in elements}
         for element in elements:
             element.update = partial(self.tell_later, element)
-            element.run_method = _do_nothing  # a field would ask the page by it for an update
+            element.run_method = _do_nothing  # without this, a field would ask the page for an update
         try:
             yield
         finally:
@@ -60,17 +60,17 @@ class PageWriter:
             self.synchronize()
 
     def tell_later(self, element: Any) -> None:
-        """Tell NiceGUI of an element when nothing is held any longer."""
+        """Tell NiceGUI of a changed element once nothing is held."""
         self._untold[element.id] = element
 
     def synchronize(self) -> None:
-        """Tell NiceGUI what has been written."""
+        """Tell NiceGUI all that has been written."""
         untold, self._untold = self._untold, {}
         for element in untold.values():
             element.update()
 
     def write(self, element: Any, changed: dict[str, Any]) -> None:
-        """Write what has changed of an element, in one message with all other changes until it is sent."""
+        """Write changes of an element, in one message with all others until it is sent."""
         if changed and not self._unwritten:
             asyncio.get_running_loop().call_soon(self._send, element.client)
         if changed:
@@ -82,7 +82,7 @@ class PageWriter:
 
 
 def toggle(element: Any, name: str, on: bool) -> None:
-    """Give an element a class, or take it away."""
+    """Add a class to an element, or remove it."""
     element.classes(add=name if on else "", remove="" if on else name)
 
 
@@ -91,7 +91,7 @@ def _do_nothing(*_: Any, **__: Any) -> None:
 
 
 def _written(element: Any) -> dict[str, Any]:
-    """The properties of an element that can be written into the page."""
+    """Return the properties of an element that can be written into the page."""
     style = ";".join(f"{name}:{value}" for name, value in element.style.items())
     text, classes = getattr(element, "text", None), " ".join(element.classes)
     known = {**element.props, "style": style, "class": classes, "text": text}

@@ -12,19 +12,22 @@ from beamdyn.common.drawing.sheet import lay_out
 from beamdyn.common.drawing.sketch import Sketcher, sketch_paper
 from beamdyn.common.drawing.svg import element
 from beamdyn.common.edge.rendering import picture
+from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.compared_designs import (
     differences_html,
     headline_html,
     input_differences,
     result_differences,
 )
-from beamdyn.common.screens.computations import LatestComputation
-from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
+from beamdyn.common.screens.computations import BusyRow, LatestComputation
+from beamdyn.common.screens.open_document import OpenDocument, OtherDesign, ShownAnswer
+from beamdyn.common.screens.page_writer import PageWriter
+from beamdyn.common.screens.processes import RunsTasks
 from beamdyn.common.screens.screens import Screen
 
 
 class ComparisonPanel:
-    """Tables of the inputs and results that differ; hidden while no other design is compared.
+    """Tables of the inputs and results that differ from another design; hidden while none is compared.
 
     Parameters
     ----------
@@ -32,24 +35,63 @@ class ComparisonPanel:
         The document.
     screen : Screen
         Which of its screens.
+    solver : RunsTasks
+        Solves the other design.
+    solved : callable
+        Called when that has been solved, or why it cannot be is known.
     """
 
-    def __init__(self, work: OpenDocument, screen: Screen) -> None:
-        self.work, self.screen = work, screen
+    def __init__(
+        self, work: OpenDocument, screen: Screen, solver: RunsTasks, solved: Callable[[], object]
+    ) -> None:
+        self.work, self.screen, self._solver, self._solved = work, screen, solver, solved
+        self._way = LatestComputation(self._settle, self._fail, self._tell)
+        self._asked: OtherDesign | None = None
         self._fold: Any = ui.expansion("Compared", value=True).classes("w-full section").props("dense")
         with self._fold:
+            self._busy = BusyRow(self.close, "solving the other design")
             self._said: Any = ui.label().classes("mistake")
             self._inputs: Any = ui.html("", sanitize=False).classes("w-full")
             self._results: Any = ui.html("", sanitize=False).classes("w-full")
         self._fold.set_visibility(False)
 
+    def solve(self) -> None:
+        """Have the other design solved, unless it is on its way."""
+        if (other := self.work.other) is None or (self._way.busy and other is self._asked):
+            return
+        self._asked, given = other, dict(other.entries)
+        self._entitle()
+        self._way.want(lambda: self._solver.submit(page_tasks.solve, self.work.document, self.screen, given))
+
+    def close(self) -> None:
+        """End what is under way."""
+        self._way.cancel()
+
+    def _tell(self) -> None:
+        self._busy.show(self._way.slow, self._way.words)
+
+    def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
+        if self._fold.is_deleted or not last:
+            return
+        self._tell()
+        if self._asked is self.work.other:
+            self.work.compared[self.screen.name] = page_tasks.outcome_of(future, self.work, self.screen)
+            self._solved()
+
+    def _fail(self, error: Exception) -> None:
+        self._said.set_text(f"The other design cannot be shown: {error}")
+
+    def _entitle(self) -> OtherDesign | None:
+        """Show the title where there is another design."""
+        if other := self.work.other:
+            self._fold.set_text(f"Compared with {other.name}")
+        self._fold.set_visibility(other is not None)
+        return other
+
     def show(self, answered: ShownAnswer) -> None:
         """Compare an answer with that of the other design, if that has been solved."""
-        other = self.work.other
-        self._fold.set_visibility(other is not None)
-        if other is None:
+        if (other := self._entitle()) is None:
             return
-        self._fold.set_text(f"Compared with {other.name}")
         found, there = self.work.compared.get(self.screen.name), self.work.other_answer(self.screen)
         mistakes = {} if found is None or isinstance(found, ShownAnswer) else found
         self._said.set_text(" ".join(each for sentences in mistakes.values() for each in sentences))
@@ -61,39 +103,47 @@ class ComparisonPanel:
 
 
 def headline_of(work: OpenDocument, screen: Screen, answered: ShownAnswer) -> str:
-    """The most important results of an answer in HTML, beside those of the design it is compared with."""
+    """Return the most important results of an answer in HTML, beside those of the compared design."""
     there = work.other_answer(screen)
     other = () if there is None else there.headline
     return headline_html(answered.headline, other, work.other.name if work.other else "")
 
 
 class PicturePanel:
-    """A part of an answer, made in another process; the last one stays until it has come.
+    """A part of an answer that another process makes; the last part stays until the next has come.
 
     Parameters
     ----------
     make : callable
         ``make(answer)`` returns a future of the part as HTML.
+    writer : PageWriter
+        Writer of the part while something is held.
     """
 
-    def __init__(self, make: Callable[[Any], asyncio.Future[str]]) -> None:
-        self._make = make
+    def __init__(self, make: Callable[[Any], asyncio.Future[str]], writer: PageWriter) -> None:
+        self._make, self._writer = make, writer
         self._answer: Any = None
         self._way = LatestComputation(self._settle, self._fail)
         self._frame: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
 
     def show(self, answer: object) -> None:
-        """Show another answer."""
+        """Have the part made for another answer, and show it."""
         self._answer = answer
         self._fill()
 
+    def put(self, answer: object, part: str) -> None:
+        """Show another answer whose part is made already."""
+        self.close()
+        self._answer = answer
+        self._write(part)
+
     def close(self) -> None:
-        """End what is being made."""
+        """Cancel the part that is being made."""
         self._way.cancel()
 
     def _fill(self) -> None:
         if self._answer is not None:
-            self._way.want(lambda: self._make(self._answer))
+            self._way.want(lambda: self._make(self._answer), gives_way=True)
 
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
         if self._frame.is_deleted or future.cancelled():
@@ -101,7 +151,11 @@ class PicturePanel:
         error = future.exception()
         if error is not None:
             return self._fail(error)
-        self._frame.set_content(future.result())
+        self._write(future.result())
+
+    def _write(self, part: str) -> None:
+        with self._writer.writing(self._frame):
+            self._frame.set_content(part)
 
     def _fail(self, error: BaseException) -> None:
         self._frame.set_content(picture(f"There is no drawing: {error}", ""))
@@ -114,15 +168,15 @@ class FoldedPanel(PicturePanel):
     ----------
     title : str
         Title of the part.
-    make : callable
+    make, writer
         As for `PicturePanel`.
     """
 
-    def __init__(self, title: str, make: Callable[[Any], asyncio.Future[str]]) -> None:
+    def __init__(self, title: str, make: Callable[[Any], asyncio.Future[str]], writer: PageWriter) -> None:
         self.title = title
         self._fold: Any = ui.expansion(title, on_value_change=self._fill)
         with self._fold.classes("w-full section folded").props("dense"):
-            super().__init__(make)
+            super().__init__(make, writer)
 
     def _fill(self) -> None:
         if self._fold.value:
@@ -130,7 +184,7 @@ class FoldedPanel(PicturePanel):
 
 
 class SketchPanel:
-    """The sketch of a form, which can be folded; nothing is shown where there is none.
+    """The sketch of a form, which can be folded; hidden if there is none.
 
     Parameters
     ----------
@@ -158,18 +212,18 @@ class SketchPanel:
 
     @property
     def shown(self) -> bool:
-        """Whether it is unfolded."""
+        """Whether the sketch is unfolded."""
         return bool(self._fold.value) if self._fold is not None else self._shown
 
     def fold(self) -> None:
-        """Fold it."""
+        """Fold the sketch."""
         self._shown = False
         if self._fold is not None:
             self._fold.close()
 
 
 def _drawn(sketch: Sketcher, entries: Mapping[str, str]) -> str:
-    """A sketch as an element of the page; "" where there is none."""
+    """Draw a sketch as an element of the page; "" where there is none."""
     rows = sketch(entries)
     if not rows:
         return ""

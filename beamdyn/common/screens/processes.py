@@ -1,4 +1,4 @@
-"""Worker processes that compute answers: the serving process stays responsive, and can end each of them."""
+"""Worker processes that compute answers: the server stays responsive, and can end each of them."""
 
 from __future__ import annotations
 
@@ -12,31 +12,39 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor
 from contextlib import suppress
-from functools import cache
+from contextvars import copy_context
+from functools import cache, partial
 from threading import Thread
 from time import sleep
+from types import FrameType
 from typing import Any, Protocol
 
 from beamdyn.common.parallel.workers import serve
 from beamdyn.common.screens.screens import Document, Program, Screen
 
 LONGEST = 120.0  # time limit of an answer [s]
-MEMORY = 400  # memory that an answer may take beyond that of an idle process [MB]
+MEMORY = 800  # memory that an answer may take beyond that of an idle process [MB]
 _MOST = max(3, (os.cpu_count() or 1) + 1)  # processes: one is left where others are at long answers
 _NICE = 5  # niceness of the processes: the server and the browser come first
+_HEEDS = 0.3  # time that a process has to let go of a task that is no longer wanted, before it is ended [s]
+_AGAIN = 0.03  # time after which it is told again [s]: while it imports a module it heeds nothing
+_SOON_FREE = (
+    0.05  # of that time, as long as the next task waits for this process rather than take another [s]
+)
 _SPARE = 0.5  # time after which a task that still runs has an idle process started, for other tasks [s]
 _SERVE = "from beamdyn.common.screens.processes import serve_tasks; serve_tasks({caller})"
+_IMPORTING = "<frozen importlib._bootstrap>"  # file of the code that imports modules
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
 
-Task = Callable[..., Any]  # function of a document, one of its screens, and what else is submitted
+Task = Callable[..., Any]  # function of a document, one of its screens, and further arguments
 
 
 class TakesTooLong(Exception):
-    """An answer was given up, as it took more time or memory than allowed."""
+    """Raised when an answer takes more time or memory than allowed."""
 
 
 class RunsTasks(Protocol):
-    """Runs tasks: `Processes`, or the `Share` of a page in them."""
+    """Interface of what runs tasks: `Processes`, or a page's `Share` of them."""
 
     def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
         """Start ``task(document, screen, *rest)``; cancelling the future ends the task."""
@@ -46,9 +54,10 @@ class RunsTasks(Protocol):
 class Processes:
     """Worker processes of one program, which belong to the event loop in which they are first used.
 
-    Each runs one task at a time; other tasks wait in their order.  A task that is cancelled or takes too long
-    is ended with its process, and another one is started.  The first process starts when `start` is called,
-    further ones while all are busy.  They end with the calling process, however that ends.
+    Each runs one task at a time; other tasks wait in their order.  A task that is cancelled is interrupted;
+    if it does not heed that, or takes too long, it is ended with its process, and another one is started.
+    The first process starts when `start` is called, further ones while all are busy.  They end with the
+    calling process, however that ends.
 
     Parameters
     ----------
@@ -66,6 +75,7 @@ class Processes:
         self._all: set[_Worker] = set()
         self._waiting: deque[asyncio.Future[_Worker]] = deque()
         self._starts: set[asyncio.Task[None]] = set()
+        self._interrupted: set[asyncio.Task[None]] = set()
         self._count = 0  # number of processes, with those that are being started
 
     @property
@@ -94,7 +104,7 @@ class Processes:
         return asyncio.ensure_future(self._run(wanted))
 
     def start(self) -> None:
-        """Start a process before it is needed, unless there are enough: it takes a second to be ready."""
+        """Start a process before it is needed, unless there are enough, as that takes a second."""
         if self._count < self.most:
             self._count += 1
             start = asyncio.ensure_future(self._start())
@@ -104,9 +114,10 @@ class Processes:
     async def close(self) -> None:
         """End all processes; no other one starts."""
         self.most = 0
-        for start in self._starts:
-            start.cancel()
-        await asyncio.gather(*self._starts, return_exceptions=True)
+        under_way = self._starts | self._interrupted
+        for task in under_way:
+            task.cancel()
+        await asyncio.gather(*under_way, return_exceptions=True)
         for worker in [*self._all]:
             await self._end(worker)
 
@@ -128,7 +139,7 @@ class Processes:
         self._free(worker)
 
     def _fail(self, why: str) -> None:
-        """Fail the tasks that wait for a process, as none can be started."""
+        """Fail all waiting tasks, as no process can be started."""
         while self._waiting:
             if not (place := self._waiting.popleft()).done():
                 place.set_exception(BrokenExecutor(f"no process can be started to compute it: {why}"))
@@ -138,12 +149,17 @@ class Processes:
         keep_one_idle = asyncio.get_running_loop().call_later(
             _SPARE, lambda: None if self._idle else self.start()
         )
+        asked = asyncio.ensure_future(worker.ask(wanted))
         try:
             async with asyncio.timeout(self.longest):
-                answer = await worker.ask(wanted)
+                answer = await asyncio.shield(asked)
+        except asyncio.CancelledError:
+            self._interrupted.add(task := asyncio.ensure_future(self._interrupt(worker, asked)))
+            task.add_done_callback(self._interrupted.discard)
+            raise
         except BaseException as error:
-            await self._end(worker)
-            self.start()
+            asked.cancel()
+            await self._replace(worker)
             if isinstance(error, TimeoutError):
                 raise TakesTooLong(f"it takes more than {self.longest:g} s") from None
             if isinstance(error, EOFError | OSError):
@@ -159,8 +175,35 @@ class Processes:
             raise TakesTooLong(f"it takes more than {MEMORY} MB of memory")
         raise result
 
+    async def _interrupt(self, worker: _Worker, asked: asyncio.Future[bytes]) -> None:
+        """Have a process let go of its task, and use it again; end it if it does not."""
+        try:
+            async with asyncio.timeout(_HEEDS):
+                while not asked.done():
+                    worker.interrupt()
+                    await asyncio.wait([asked], timeout=_AGAIN)
+                await asked
+        except (TimeoutError, EOFError, OSError):
+            asked.cancel()
+            await self._replace(worker)
+        except asyncio.CancelledError:
+            asked.cancel()
+            await self._end(worker)
+            raise
+        else:
+            self._free(worker)
+
+    async def _replace(self, worker: _Worker) -> None:
+        await self._end(worker)
+        self.start()
+
     async def _idle_worker(self) -> _Worker:
-        """An idle process; where there is none another is started, and the first that is free is taken."""
+        """An idle process; where there is none another is started, and the first that is free is taken.
+
+        One that has just been interrupted is soon free, and has done such tasks before.
+        """
+        if self._interrupted:
+            await asyncio.wait(self._interrupted, timeout=_SOON_FREE, return_when=asyncio.FIRST_COMPLETED)
         while self._idle:
             worker = self._idle.pop()
             if worker.process.returncode is None:
@@ -171,7 +214,8 @@ class Processes:
         try:
             return await place
         except asyncio.CancelledError:
-            if place.done() and not place.cancelled():  # given at the same time
+            # A process was given to this task at the moment of its cancellation.
+            if place.done() and not place.cancelled():
                 self._free(place.result())
             raise
 
@@ -230,13 +274,13 @@ class Share:
         try:
             await place
         except asyncio.CancelledError:
-            if not place.cancelled():  # given at the same time
+            if not place.cancelled():  # room was given to this task at the moment of its cancellation
                 self._leave()
             raise
         return await self._start(given)
 
     def _leave(self) -> None:
-        """Let the next task that waits take the room of one that has ended."""
+        """Give the place of a task that has ended to the next task that waits."""
         while self._waiting:
             if not (place := self._waiting.popleft()).done():
                 return place.set_result(None)
@@ -244,7 +288,7 @@ class Share:
 
 
 class _Worker:
-    """A process that takes pickled tasks on its standard input and answers on its standard output."""
+    """A process that reads pickled tasks from standard input and writes answers to standard output."""
 
     def __init__(self, process: subprocess.Process) -> None:
         assert process.stdin is not None and process.stdout is not None
@@ -264,18 +308,74 @@ class _Worker:
         await self._tasks.drain()
         return await self._answers.readexactly(int.from_bytes(await self._answers.readexactly(8), "big"))
 
+    def interrupt(self) -> None:
+        """Have the process let go of the task that it is at; `OSError` where that cannot be told."""
+        if not hasattr(signal, "SIGUSR1"):  # on Windows
+            raise OSError
+        self.process.send_signal(signal.SIGUSR1)
+
 
 # In a worker process --------------------------------------------------------------------------------------
 
 
-def serve_tasks(caller: int) -> None:
-    """Run the tasks that arrive on the standard input; end with the caller, also in the middle of a task."""
+class _NoLongerWanted(BaseException):
+    """Raised amid a task that has been cancelled; no error that a task could take for one of its own."""
 
-    def end_with_caller() -> None:  # the closed input would be seen only between two tasks
-        while os.name == "nt" or os.getppid() == caller:  # on Windows it stays the same
+
+class _Interrupts:
+    """Interrupts the task that this process is at: nothing between two tasks, and no import of a module.
+
+    A module whose import is interrupted would stay half imported, for all tasks that follow.
+    """
+
+    _at_task = False
+
+    def listen(self) -> None:
+        """Heed the signal of `_Worker.interrupt`."""
+        if hasattr(signal, "SIGUSR1"):
+            signal.signal(signal.SIGUSR1, self._come)
+
+    def _come(self, _: int, frame: FrameType | None) -> None:
+        if self._at_task and not _imports(frame):
+            self._at_task = False
+            raise _NoLongerWanted
+
+    def run(self, task: Callable[[], Any]) -> Any:
+        """The result of a task; None if it is interrupted, which nobody waits for.
+
+        The task has context variables of its own, such as those of `few_digits`, which therefore never
+        outlive it.
+        """
+        try:
+            self._at_task = True
+            result = copy_context().run(task)
+            self._at_task = False
+        except _NoLongerWanted:
+            return None
+        finally:
+            self._at_task = False
+        return result
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Whether a module is being imported in a frame, or in one that has called it."""
+    while frame is not None and frame.f_code.co_filename != _IMPORTING:
+        frame = frame.f_back
+    return frame is not None
+
+
+_INTERRUPTS = _Interrupts()
+
+
+def serve_tasks(caller: int) -> None:
+    """Run the tasks that arrive on the standard input; end when the caller ends, even within a task."""
+
+    def end_with_caller() -> None:  # end-of-file would be noticed only between two tasks
+        while os.name == "nt" or os.getppid() == caller:  # on Windows the parent's id stays the same
             sleep(1.0)
         os._exit(1)
 
+    _INTERRUPTS.listen()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's to handle
     if hasattr(os, "nice"):
         os.nice(_NICE)
@@ -284,13 +384,13 @@ def serve_tasks(caller: int) -> None:
 
 
 def _prepare(make: Callable[[], Program], memory: int) -> None:
-    """Import the program; from then on `MemoryError` is raised when so much more memory [MB] is taken.
+    """Import the program; then limit the memory of this process to `memory` [MB] more than it takes now.
 
-    That is on systems that can limit it.
+    Beyond the limit Python raises `MemoryError`. Systems that cannot limit memory have no limit.
     """
     _screens(make)
     try:
-        import resource  # which Windows lacks
+        import resource  # a module that Windows lacks
 
         with open("/proc/self/statm") as file:
             data = int(file.read().split()[5]) * resource.getpagesize()
@@ -302,7 +402,7 @@ def _prepare(make: Callable[[], Program], memory: int) -> None:
 
 def _do(make: Callable[[], Program], task: Task, document: str, screen: str, *rest: Any) -> Any:
     """Run a task for the screen of that name."""
-    return task(*_screens(make)[document, screen], *rest)
+    return _INTERRUPTS.run(partial(task, *_screens(make)[document, screen], *rest))
 
 
 @cache

@@ -1,6 +1,6 @@
-"""Parts of a screen that an answer describes: sliders, points to drag, and the results that stand first.
+"""Parts of a screen that an answer describes: sliders, points to drag, and the results that come first.
 
-They stand apart from `Screen`, so that a command can describe them without loading what draws a screen.
+They are apart from `Screen`, so that a command can describe them without loading what draws a screen.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 @dataclass(frozen=True)
 class Slider:
-    """A slider above the drawing, which changes the drawing only.
+    """A slider above the drawing, which changes nothing but the drawing.
 
     Parameters
     ----------
@@ -38,17 +38,17 @@ class Slider:
 
     @property
     def last(self) -> float:
-        """Position at its end."""
+        """The slider's largest position."""
         return len(self.marks) - 1.0
 
     def place(self, elapsed: float) -> float:
-        """Position when it has been played for a time [s]."""
+        """Compute the position at a time [s] after play began."""
         if self.onward:
             return self.last * (elapsed / self.seconds % 1.0)
         return self.last * (1 - math.cos(math.pi * elapsed / self.seconds)) / 2
 
     def elapsed(self, place: float) -> float:
-        """Time at which it is at a position when it is played, on its way there [s]."""
+        """Compute the time after the start of play [s] at which a position is reached first."""
         if self.onward:
             return self.seconds * place / self.last
         if place >= self.last:
@@ -96,7 +96,7 @@ class Preset:
     choices: Mapping[str, Mapping[str, str]]
 
     def chosen(self, texts: Callable[[str], str]) -> str | None:
-        """The choice whose texts all stand in their fields; None where no choice does."""
+        """Return the name of the choice whose texts all fields have; None if there is no such choice."""
         return next(
             (
                 name
@@ -108,7 +108,7 @@ class Preset:
 
 
 class KeyResult(NamedTuple):
-    """A result that stands first on a screen, such as ("stopping distance", "13.4 m").
+    """A result that comes first on a screen, such as ("stopping distance", "13.4 m").
 
     Parameters
     ----------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from html import escape
@@ -15,10 +16,11 @@ from nicegui import ui
 
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import html
+from beamdyn.common.results.one_line import few_digits
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.chart_board import ChartBoard
 from beamdyn.common.screens.compared_designs import with_other_curves
-from beamdyn.common.screens.computations import LatestComputation, download
+from beamdyn.common.screens.computations import SOON, BusyRow, LatestComputation, download
 from beamdyn.common.screens.controls import BranchChoice, Player
 from beamdyn.common.screens.draggable_drawing import DraggableDrawing
 from beamdyn.common.screens.find_panel import FindPanel
@@ -42,8 +44,10 @@ from beamdyn.common.screens.screens import Screen
 from beamdyn.common.screens.sweep_panel import SweepPanel
 
 _NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
+_NO_FILE = "No file is made: the present entries have no answer, or a preliminary one alone."
 _STALE = "Stale: for the entries before."
-_CHARTS_APART = 0.1  # pictures of charts beside a drawing that moves: a browser takes 5 to 10 ms for each [s]
+# Time between pictures of charts beside a moving drawing: a browser takes 5 to 10 ms for each [s].
+_CHARTS_APART = 0.1
 
 
 class ScreenView:
@@ -54,33 +58,45 @@ class ScreenView:
     work : OpenDocument
         The document.
     screen : Screen
-        Which of its screens.
+        The screen of the document that is shown.
     edited : callable
         Called after a field of this screen has changed.
+    open_file : callable
+        ``open_file(text, name)``: open a file that follows from the answer.
     solver : RunsTasks
         Solver that makes the answers.
     """
 
     def __init__(
-        self, work: OpenDocument, screen: Screen, edited: Callable[[], object], solver: RunsTasks
+        self,
+        work: OpenDocument,
+        screen: Screen,
+        edited: Callable[[], object],
+        open_file: Callable[[str, str], object],
+        solver: RunsTasks,
     ) -> None:
         self.work, self.screen, self._edited, self._solver = work, screen, edited, solver
-        self.narrow = False  # the page, so that drawings have narrow paper
+        self._open_file = open_file
+        self.narrow = False  # whether the page is narrow, so that drawings have narrow paper
         self._drawn = False
-        self._sentences: list[tuple[str, str]] = []  # that are shown, with their classes
+        self._sentences: list[tuple[str, str]] = []  # sentences that are shown, with their classes
         self._way = LatestComputation(self._settle, self._fail, self.state)
-        self._holds = False  # a slider of the form
-        self._charted = 0.0  # when the charts were shown last [s]
+        self._holds = False  # whether a slider of the form is held
+        self._charted = 0.0  # time at which the charts were shown last [s]
         self._player: Player | None = None
-        self._writer = PageWriter(lambda: self.dragged or (self._player is not None and self._player.moves))
-        self._partial = False  # whether the tables shown are those of an answer before
+        self._previews = False  # shows a part of an answer, whose rest comes soon
+        self._writer = PageWriter(lambda: self.dragged or self._previews or self._plays)
+        self._asked: Entries = {}  # entries that were given last to be solved
+        # Entries of the last picture that was asked for; a rough answer that brings its own does not count.
+        self._pictured: Entries = {}
         self._sketch: SketchPanel | None = None
         with ui.element("div").classes("screen"):
             self._left: Any = ui.column().classes("left gap-1")
             with ui.column().classes("right gap-2"):
                 self._make_head()
                 self._make_results()
-        self._shape: list[str] | None = None  # its form is made when it comes to the front: pages open sooner
+        # Inputs of the form; None as long as it is not made, so that pages open sooner.
+        self._shape: list[str] | None = None
         self.state()
 
     def _make_head(self) -> None:
@@ -94,15 +110,13 @@ class ScreenView:
             with ui.row().classes("items-center gap-2"):
                 self._status: Any = ui.label().classes("status").props('role="status" aria-live="polite"')
                 ui.label(_STALE).classes("newer")
-                self._busy: Any = ui.row().classes("items-center gap-2")
-                with self._busy:
-                    ui.spinner(size="sm").props('aria-hidden="true"')
-                    self._time: Any = ui.label().classes("status")
-                    ui.button("Cancel", on_click=self._way.cancel).props("dense outline no-caps size=sm")
+                self._busy = BusyRow(self._way.cancel)
             self._said: Any = ui.column().classes("said gap-1 w-full").props('role="alert"')
 
     def _make_downloads(self) -> None:
         with ui.row().classes("gap-2"):
+            if (follows := self.screen.follows) is not None:
+                ui.button(follows.words, on_click=self._open_following).props("flat dense no-caps")
             for kind in ("SVG", "PNG", "CSV"):
                 button = ui.button(kind, on_click=partial(self._download, kind.lower()), icon="download")
                 button.props(f'flat dense no-caps aria-label="download {self.screen.name} as {kind}"')
@@ -113,18 +127,20 @@ class ScreenView:
         self._good: Any = ui.element("div").classes("w-full shown")
         with self._good:
             with ui.column().classes("pictures gap-2"):
-                if screen.slider is not None:  # it draws to the same scale
+                if screen.slider is not None:  # the drawing keeps its scale while the slider moves
                     self._player = Player(screen.slider, self._writer, lambda: self._draw(self.board.view))
                 self._branch = BranchChoice(self._draw)
                 self.board = DraggableDrawing(f"{name}: drawing of the result", self._moved, self._writer)
                 self._charts = ChartBoard(f"{name}: charts of the result", self._writer)
                 if screen.picture is not None:
-                    self._made.append(PicturePanel(self._make_picture))
+                    self._made.append(PicturePanel(self._make_picture, self._writer))
             with ui.column().classes("numbers gap-2"):
-                self.comparison = ComparisonPanel(self.work, screen)
+                self.comparison = ComparisonPanel(self.work, screen, self._solver, self.show)
                 self._tables: Any = ui.html("", sanitize=False).classes("w-full tables")
                 self._made += [
-                    FoldedPanel(part.title, lambda answer, i=i: self._make(page_tasks.folded, answer, i))
+                    FoldedPanel(
+                        part.title, lambda answer, i=i: self._make(page_tasks.folded, answer, i), self._writer
+                    )
                     for i, part in enumerate(screen.more)
                 ]
         with ui.column().classes("after w-full gap-2"):
@@ -136,7 +152,7 @@ class ScreenView:
     # The form -----------------------------------------------------------------------------------------
 
     def rebuild(self) -> None:
-        """Make the form again, for instance after another file has been opened."""
+        """Make the form anew, for instance after another file has been opened."""
         shown = not self.narrow if self._sketch is None else self._sketch.shown
         work, lists, fielded = self.work, self.screen.lists, self._fielded
         self._left.clear()
@@ -160,11 +176,11 @@ class ScreenView:
 
     @property
     def _has_shape(self) -> bool:
-        """Whether the form has a field for each input that there is now."""
+        """Whether the form has exactly a field for each present input."""
         return [entry.path for entry in self._fielded] == self._shape
 
     def _listed(self, entries: Entries) -> None:
-        """Something in the lists has changed."""
+        """Store and solve entries that were changed in the lists."""
         self.work.show(entries)
         self._put_entries()
         self.solve()
@@ -172,7 +188,7 @@ class ScreenView:
 
     def _changed(self, path: str, text: str) -> None:
         if self.work.entries.get(path) == text:
-            return  # written by a point of the drawing that was moved
+            return  # a moved handle of the drawing has already stored this text
         self.work.put(path, text)
         if not self._has_shape:
             self.rebuild()
@@ -180,27 +196,30 @@ class ScreenView:
             self._sketch.show(self.work.entries)
         self.form.hide(self.work.idle)
         self.solve(held=self._holds)
-        if not self._holds:  # what is written on the way is neither stored nor told to other screens
+        if not self._holds:  # while a slider is held, entries are neither stored nor told to other screens
             self._edited()
 
     def _hold(self, held: bool) -> None:
-        """A slider of the form has been taken hold of; or let go, and then all is solved."""
+        """Store whether a slider of the form is held; when it is released, solve in full."""
         self._holds = held
         if not held:
             self.solve()
             self._edited()
 
     def enter(self) -> None:
-        """Come to the front: show what other screens have written, and solve if the answer shown is stale."""
+        """Come to the front: show what other screens have written, and solve if the answer is stale.
+
+        It will be, too, where other entries than these are being solved: after undo, for instance.
+        """
         self._put_entries()
         if self._lists is not None:
             self._lists.show(self.work.entries)
-        stale = self._partial or self.work.stale(self.screen)
-        if stale or self.work.mistakes.get(self.screen.name) or not self._drawn:
+        failed, other = self.work.mistakes.get(self.screen.name), self._asked != self.work.needed(self.screen)
+        if self.work.stale(self.screen) or failed or other or not self._drawn:
             self.solve()
 
     def _put_entries(self) -> None:
-        """Make the entries stand in the form, which is made again only if its fields are others."""
+        """Show the entries in the form, which is made anew only if its fields have changed."""
         if not self._has_shape:
             return self.rebuild()
         self.form.put(self.work.entries)
@@ -212,18 +231,20 @@ class ScreenView:
 
     @property
     def _answered(self) -> ShownAnswer | None:
-        """The latest answer."""
+        """The latest answer of this screen; None if there is none."""
         return self.work.answered.get(self.screen.name)
 
     def _make(self, task: Task, *given: Any) -> asyncio.Future[Any]:
-        """Have something made for this screen."""
+        """Run a task for this screen in a worker process."""
         return self._solver.submit(task, self.work.document, self.screen, *given)
 
     def _make_picture(self, answer: Any) -> asyncio.Future[Any]:
         return self._make(page_tasks.picture_part, answer, self.narrow)
 
     def solve(self, held: bool = False) -> None:
-        """Have the present entries solved, and the answer shown when it comes; the last one stays until then.
+        """Have the present entries solved.
+
+        Their answer is shown when it comes, the last one stays until then.
 
         What changes meanwhile is solved next, its last state alone.
 
@@ -232,24 +253,39 @@ class ScreenView:
         held : bool
             Whether something is being dragged: then as far as the drawing shows it.
         """
-        task = page_tasks.solve_for_drawing if held and self._answered else page_tasks.solve
-        self._way.want(partial(self._make, task, dict(self.work.entries)))
+        entries, drawn = dict(self.work.entries), self._answered
+        self._asked = self.work.needed(self.screen)
+        completes = drawn is not None and not drawn.is_whole and self.work.drawn(self.screen)
+        if completes and not held:
+            self._way.want(partial(self._make, page_tasks.solve, entries, drawn), gives_way=True)
+        elif self.screen.picture is not None or (drawn is not None and (held or drawn.rest > SOON)):
+            self._draw_first(entries)
+        else:
+            self._way.want(partial(self._make, page_tasks.solve, entries))
         self.state()
+
+    def _draw_first(self, entries: Entries) -> None:
+        """Have entries solved as far as the drawing shows them; the picture of others is not waited for."""
+        if self.screen.picture is not None:
+            self._made[0].close()
+            self._pictured = {}
+        self._way.want(partial(self._make, page_tasks.solve_for_drawing, entries, self.narrow))
 
     async def settled(self) -> None:
         """Wait until the present entries have been solved."""
         await self._way.done()
 
     def close(self) -> None:
-        """End what is under way: the page is gone."""
+        """Cancel all computations, as the page is gone."""
         for more in self._made:
             more.close()
         self._way.cancel()
+        self.comparison.close()
         for panel in self._asking:
             panel.close()
 
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
-        """Show an answer; or say why there is none to the newest entries, and leave the last one, greyed."""
+        """Show an answer; or say why the newest entries have none, and grey the last answer."""
         if self._left.is_deleted:
             return
         outcome, before = outcome_of(future, self.work, self.screen), self._answered
@@ -257,23 +293,28 @@ class ScreenView:
             return
         if last:
             self.board.forget_steps()
-        if isinstance(outcome, ShownAnswer):
-            self._partial = before is not None and not outcome.tables
-            if before is not None and self._partial:  # made for a drawing alone: it keeps what stood there
-                outcome = replace(outcome, tables=before.tables, notes=before.notes)
+        is_part = False
+        # A partial answer keeps the tables shown before.
+        if isinstance(outcome, ShownAnswer) and not outcome.is_whole:
+            is_part, kept = True, before or outcome
+            outcome = replace(outcome, tables=kept.tables, notes=kept.notes, rest=kept.rest)
+        self._previews = is_part
         self.work.keep(self.screen, outcome)
         mistakes = at_fault(self.work, self.screen)
         self.form.mark(mistakes)
         if not mistakes or (not self.dragged and "waits" in self._tables.classes):
             self.show()
-        self.state()
         self._show_sentences(mistakes)
+        if last and is_part and not self.dragged:
+            return self.solve()
+        self.state()
         if not self.dragged:
-            self._writer.synchronize()  # not before: the page would be rendered twice
+            self._writer.synchronize()  # at this point, as otherwise the page would be rendered twice
             self._edited()
 
     def _fail(self, error: Exception) -> None:
         """Say that an answer cannot be shown; what stands there may be parts of it."""
+        self._previews = False
         self.work.answered.pop(self.screen.name, None)
         self.work.mistakes[self.screen.name] = mistakes = {"": [_NOT_SHOWN.format(error)]}
         self.state()
@@ -281,25 +322,26 @@ class ScreenView:
         self._show_sentences(mistakes)
 
     def state(self) -> None:
-        """Say whether the answer shown is the present one, and grey it where another one takes its time."""
+        """Say whether the answer shown is the present one, and grey it while another is computed for long."""
         busy, slow, held = self._way.busy, self._way.slow, self.dragged
-        stale = self.work.stale(self.screen) or (self._partial and not held)
+        stale, drawn = self.work.stale(self.screen), self.work.drawn(self.screen)
         failed = bool(self.work.mistakes.get(self.screen.name))
-        follows = held and not (failed or slow)
+        follows = not failed and ((held and not slow) or (drawn and busy))
         toggle(self._head, "stale", stale and not follows)
-        toggle(self._good, "greyed", stale and (slow or failed or not busy))
+        toggle(self._good, "greyed", stale and (failed or (slow and not drawn) or not (busy or held)))
         toggle(self._good, "refused", stale and failed)
-        self._busy.set_visibility(slow)
-        self._time.set_text(self._way.words)
+        self._busy.show(slow, self._way.words)
         words = _STALE if self._answered else "No result yet."
         state = "Computing. " if busy else "Refused. " if failed else ""
         now = f"{state}{words}" if stale else state.strip() or "Up to date."
-        self._status.set_text("The drawing follows; the tables wait." if follows else now)
+        waits = "The drawing follows; the tables wait." if held else "The tables follow."
+        waits = f"Preliminary. {waits}" if self._answered and self._answered.is_rough else waits
+        self._status.set_text(waits if follows and (held or stale) else now)
         for panel in self._asking:
             panel.state()
 
     def _show_sentences(self, mistakes: dict[str, list[str]]) -> None:
-        """Show the mistakes outside this form, and the warnings of the answer."""
+        """Show the mistakes that are about no field of this form, and the warnings of the answer."""
         answered, fields = self._answered, self.form.fields
         each = [(said, path in fields) for path, sentences in mistakes.items() for said in sentences]
         sentences = [(said, "mistake") for said, at_field in each if not at_field]
@@ -313,35 +355,45 @@ class ScreenView:
         with self._said:
             for said, kind in dict.fromkeys(sentences):
                 shown = ui.label(f"Warning: {said}" if kind == "warning" else said).classes(kind)
-                if kind == "warning":  # its first line; all of it when it is pointed at or has the focus
+                if kind == "warning":  # folded to its first line until it is pointed at or has the focus
                     shown.props("tabindex=0")
 
     # What is shown ------------------------------------------------------------------------------------
 
     @property
     def dragged(self) -> bool:
-        """Whether a point or a slider of the form is held."""
+        """Whether a handle or a slider of the form is held."""
         return self._holds or self.board.held is not None
 
     @property
+    def _plays(self) -> bool:
+        """Whether the slider above the drawing moves, by itself or by hand."""
+        return self._player is not None and self._player.moves
+
+    @property
     def progress(self) -> float:
-        """Place of the slider above the drawing."""
+        """Position of the slider above the drawing."""
         return self.screen.last if self._player is None else self._player.place
 
     def show(self) -> None:
         """Show the latest answer, and the design that it is compared with."""
-        answered, held = self._answered, self.dragged
+        answered = self._answered
         if answered is None:
             return
         with self._writer.writing(self._headline, self._good):
             self._headline.set_content(headline_of(self.work, self.screen, answered))
             self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
         self._draw()
-        toggle(self._tables, "waits", held)
-        if not held:  # while a point is moved, its drawing alone follows
+        toggle(self._tables, "waits", not answered.is_whole)
+        if answered.picture:
+            self._made[0].put(answered.answer, answered.picture)
+        elif self.screen.picture is not None and answered.entries != self._pictured:
+            self._pictured = answered.entries
+            self._made[0].show(answered.answer)
+        if answered.is_whole:  # before, its picture alone follows
             self._tables.set_content(html(answered.tables))
             self.comparison.show(answered)
-            for more in self._made:
+            for more in self._made[self.screen.picture is not None :]:
                 more.show(answered.answer)
 
     def be_narrow(self, narrow: bool) -> None:
@@ -356,7 +408,7 @@ class ScreenView:
             self._made[0].show(self._answered.answer)
 
     def _draw(self, view: Viewport | None = None) -> None:
-        """Draw the latest answer; charts beside a drawing that moves follow at their own rate."""
+        """Draw the latest answer; charts beside a moving drawing follow at their own rate."""
         answered, screen, place = self._answered, self.screen, self.progress
         if answered is None:
             return
@@ -369,14 +421,15 @@ class ScreenView:
         moves = plays or (self.dragged and made.view is not None)
         if screen.charts is not None and (not moves or monotonic() - self._charted >= _CHARTS_APART):
             self._charted = monotonic()
-            charts = screen.charts(answer, place)
+            with few_digits() if answered.is_rough else nullcontext():
+                charts = screen.charts(answer, place)
             if there is not None:
                 charts = with_other_curves(charts, screen.charts(there.answer, place), name)
             self._charts.show(charts)
         self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
 
     def _drawn_answer(self, answered: ShownAnswer) -> Any:
-        """The answer, with the branch drawn that is chosen."""
+        """Return the answer with the chosen branch, for the drawing."""
         return self._branch.choose(answered.answer, self.screen.branches(answered.answer))
 
     def _moved(self, handle: Handle, target: Place, done: bool) -> None:
@@ -387,17 +440,30 @@ class ScreenView:
         for path, text in texts.items():
             self.work.put(path, text)
         self.form.write(texts)
-        if self._lists is not None:  # what is missing is told at rest
+        if self._lists is not None:  # advice on missing items comes when the handle is released
             (self._lists.show if done else self._lists.follow)(self.work.entries)
         if texts or done:
             self.solve(held=not done)
             if done:
                 self._edited()
 
+    async def _answer_for_file(self) -> ShownAnswer | None:
+        """The answer once it is up to date; where none but a preliminary one comes, None, which is said."""
+        await self.settled()
+        answered = self._answered
+        if answered is None or answered.is_rough:
+            ui.notify(_NO_FILE, type="negative")
+            return None
+        return answered
+
+    async def _open_following(self) -> None:
+        """Open the file that follows from the answer, once that is up to date."""
+        if self.screen.follows is not None and (answered := await self._answer_for_file()):
+            self._open_file(self.screen.follows.text(answered.answer), self.screen.name)
+
     async def _download(self, kind: str) -> None:
         """Download the drawing, as "svg" or "png", or the numbers, as "csv"."""
-        await self.settled()
-        if answered := self._answered:
+        if answered := await self._answer_for_file():
             if kind == "csv":
                 made = self._make(page_tasks.rows_file, answered.answer)
             else:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beamdyn.common.drawing.chart import Chart
 from beamdyn.common.drawing.on_axes import figure_of
@@ -55,7 +55,7 @@ class Sweeps:
 
 @dataclass(frozen=True)
 class Backwards:
-    """The questions backwards that a screen offers: where an input has to be for a result to be as wanted.
+    """The questions backwards that a screen offers: which value of an input gives a result a wanted value.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class FoldedPart:
 
     @classmethod
     def of_drawings(cls, title: str, rows: Callable[[Any], Rows]) -> FoldedPart:
-        """Make one of ``rows(answer)``: rows of drawings."""
+        """Make the part that shows the drawings of ``rows(answer)``."""
 
         def on_page(answer: Any) -> str:
             drawn = rows(answer)
@@ -104,6 +104,21 @@ class FoldedPart:
             return picture(drawing(lambda: figure_of(drawn, Paper.of_squares(drawn))), title)
 
         return cls(title, on_page, in_report)
+
+
+class FollowingFile(NamedTuple):
+    """A file that can be made from an answer.
+
+    Parameters
+    ----------
+    words : str
+        What its button says.
+    text : callable
+        ``text(answer)``: the text of the file.
+    """
+
+    words: str
+    text: Callable[[Any], str]
 
 
 @dataclass(frozen=True)
@@ -165,6 +180,8 @@ class Screen:
     branches : callable
         ``branches(answer)``: where there are several solutions, the answer with each of them drawn, by name,
         the usual one first; empty where there is one.
+    follows : FollowingFile, optional
+        A file that follows from an answer, which a button opens as another document.
     sketch : callable
         ``sketch(entries)``: rows of drawings that show what the symbols of the form mean, for the kinds that
         are chosen there.
@@ -195,17 +212,18 @@ class Screen:
     charts: Callable[[Any, float], Sequence[Chart]] | None = None
     picture: Callable[[Any, bool], Figure] | None = None
     branches: Callable[[Any], Mapping[str, Any]] = lambda _: {}
+    follows: FollowingFile | None = None
     sketch: Sketcher = lambda _: ()
 
     @property
     def last(self) -> float:
-        """Position of the slider at its end."""
+        """The largest position of the slider; 0 without one."""
         return self.slider.last if self.slider is not None else 0.0
 
 
 @dataclass(frozen=True)
 class Document:
-    """A kind of TOML file, and the screens on it.
+    """A kind of TOML file, and the screens for it.
 
     Parameters
     ----------
@@ -244,7 +262,7 @@ class Document:
     idle: Callable[[Mapping[str, str]], Iterable[str]] = lambda _: ()
 
     def opened(self, text: str, source: str) -> Entries:
-        """Entries for the text of a file.
+        """Return the entries for the text of a file.
 
         Parameters
         ----------
@@ -263,7 +281,7 @@ class Document:
         return entries_of(tables, self.inputs(entries_of(tables, ()))) | dict(self.aside)
 
     def accepts(self, text: str) -> bool:
-        """Whether the text of a file can be opened."""
+        """Whether the text of a file can be opened as this document."""
         with suppress(ConfigError):
             return bool(self.opened(text, ""))
         return False
@@ -275,7 +293,7 @@ class Document:
 
     @cached_property
     def base_entries(self) -> Entries:
-        """Entries on opening."""
+        """Entries of the base design, which is shown first."""
         return self.opened(self.base, self.name)
 
 

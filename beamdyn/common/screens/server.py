@@ -45,7 +45,7 @@ _GUARDS = (
 
 
 class RequestGuard:
-    """ASGI middleware that refuses requests to other names than the program's, and from other pages.
+    """ASGI middleware that refuses requests to other host names than the program's, and from other pages.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class RequestGuard:
             return await self.app(scope, receive, send)
         headers, path, is_page = Headers(scope=scope), scope["path"], scope["type"] == "http"
         refusal = self.refusal(headers.getlist("host"), headers.getlist("origin"))
-        # A websocket says its Origin always, and browsers differ in what site they count it to.
+        # A websocket always has an Origin, and browsers differ in the site that they state for it.
         sites = headers.getlist("sec-fetch-site") if is_page else []
         if not refusal and any(site not in ("same-origin", "none") for site in sites):
             refusal = (
@@ -84,10 +84,11 @@ class RequestGuard:
             sentence = refusal or "There is no such page; the program's only one is at /."
             await PlainTextResponse(f"{sentence}\n", 403 if refusal else 404)(scope, receive, send)
         else:
-            await send({"type": "websocket.close", "code": 1008})  # before it is accepted: status 403
+            # Closed before it is accepted, which gives status 403.
+            await send({"type": "websocket.close", "code": 1008})
 
     def refusal(self, hosts: list[str], origins: list[str]) -> str:
-        """Why a request with these headers is refused; empty if it is answered."""
+        """Word why a request with these headers is refused; empty if it is accepted."""
         host = hosts[0].lower() if len(hosts) == 1 else ""
         match = _HOST.fullmatch(host)
         is_other_address = match and self.any_address and _is_address(match[1].strip("[]"))
@@ -112,7 +113,7 @@ def _is_address(name: str) -> bool:
 
 
 def _guarded(send: Send, host: str) -> Send:
-    """A `send` that adds headers: what the page may load, and that no other page may frame it.
+    """Wrap `send` to add headers: what the page may load, and that no other page may frame it.
 
     Parameters
     ----------
@@ -134,7 +135,7 @@ def _guarded(send: Send, host: str) -> Send:
 
 
 def root_of(program: Program, solver: RunsTasks) -> Callable[[], Awaitable[None]]:
-    """The function that builds the page for a client."""
+    """Make the function that builds the page for a client."""
 
     async def root() -> None:
         await open_page(program, Share(solver))
@@ -143,7 +144,7 @@ def root_of(program: Program, solver: RunsTasks) -> Callable[[], Awaitable[None]
 
 
 def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -> None:
-    """Serve until interrupted.
+    """Serve an interactive program until interrupted.
 
     Parameters
     ----------
@@ -166,7 +167,8 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     made, processes = program(), Processes(program)
     app.add_middleware(RequestGuard, host=host)
     add_style_and_scripts(made)
-    app.config.quasar_config["loadingBar"]["skipHijack"] = True  # the bar has no name; "Computing" is said
+    # No bar at the top, which has no name for screen readers; the page says "Computing".
+    app.config.quasar_config["loadingBar"]["skipHijack"] = True
     app.on_startup(processes.start)
     app.on_shutdown(processes.close)
     with quiet():
@@ -178,8 +180,9 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
             language="en-US",
             show=browser,
             reload=False,
-            tailwind=False,  # it looks through the page after each change
-            ws_per_message_deflate=False,  # each message would wait for it, on a way that is short
+            tailwind=False,  # Tailwind would search the page after each change
+            # Each message would wait for its compression, though the way is short.
+            ws_per_message_deflate=False,
             reconnect_timeout=30.0,
         )
 
@@ -191,7 +194,7 @@ def _check_free(host: str, port: int) -> None:
         raise ValueError(f'--host = "{host}": it is blank; {remedy}')
     try:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-    except (OSError, UnicodeError):  # the latter of labels that are empty or too long
+    except (OSError, UnicodeError):  # UnicodeError: a part of the name is empty or too long
         raise ValueError(f'--host = "{host}": no address is known for it; {remedy}') from None
     try:
         with socket.socket(family, socket.SOCK_STREAM) as trial:

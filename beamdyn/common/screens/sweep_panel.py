@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from concurrent.futures import BrokenExecutor
 from contextlib import suppress
 from functools import partial
+from time import monotonic
 from typing import Any
 
 import numpy as np
@@ -23,18 +24,18 @@ from beamdyn.common.edge.varied_inputs import Coordinate, numbers
 from beamdyn.common.plots.curves import input_words, panels_of
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.chart_board import ChartBoard
-from beamdyn.common.screens.computations import download
+from beamdyn.common.screens.computations import BusyRow, download
 from beamdyn.common.screens.form_entries import Entries, in_unit, table_of, tables_of, usual_unit
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.processes import RunsTasks, TakesTooLong
 from beamdyn.common.screens.screens import Screen, Sweeps
 
-_FEW = 60  # most values of a sweep whose points are marked on the curves
+_FEW = 60  # largest number of values of a sweep whose points are marked on the curves
 
 
 def sweep_charts(swept: InputSweep) -> list[Chart]:
-    """Charts of a sweep of one input, one for each unit of its results.
+    """Make the charts of a sweep of one input, one for each unit of its results.
 
     At their feet is marked where curves have no value.
 
@@ -63,10 +64,11 @@ def sweep_charts(swept: InputSweep) -> list[Chart]:
     return charts
 
 
-_COUNT, _AROUND = 21, 0.2  # number of values suggested for a sweep, and their range over the present value
+# Suggested number of values of a sweep, and their range as a share of the present value.
+_COUNT, _AROUND = 21, 0.2
 
 
-_Request = tuple[Entries, str, str]  # the design, the input with its values, the results
+_Request = tuple[Entries, str, str]  # a request: the design, the input with its values, the results
 
 
 class SweepPanel:
@@ -77,7 +79,7 @@ class SweepPanel:
     work : OpenDocument
         The document.
     screen : Screen
-        Which of its screens.
+        The screen of the document on which the panel stands.
     sweeps : Sweeps
         The sweeps that the screen offers.
     solver : RunsTasks
@@ -86,7 +88,7 @@ class SweepPanel:
 
     def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps, solver: RunsTasks) -> None:
         self.work, self.screen, self.sweeps, self._solver = work, screen, sweeps, solver
-        self._future: asyncio.Future[page_tasks.Swept] | None = None  # the sweep that is under way
+        self._future: asyncio.Future[page_tasks.Swept] | None = None  # the sweep that is being computed
         self._found: tuple[_Request, InputSweep] | None = None
         self._shown: Entries | None = None
         path, _, values = sweeps.example.partition("=")
@@ -103,11 +105,7 @@ class SweepPanel:
             ).classes("w-full")
             with ui.row().classes("items-center"):
                 ui.button("Sweep", on_click=self.show).props("no-caps")
-                self._busy: Any = ui.row().classes("items-center")
-                with self._busy:
-                    ui.spinner(size="sm").props('role="status" aria-label="computing the sweep"')
-                    ui.button("Cancel", on_click=self.close).props("outline no-caps")
-                self._busy.set_visibility(False)
+                self._busy = BusyRow(self.close, "computing the sweep")
                 for kind in ("CSV", "SVG", "PNG"):
                     take = partial(self._download, kind.lower())
                     ui.button(f"Sweep as {kind}", icon="download", on_click=take).props("flat no-caps")
@@ -118,12 +116,12 @@ class SweepPanel:
                 self._charts = ChartBoard(f"{screen.name}: charts of the sweep", PageWriter())
 
     def state(self) -> None:
-        """While it is open: update the inputs and results offered, and grey a stale sweep."""
+        """Update the inputs and results offered, and grey a stale sweep, if the panel is open."""
         if not self._fold.value:
             return
         paths, needed = [*self._inputs()], self.work.needed(self.screen)
         self._input.set_options(paths, value=self._input.value if self._input.value in paths else paths[0])
-        with suppress(ConfigError):  # then the screen says what is wrong
+        with suppress(ConfigError):  # an error is shown by the screen itself
             names = [*self.sweeps.names(tables_of(needed, self.work.inputs))]
             kept = [name for name in self._results.value if name in names]
             self._results.set_options(names, value=kept or names[:1])
@@ -135,12 +133,12 @@ class SweepPanel:
         return inputs_with_value(self.work, self.screen)
 
     def _suggest(self) -> None:
-        """Suggest values around the present one of the input that has been chosen."""
+        """Suggest values around the present one for the chosen input."""
         if (entry := self._inputs().get(self._input.value)) is not None:
             self._write_range(around(entry, self.work.entries))
 
     def _write_range(self, text: str) -> None:
-        """Write "start:stop:count unit" into the fields, both ends with their unit."""
+        """Write a text "start:stop:count unit" into the fields, both ends with their unit."""
         numbers, _, unit = text.partition(" ")
         low, high, count = numbers.split(":")
         for field, shown in (
@@ -152,7 +150,7 @@ class SweepPanel:
 
     @property
     def _range(self) -> str:
-        """Read the fields as "start:stop:count unit"; an end without a unit takes that of the other."""
+        """Read the fields as a text "start:stop:count unit"; an end without a unit takes the other's."""
         (low, _, unit), (high, _, other) = (
             (f.value or "").strip().partition(" ") for f in (self._low, self._high)
         )
@@ -172,9 +170,12 @@ class SweepPanel:
         future = self._future = self._solver.submit(
             page_tasks.sweep, document, self.screen, entries, text, names
         )
-        self._busy.set_visibility(True)
+        start = monotonic()
         swept: page_tasks.Swept
         try:
+            while not future.done():
+                self._busy.show(True, f"{monotonic() - start:.0f} s")
+                await asyncio.wait([future], timeout=1.0)
             swept = await future
         except asyncio.CancelledError:
             swept = "Cancelled."
@@ -183,7 +184,7 @@ class SweepPanel:
         finally:
             if self._future is future:
                 self._future = None
-                self._busy.set_visibility(False)
+                self._busy.show(False)
         words, kind = (swept, "mistake") if isinstance(swept, str) else ("\n".join(swept.warnings), "warning")
         self._said.set_text(words)
         self._said.classes(add=kind if words else "", remove="mistake warning")
@@ -193,7 +194,7 @@ class SweepPanel:
         return swept
 
     def close(self) -> None:
-        """End the sweep that is under way."""
+        """Cancel the sweep that is being computed."""
         if self._future is not None:
             self._future.cancel()
 
@@ -205,7 +206,7 @@ class SweepPanel:
             self.state()
 
     def report(self) -> tuple[str, InputSweep] | None:
-        """Title and result of the sweep that is shown; None while there is none, or it is stale."""
+        """Return title and result of the sweep shown; None if there is none, or it is stale."""
         if self._found is None or self._shown != self.work.needed(self.screen):
             return None
         (_, text, names), swept = self._found
@@ -223,23 +224,23 @@ class SweepPanel:
 
 
 def inputs_with_value(work: OpenDocument, screen: Screen) -> dict[str, Input]:
-    """The inputs of a screen that are numbers and have a value, given or by default; by path."""
+    """Return a screen's inputs that are numbers and have a value, given or by default, by path."""
     known = [i for i in work.inputs if table_of(i.path) in screen.needs]
     there = [i for i in known if work.entries.get(i.path) or i.default is not None]
     return {entry.path: entry for entry in numbers(there)}
 
 
 def around(entry: Input, entries: Mapping[str, str]) -> str:
-    """Values around the present one of an input, or its default, as text: start:stop:count unit."""
+    """Word values around the present one of an input, or its default: start:stop:count unit."""
     number, unit = _given(entry, entries)
     low, high = (number * (1 - _AROUND), number * (1 + _AROUND)) if number else (0.0, 1.0)
     return f"{low:.3g}:{high:.3g}:{_COUNT} {unit}".strip()
 
 
 def _given(entry: Input, entries: Mapping[str, str]) -> tuple[float, str]:
-    """Number and unit of the text in an input's field, or of its default."""
+    """Return number and unit of the text in an input's field, or of its default."""
     text, default, unit = entries.get(entry.path, ""), entry.default, entry.quantity.unit
-    if isinstance(entry, Coordinate):  # its part of the point's text, and of its default
+    if isinstance(entry, Coordinate):  # the coordinate's part of the point's text, and of its default
         whole: Any = entry.of.default or (0.0, 0.0)
         default = whole[entry.place]
         try:

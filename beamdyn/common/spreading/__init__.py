@@ -1,3 +1,3 @@
-"""Ranges of answers over tolerances of inputs: what both packages share; each brings its evaluation."""
+"""Ranges of answers over tolerances of inputs, for both packages, each of which evaluates its own answers."""
 
 DEFAULT_SAMPLES = 1024

@@ -1,4 +1,4 @@
-"""Ranges to first order: what the slopes at the nominal design make of the tolerances."""
+"""First-order ranges: tolerances multiplied by the slopes at the nominal design."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class KnownDerivatives:
     rows : mapping of int to pair of ndarray, shape (k,)
         Derivatives by an input, by its row, and their absolute errors; nan where there is none.
     warnings : tuple of str
-        Why there are none of others.
+        Why derivatives by the other inputs are not known.
     """
 
     rows: Mapping[int, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
@@ -28,7 +28,7 @@ class KnownDerivatives:
 
 @dataclass(frozen=True)
 class Slopes:
-    """Derivatives of k answers by d inputs at the nominal design.
+    """Derivatives of k answers by d inputs at the nominal design, with their errors.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Slopes:
     exact: np.ndarray
 
     def replaced(self, rows: Mapping[int, tuple[np.ndarray, np.ndarray]]) -> Slopes:
-        """A copy with exact derivatives and errors (k,) of some inputs, where these are finite."""
+        """Return a copy with exact derivatives and errors (k,) of some inputs, where these are finite."""
         value, error, exact = self.value.copy(), self.error.copy(), self.exact.copy()
         for row, (slope, wrong) in rows.items():
             known = np.isfinite(slope)
@@ -54,7 +54,7 @@ class Slopes:
 def slopes_from(
     nominal: np.ndarray, beside: np.ndarray, steps: np.ndarray, error: np.ndarray | float = 0.0
 ) -> Slopes:
-    """Slopes of the polynomials of fourth degree through five designs of each input.
+    """Compute the slopes of polynomials of fourth degree through five designs for each input.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def slopes_from(
     beside : ndarray, shape (d, 4, k)
         Answers of designs of which one input is off by the steps.
     steps : ndarray, shape (d, 4)
-        These steps.
+        The steps of each input, in its unit, off its nominal value.
     error : ndarray, shape (k,)
         Absolute error of an answer.
 
@@ -86,14 +86,14 @@ def slopes_from(
 
 
 def _slope_weights(steps: np.ndarray) -> np.ndarray:
-    """Weights of changes of an answer at steps from 0, whose sum is the slope at 0 of the polynomial."""
+    """Compute weights of changes at given steps, whose weighted sum is a polynomial's slope at 0."""
     size = np.abs(steps).max()
     powers = (steps / size)[None, :] ** np.arange(1, len(steps) + 1)[:, None]
     return np.linalg.solve(powers, np.eye(len(steps))[0]) / size
 
 
 def _parabola_weights(steps: np.ndarray) -> np.ndarray:
-    """Weights as `_slope_weights`, of a parabola through 0, the last step and one of two others."""
+    """Compute weights as `_slope_weights`, for a parabola through 0, the last step and an earlier one."""
     used = [0, 3] if steps[0] * steps[3] < 0 else [1, 3]
     weights = np.zeros(len(steps))
     weights[used] = _slope_weights(steps[used])
@@ -146,7 +146,7 @@ class FirstOrderRange:
 
 
 def first_order_of(inputs: Sequence[SpreadInput], nominal: np.ndarray, slopes: Slopes) -> FirstOrderRange:
-    """Ranges to first order.
+    """Compute first-order ranges of answers from slopes and tolerances.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def first_order_of(inputs: Sequence[SpreadInput], nominal: np.ndarray, slopes: S
     nominal : ndarray, shape (k,)
         Answers of the nominal design.
     slopes : Slopes
-        Derivatives there.
+        Derivatives of the answers at the nominal design.
     """
     at = np.array([each.nominal for each in inputs])
     low, high = (np.array([each.distribution.ends for each in inputs]) - at[:, None]).T[..., None]

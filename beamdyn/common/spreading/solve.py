@@ -1,4 +1,4 @@
-"""A spread from the answers of designs, whatever answers them."""
+"""Computation of a spread from the answers of designs, by whatever evaluates them."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from beamdyn.common.spreading.statistics import Scatter, SpreadDesigns, indices_
 from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import BOTH, WorstCases, trends_of, worst_cases
 
-_FEW = 3  # reasons that a warning lists
+_FEW = 3  # largest number of reasons for missing answers that a warning lists
 
 
 @dataclass(frozen=True)
 class SpreadAnswers:
-    """Answers of N designs.
+    """Answers of N designs, with errors and statuses.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class SpreadAnswers:
         """Absolute errors (N, k); nan where none is known."""
         with np.errstate(invalid="ignore"):
             size = np.abs(self.value) * self.error
-        size = np.where(np.isinf(self.error), np.inf, size)  # also of an answer that is 0
+        size = np.where(np.isinf(self.error), np.inf, size)  # infinite also for an answer of 0
         return np.where(np.isfinite(self.value), size, np.nan)
 
     @property
@@ -66,7 +66,7 @@ class SpreadAnswers:
         return np.nan_to_num(self.absolute_error, nan=0.0, posinf=np.inf)
 
 
-# Inputs of N designs by name, each (N,), in; their answers out, or a ValueError where none has one.
+# A function from inputs of N designs by name, each (N,), to their answers; a ValueError if none has one.
 Evaluate = Callable[[dict[str, np.ndarray]], SpreadAnswers]
 Derivatives = Callable[[], KnownDerivatives]
 
@@ -80,7 +80,7 @@ def solve_spread(
     derivatives: Derivatives = KnownDerivatives,
     cautions: Sequence[str] = (),
 ) -> Spread:
-    """Ranges of answers over tolerances of inputs.
+    """Compute ranges of answers over tolerances of inputs.
 
     Parameters
     ----------
@@ -142,26 +142,26 @@ def _columns(inputs: Sequence[SpreadInput], designs: np.ndarray) -> dict[str, np
 
 @dataclass
 class _FurtherAnswers:
-    """Answers the designs of worst cases, and keeps what is to be said of them.
+    """Evaluation of the designs of worst cases, with the warnings about them.
 
     Designs that are refused, as inputs that are good alone may be wrong together, have no answer.
     """
 
     evaluate: Evaluate
     inputs: Sequence[SpreadInput]
-    wanted: Any  # answers that some design has
+    wanted: Any  # mask of the answers that at least one design has: others are not missing
     _count: int = 0
     _without: dict[str, int] = field(default_factory=dict)
     _said: list[str] = field(default_factory=list)
 
     def __call__(self, designs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Answers (N, k) of designs (N, d), and their absolute errors."""
+        """Return answers (N, k) of designs (N, d), and their absolute errors."""
         self._count += len(designs)
         value, error = zip(*self._parts(designs), strict=True)
         return np.concatenate(value), np.concatenate(error)
 
     def _parts(self, designs: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield answers of all designs, or, where one is refused, of each half."""
+        """Yield answers of all designs; if one is refused, of each half of them in turn."""
         try:
             found = self.evaluate(_columns(self.inputs, designs))
         except ValueError as error:
@@ -181,7 +181,7 @@ class _FurtherAnswers:
         yield found.value, found.absolute_error
 
     def warnings(self, before: Sequence[str]) -> Iterator[str]:
-        """Yield how many designs have no answer, and what limits the others and was not said before."""
+        """Yield how many designs have no answer, and warnings about the others that were not given before."""
         if self._without:
             why = [f"{reason}: {number}" for reason, number in self._without.items()]
             parts = "; ".join([*why[:_FEW], *(["..."] if why[_FEW:] else [])])
@@ -195,20 +195,20 @@ class _FurtherAnswers:
 
 
 def _subject(sentence: str) -> tuple[str, ...]:
-    """What a sentence is about, whatever its numbers: a statement says that, of another the words do."""
+    """Return a key by which equal subjects are said once: a statement's kind and quantity, or the text."""
     is_data = isinstance(sentence, Statement)
     return (sentence.kind, sentence.quantity) if is_data else (sentence,)
 
 
 def _largest_error(found: SpreadAnswers) -> np.ndarray:
-    """Largest relative error of each answer (k,); nan where none is known."""
+    """Return the largest relative error of each answer (k,); nan where none is known."""
     known = np.where(np.isfinite(found.value), found.error, np.nan)
     largest = np.where(np.isnan(known), -np.inf, known).max(axis=0)
     return np.where(largest < 0, np.nan, largest)
 
 
 def _states(status: np.ndarray) -> tuple[dict[str, float], ...]:
-    """Share of the designs (2, n, k) in each state, of each answer; the most frequent first."""
+    """Return the shares of designs (2, n, k) in each status, for each answer; the most frequent first."""
     made = []
     for column in status.reshape(-1, status.shape[-1]).T:
         words, counts = np.unique(column, return_counts=True)
@@ -246,7 +246,7 @@ def _notes(
 def _without_answer(
     answers: Sequence[str], shares: np.ndarray, states: Sequence[dict[str, float]]
 ) -> Iterator[str]:
-    """Yield of which answers some designs have none, those of which the same is said together."""
+    """Yield which answers some designs lack, together for answers with the same reasons."""
     said: dict[str, list[str]] = {}
     for name, share, parts in zip(answers, shares, states, strict=True):
         why = ", ".join(f"{state} {percent(part)}" for state, part in parts.items())

@@ -4,25 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import counted, warned
-from beamdyn.common.results.pictures import COLOURS, new_axes, new_figure
+from beamdyn.common.results.pictures import COLOURS, Axes, Figure, new_axes, new_figure
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.spreading.first_order import FirstOrderRange
 from beamdyn.common.spreading.statistics import Scatter, SobolIndices
 from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import WorstCases
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-_DIGITS, _MOST_DIGITS = 4, 10  # digits in the headline
-_APART = 3.0  # standard errors by which two indices differ for sure
+_DIGITS, _MOST_DIGITS = 4, 10  # digits in the headline, at least and at most
+_APART = 3.0  # number of standard errors by which two indices are told apart
 
 
 @dataclass(frozen=True)
@@ -101,7 +97,10 @@ class Spread(Result):
     provenance: Provenance
 
     def headline(self) -> Iterator[str]:
-        """The range of the first answer, and what matters most to it, in one line; see `Result.headline`."""
+        """Yield range and most important input of the first answer, parts of a one-line summary.
+
+        See `Result.headline`.
+        """
         k = next((k for k, share in enumerate(self.scatter.no_answer) if share < 1), 0)
         first, unit, names = self.first_order, f" {self.units[k]}".rstrip(), self.matters_most(k)
         error = first.error[k] + np.nan_to_num(self.error[k], posinf=np.inf) * abs(self.nominal[k])
@@ -118,7 +117,7 @@ class Spread(Result):
         return (2 + len(self.inputs)) * self.samples
 
     def matters_most(self, answer: int = 0) -> tuple[str, ...]:
-        """The input from which most of the variance of an answer comes, by its total index.
+        """Return the input that contributes most to the variance of an answer, by its total index.
 
         Several where their indices are not told apart by three standard errors; none where there are no
         indices.
@@ -133,7 +132,7 @@ class Spread(Result):
         return tuple(self.inputs[i].name for i in order if near[i])
 
     def design(self, row: int) -> dict[str, float]:
-        """Inputs of a random design by name, in SI: a row of `sampled_inputs`."""
+        """Return the inputs of a random design by name, in SI: a row of `sampled_inputs`."""
         values = self.sampled_inputs[row].tolist()
         return {each.name: value for each, value in zip(self.inputs, values, strict=True)}
 
@@ -156,7 +155,7 @@ class Spread(Result):
 
 
 def _digits_of(low: float, high: float) -> int:
-    """Digits by which both ends of a range are told apart, to some percent of it."""
+    """Return the number of digits that tell both ends of a range apart, to some percent of the range."""
     with np.errstate(divide="ignore", invalid="ignore"):
         needed = 2 + np.log10(np.divide(max(abs(low), abs(high)), high - low))
     return int(np.clip(needed, _DIGITS, _MOST_DIGITS)) if np.isfinite(needed) else _DIGITS
@@ -166,8 +165,9 @@ def _digits_of(low: float, high: float) -> int:
 
 
 _BINS = 24
-_MOST_PANELS = 4  # answers that a figure shows
-_REACH = 1.0  # beyond the 5 % and 95 % points, over their distance, to which a histogram is drawn
+_MOST_PANELS = 4  # largest number of answers that a figure shows
+# Distance of a histogram's ends beyond the 5 % and 95 % points, over the distance of these two points.
+_REACH = 1.0
 
 
 def draw_scatter(
@@ -206,7 +206,7 @@ def draw_scatter(
 
 
 def _seen(drawn: np.ndarray) -> tuple[float, float]:
-    """Ends of what a picture of such answers shows: a few outliers do not make the rest invisible."""
+    """Return the ends of a histogram of answers, so that a few outliers do not hide the rest."""
     if not drawn.size:
         return -np.inf, np.inf
     low, high = np.percentile(drawn, [5, 95])

@@ -29,14 +29,15 @@ if TYPE_CHECKING:
     from scipy.stats.qmc import QMCEngine
 
 BLOCKS = 16
-LEAST, MOST = 128, 2**17  # samples: below, blocks are too small to say how far off they are
+LEAST, MOST = 128, 2**17  # least and most samples: with fewer, blocks are too small to estimate errors
 MOST_SEED = 2**63
-_STEP = 1 / 8  # share of the way to an end, for slopes: far above rounding, and near enough to be straight
+# Share of the way to an end of the tolerance for slopes: far above rounding, and nearly straight.
+_STEP = 1 / 8
 _ONE_SIDED, _BOTH_SIDES = np.array([0.25, 0.5, 0.75, 1.0]), np.array([-1.0, -0.5, 0.5, 1.0])
 
 
 def check_samples(samples: object) -> tuple[int, list[str]]:
-    """The number of samples that is used, a power of two, and a warning where it is not the one given."""
+    """Return the number of samples to use, a power of two, with a warning if another was given."""
     given = count("samples", samples, LEAST, MOST)
     used = 1 << (given - 1).bit_length()
     said = [f"samples = {given}: {used}, the next power of two, are used"] if used != given else []
@@ -44,18 +45,18 @@ def check_samples(samples: object) -> tuple[int, list[str]]:
 
 
 def count_designs(inputs: int, samples: int) -> int:
-    """Number of designs that are answered at first, of d inputs."""
+    """Compute the number of designs that are answered at first, for d inputs."""
     return 1 + 4 * inputs + (2 + inputs) * samples
 
 
 def check_seed(seed: object) -> int:
-    """A whole number from which the samples follow."""
+    """Check the whole number from which the samples follow."""
     return count("seed", seed, 0, MOST_SEED)
 
 
 @dataclass(frozen=True)
 class SpreadDesigns:
-    """All designs whose answers are wanted at first: the nominal one, those for slopes, and random ones.
+    """All designs that are answered at first: the nominal one, those for slopes, and random ones.
 
     Parameters
     ----------
@@ -78,7 +79,11 @@ class SpreadDesigns:
 
     @cached_property
     def table(self) -> np.ndarray:
-        """The designs, shape (1 + 4 d + (d + 2) n, d): nominal, for slopes, A, B, and A with inputs of B."""
+        """All designs, one a row, (1 + 4 d + (d + 2) n, d), with d inputs and n samples.
+
+        They are the nominal one, those for slopes, two random samples A and B, and A with each input in turn
+        from B.
+        """
         first, second = self._random
         mixed = np.tile(first, (self.count, 1, 1))
         each = np.arange(self.count)
@@ -92,7 +97,7 @@ class SpreadDesigns:
 
     @cached_property
     def steps(self) -> np.ndarray:
-        """Distances from the nominal values at which answers are wanted for slopes, shape (d, 4).
+        """Distances from the nominal values of the designs for slopes, shape (d, 4).
 
         They go an eighth of the way to both ends of each tolerance; where the nominal value is one of these,
         to the other.
@@ -101,7 +106,7 @@ class SpreadDesigns:
 
     @property
     def _beside(self) -> np.ndarray:
-        """Designs of which one input is off its nominal value, shape (4 d, d)."""
+        """Designs with one input off its nominal value, shape (4 d, d)."""
         beside = np.tile(self.nominal, (self.count, 4, 1))
         each = np.arange(self.count)
         beside[each, :, each] += self.steps
@@ -109,14 +114,14 @@ class SpreadDesigns:
 
     @cached_property
     def _random(self) -> np.ndarray:
-        """The samples A and B, shape (2, n, d)."""
+        """Random samples A and B, shape (2, n, d)."""
         blocks = np.random.SeedSequence(self.seed).spawn(BLOCKS)
         shares = np.stack([_sobol_points(2 * self.count, self.samples // BLOCKS, each) for each in blocks])
         shares = shares.reshape(self.samples, 2, self.count).transpose(1, 0, 2)
         return np.stack([each.distribution.at(shares[..., i]) for i, each in enumerate(self.inputs)], axis=-1)
 
     def part(self, answers: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Answers (N, k) of the designs by their part.
+        """Split the answers (N, k) of the designs into those of nominal, neighbouring and random designs.
 
         Returns
         -------
@@ -138,8 +143,8 @@ def _steps(given: SpreadInput) -> np.ndarray:
 
 
 def _sobol_points(columns: int, rows: int, seed: np.random.SeedSequence) -> np.ndarray:
-    """Points of a scrambled Sobol' sequence, shape (rows, columns), none of which is 0 or 1."""
-    from scipy.stats import qmc  # it takes long to load
+    """Draw points of a scrambled Sobol' sequence, shape (rows, columns), none of which is 0 or 1."""
+    from scipy.stats import qmc  # imported here, because it takes long to load
 
     if columns > qmc.Sobol.MAXDIM:
         raise InvalidValue("spread", columns // 2, f"at most {qmc.Sobol.MAXDIM // 2} inputs have a spread")
@@ -156,8 +161,8 @@ def seeded(sequence: Callable[..., QMCEngine], columns: int, seed: np.random.See
 
 
 PERCENTS = (1.0, 5.0, 50.0, 95.0, 99.0)
-_LEAST_BLOCKS = 8  # fewest blocks with answers, from whose scatter an error follows
-_ROUNDING = 1e-12  # relative scatter that is no scatter
+_LEAST_BLOCKS = 8  # least number of blocks with answers, whose scatter gives an error
+_ROUNDING = 1e-12  # relative scatter of answers below which they count as equal
 
 
 @dataclass(frozen=True)
@@ -199,7 +204,7 @@ class Scatter:
 
 
 def scatter_of(random: np.ndarray) -> Scatter:
-    """Scatter of answers.
+    """Compute the scatter of answers over random designs.
 
     Parameters
     ----------
@@ -211,14 +216,14 @@ def scatter_of(random: np.ndarray) -> Scatter:
 
 
 def _in_blocks(random: np.ndarray) -> np.ndarray:
-    """Answers by block, shape (k, BLOCKS, 2 n / BLOCKS)."""
+    """Arrange answers by block, shape (k, BLOCKS, 2 n / BLOCKS)."""
     two, n, k = random.shape
     blocks = random.reshape(two, BLOCKS, n // BLOCKS, k)
     return np.moveaxis(blocks, -1, 0).transpose(0, 2, 1, 3).reshape(k, BLOCKS, -1)
 
 
 def _scatter_of_one(values: np.ndarray) -> tuple[np.ndarray | float, ...]:
-    """The fields of `Scatter` for one answer, values (BLOCKS, m)."""
+    """Compute the fields of `Scatter` for one answer, from values (BLOCKS, m)."""
     known = np.isfinite(values)
     none, none_error = mean_of_blocks(~known, np.ones(values.shape))
     if not known.any():
@@ -236,7 +241,7 @@ def _scatter_of_one(values: np.ndarray) -> tuple[np.ndarray | float, ...]:
 
 
 def mean_of_blocks(values: np.ndarray, weights: np.ndarray) -> tuple[float, float]:
-    """Weighted mean of values (BLOCKS, m), and its standard error from the scatter over the blocks."""
+    """Compute the weighted mean of values (BLOCKS, m), and its standard error from the scatter of blocks."""
     total = weights.sum()
     mean = float((weights * values).sum() / total)
     parts = (weights * (values - mean)).sum(axis=1) * (len(values) / total)
@@ -244,10 +249,10 @@ def mean_of_blocks(values: np.ndarray, weights: np.ndarray) -> tuple[float, floa
 
 
 def _percentile(values: np.ndarray, known: np.ndarray, share: float) -> tuple[float, float]:
-    """The answer below which a share lies, and its standard error.
+    """Compute the answer below which a share of all answers lies, and its standard error.
 
-    The share of each block below it scatters; the answers at shares that differ by this, and by half a
-    sample, are what the percentile may be as well.
+    From block to block the share below this answer scatters: the error spans the answers at shares that
+    differ by this scatter, and by half a sample.
     """
     ordered = values[known]
     found = float(np.quantile(ordered, share))
@@ -292,7 +297,7 @@ class SobolIndices:
 
 
 def indices_of(random: np.ndarray, error: np.ndarray | float = 0.0) -> SobolIndices:
-    """Sobol' indices by the estimators of `scipy.stats.sobol_indices`, with the scatter over blocks.
+    """Compute Sobol' indices by the estimators of `scipy.stats.sobol_indices`, with errors from blocks.
 
     Parameters
     ----------
@@ -318,12 +323,12 @@ def indices_of(random: np.ndarray, error: np.ndarray | float = 0.0) -> SobolIndi
 
 
 def _indices(random: np.ndarray) -> np.ndarray:
-    """Indices of first order and total ones, shape (2, d, k)."""
-    from scipy.stats import sobol_indices  # it takes long to load
+    """Compute indices of first order and total indices, shape (2, d, k)."""
+    from scipy.stats import sobol_indices  # imported here, because it takes long to load
 
     d, n, k = len(random) - 2, random.shape[1], random.shape[2]
     if d == 1:
-        return np.ones((2, 1, k))  # by definition
+        return np.ones((2, 1, k))  # a single input has all of the variance
     a, b, *mixed = np.moveaxis(random, -1, 1)
     found = sobol_indices(func={"f_A": a, "f_B": b, "f_AB": np.array(mixed)}, n=n)
     shapes = (np.reshape(order, (k, d)).T for order in (found.first_order, found.total_order))
@@ -331,7 +336,7 @@ def _indices(random: np.ndarray) -> np.ndarray:
 
 
 def _errors_of_indices(random: np.ndarray, indices: np.ndarray) -> np.ndarray:
-    """Standard errors (2, d, k): each index is the quotient of two means, whose linear part scatters.
+    """Compute standard errors (2, d, k) of indices, as quotients of two means whose linear part scatters.
 
     The means are those of `scipy.stats.sobol_indices`, of answers about their mean: f_B (f_AB - f_A) and
     (f_A - f_AB)^2 / 2, over the variance.

@@ -20,9 +20,9 @@ _RANGE = re.compile(rf"([-+]?){_N}\s*(.*?)\s+to\s+([-+]?){_N}\s*(.*)")
 _DEVIATION = re.compile(rf"sd\s*{_N}\s*(.*)")
 _FORMS = 'give "+-2%", "+1% -2%", "0.9 to 1.1" with a unit, or "sd 1%"'
 
-_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # factors of prefixes of units
+_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # factors of unit prefixes
 
-# A number and a unit, as written, to SI.  Refuses a unit that does not fit by an `InvalidValue`.
+# A function from a number and a unit, as written, to SI; it raises `InvalidValue` for a wrong unit.
 Convert: TypeAlias = "Callable[[str, str], float]"
 
 
@@ -72,7 +72,7 @@ class Uniform:
         return (self.high - self.low) / math.sqrt(12)
 
     def at(self, share: np.ndarray) -> np.ndarray:
-        """Values below which shares of all lie, of the shape of the shares."""
+        """Return the values below which shares of all values lie, in the shape of the shares."""
         return self.low + (self.high - self.low) * share
 
 
@@ -121,7 +121,7 @@ class Normal:
         return self.mean - times * self.deviation, self.mean + times * self.deviation
 
     def at(self, share: np.ndarray) -> np.ndarray:
-        """Values below which shares of all lie, of the shape of the shares."""
+        """Return the values below which shares of all values lie, in the shape of the shares."""
         from scipy.special import ndtr, ndtri
 
         beyond = ndtr(-self._REACH)
@@ -161,12 +161,12 @@ class SpreadInput:
 
     @property
     def text(self) -> str:
-        """Its tolerance, as it was given."""
+        """The tolerance, as it was given."""
         return self.distribution.text or _as_text(self.distribution, self.unit)
 
 
 def parse_tolerance(name: str, text: str, nominal: float, unit: str, convert: Convert) -> Distribution:
-    """The distribution of an input whose tolerance is given by a text.
+    """Make the distribution of an input from the text of its tolerance.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def _wide(name: str, text: str, width: float) -> float:
 def _sided(
     name: str, text: str, nominal: float, found: re.Match[str], size: Callable[[str, str], float]
 ) -> tuple[float, float]:
-    """Ends of "+1% -2%"; a unit that is missing is that of the other."""
+    """Return the ends of a text such as "+1% -2%"; a missing unit is that of the other end."""
     first, one, unit, second, other, last = found.groups()
     if first == second:
         raise InvalidValue(name, text, f"both sides have the sign {first}", 'give one of each: "+1% -2%"')
@@ -238,7 +238,7 @@ def _sided(
 def _ends(
     name: str, text: str, nominal: float, unit: str, found: re.Match[str], convert: Convert
 ) -> tuple[float, float]:
-    """Ends of "0.19 mm to 0.21 mm"; a unit that is missing is that of the other."""
+    """Return the ends of a text such as "0.19 mm to 0.21 mm"; a missing unit is that of the other end."""
     sign, one, first, last_sign, other, last = found.groups()
     if "%" in (first, last):
         raise InvalidValue(name, text, "a range has values for its ends", 'give percentages as "+1% -2%"')
@@ -256,7 +256,7 @@ def _ends(
 
 
 def check_holds(given: SpreadInput) -> None:
-    """Refuse a distribution whose ends do not hold the nominal value."""
+    """Refuse a distribution whose ends do not enclose the nominal value."""
     low, high = given.distribution.ends
     if not low <= given.nominal <= high:
         bound = "it does not hold the value itself, {limit}"
@@ -271,7 +271,7 @@ def _as_text(given: Distribution, unit: str) -> str:
 
 
 def without_unit(text: str, written: str, unit: str) -> str:
-    """The remedy for a tolerance whose numbers have another unit than that of the input: the text in that."""
+    """Word the remedy for a tolerance with a unit other than the input's: the text converted to that."""
     factor = _PREFIXES.get(written.removesuffix(unit)) if unit and written.endswith(unit) else None
     if factor is None:
         return f"give numbers alone{f', in {unit}' if unit else ''}"

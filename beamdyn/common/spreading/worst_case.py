@@ -19,17 +19,17 @@ import numpy as np
 from beamdyn.common.spreading.tolerances import SpreadInput
 
 RISES, FALLS, BOTH, NEITHER, UNKNOWN = "rises", "falls", "rises and falls", "does not change", "no answer"
-_MOST_TURNING = 6  # inputs of which all ends are combined
-_FIRST_STEP, _LAST_STEP = 0.25, 2.0**-11  # steps of a search, over the width of a tolerance
-ROUNDING = 1e-12  # relative change of an answer that is none
+_MOST_TURNING = 6  # largest number of inputs of which all combinations of ends are tried
+_FIRST_STEP, _LAST_STEP = 0.25, 2.0**-11  # first and last step of a search, over the width of a tolerance
+ROUNDING = 1e-12  # relative change of an answer below which it counts as unchanged
 
-# Designs (N, d) in; answers (N, k) out, not finite where there is none, and their absolute errors (N, k), nan
-# where none is known.
+# A function from designs (N, d) to answers (N, k), not finite where there is none, and their absolute errors
+# (N, k), nan where none is known.
 Answer = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def trends_of(random: np.ndarray, error: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """How answers change with each input, as pairs of random designs that differ in it alone show.
+    """Decide how answers change with each input, from pairs of random designs that differ only in it.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class WorstCases:
 
 
 class _Case(NamedTuple):
-    """A design (d,), its answer, and the absolute error of this; or S of them."""
+    """A design (d,), its answer, and the answer's absolute error; or S of them."""
 
     at: np.ndarray
     value: float | np.ndarray
@@ -160,7 +160,7 @@ def worst_cases(
 def _corners(
     trends: np.ndarray, sense: int, low: np.ndarray, high: np.ndarray, nominal: np.ndarray
 ) -> np.ndarray:
-    """Corners at which an answer may be smallest (sense -1) or largest (1), shape (c, d)."""
+    """Return corners (c, d) at which an answer may be smallest (sense -1) or largest (sense 1)."""
     rises, falls = trends == RISES, trends == FALLS
     up = rises if sense > 0 else falls
     at = np.where(up, high, np.where(rises | falls, low, nominal))
@@ -173,7 +173,10 @@ def _corners(
 def _ends(
     corners: Sequence[np.ndarray], answer: Answer, known: tuple[np.ndarray, ...]
 ) -> Iterator[tuple[_Case, _Case]]:
-    """Yield the best corner of each end of each answer, and the best of these and of known designs."""
+    """Yield, for the smallest and the largest value of each answer, the corner and the design with it.
+
+    The first is the best of the corners, the second the best of the corners and the known designs.
+    """
     places = np.cumsum([len(part) for part in corners])[:-1]
     values, errors = (np.split(each, places) for each in answer(np.vstack(corners)))
     for end, tried in enumerate(zip(corners, values, errors, strict=True)):
@@ -182,7 +185,11 @@ def _ends(
 
 
 def _best(cases: Iterable[np.ndarray], end: int) -> _Case:
-    """The best of designs (n, d) by answers and errors (n, k); end 2 i + 1 is the largest of i."""
+    """Return the design with the smallest or largest value of an answer, of designs (n, d).
+
+    The number `end` is 2 i for the smallest, and 2 i + 1 for the largest value of answer i. Answers and their
+    errors have the shape (n, k).
+    """
     at, answers, errors = cases
     value, error = answers[:, end // 2], errors[:, end // 2]
     rank = np.where(np.isfinite(value), (2 * (end % 2) - 1) * value, -np.inf)
@@ -192,14 +199,14 @@ def _best(cases: Iterable[np.ndarray], end: int) -> _Case:
 
 
 def _is_beaten(corner: _Case, best: _Case) -> bool:
-    """Whether a random design is worse than the worst corner by more than the errors of both."""
+    """Whether a random design lies beyond the best corner by more than the errors of both."""
     near = sum(0.0 if np.isnan(each.error) else each.error for each in (corner, best))
     near = near + ROUNDING * np.abs(best.value)
     return bool(np.isfinite(best.value) and not np.abs(best.value - corner.value) <= near)
 
 
 def _widened(corner: _Case, best: _Case) -> _Case:
-    """The worst corner, in whose error is how far random designs lie beyond it."""
+    """Add to the error of the best corner how far random designs lie beyond it."""
     return corner._replace(error=corner.error + np.abs(best.value - corner.value))
 
 

@@ -1,1 +1,1 @@
-"""The beam in space: bent, twisted, sheared and stretched by any amount, and linear about any such state."""
+"""Beams with large deflections in space (bending, twist, shear and stretch), and small motions about them."""

@@ -20,7 +20,7 @@ _STRAIGHT = ONE.scaled(0.0)
 
 
 def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np.ndarray]:
-    """Curvature (3, N) [1/m] at the points, and the kink (c, 4) before each cell, as a unit quaternion."""
+    """Compute the curvature (3, N) [1/m] at points, and kinks before cells, as unit quaternions (c, 4)."""
     cells, sweep, prebend = quadrature.cells, beam.sweep or _STRAIGHT, beam.prebend or _STRAIGHT
     at_points = Sampler.on_cells(cells)
     a = at_points(sweep)
@@ -34,10 +34,10 @@ def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np
 
 
 def _at_ends(angle: Profile, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values at the beginning and at the end of each cell, which differ from those beyond at jumps."""
+    """Evaluate an angle just inside both ends of each cell, where cells may differ at a jump."""
     return angle.split(tuple(ends)).end_values()
 
 
 def _axes(sweep: np.ndarray, prebend: np.ndarray) -> np.ndarray:
-    """Unit quaternions (c, 4) of the axes of the beam."""
+    """Convert sweep and prebend (c,) [rad] to unit quaternions (c, 4) of the axes of the unloaded beam."""
     return product(quaternion_about(2, prebend), quaternion_about(1, -sweep))

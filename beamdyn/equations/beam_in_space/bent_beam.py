@@ -1,4 +1,4 @@
-"""The geometrically exact beam, and its equations linear about any state.
+"""The geometrically exact beam in space, and its equations of motion linearized about any deformed state.
 
 The unknowns are the strains along the axis, six functions of x/L: stretch g1 and shears g2, g3 of the
 section against the tangent, twist rate k1 and curvatures k2, k3, in the axes of the section.  With the
@@ -24,6 +24,9 @@ virtual work is int [R'm . dk + R'n . dg], and its derivative, at fixed forces, 
 
 References: Hodges (1990), International Journal of Solids and Structures 26, 1253-1273 (strains, intrinsic
 equations); Simo and Vu-Quoc (1986), Computer Methods in Applied Mechanics and Engineering 58, 79-116.
+
+Arrays over N + 1 + k stations have the N Gauss points of the strains, the tip and the k point masses: see
+`station_forces`.
 """
 
 from __future__ import annotations
@@ -103,12 +106,12 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def flat_functions(self) -> np.ndarray:
-        """Strains per coordinate (n, 6 N)."""
+        """Strains per coordinate, flattened over components and points: shape (n, 6 N)."""
         return self.functions.reshape(self.size, -1)
 
     @cached_property
     def angles(self) -> np.ndarray:
-        """Integrated strains per coordinate, by which changes are measured: shape (n, k)."""
+        """Strains integrated from the root per coordinate, a measure of changes of the shape: (n, k)."""
         if self.is_planar and self.slopes is not None:
             return self.slopes
         used, turned = self.functions.any(axis=(0, 2)), self.stations.to_sections(self.functions)
@@ -118,16 +121,16 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def shears(self) -> bool:
-        """Whether the beam shears or stretches, or twist shortens it."""
+        """Whether sections shear, or the axis changes its length by stretch or twist."""
         return bool(self.functions[:, :3].any() or self.shortens)
 
     @cached_property
     def shortens(self) -> bool:
-        """Whether twist shortens the beam."""
+        """Whether twist shortens the beam (the trapeze effect)."""
         return bool(self.fibres.any() and self.functions[:, 3].any())
 
     def reduced(self, basis: np.ndarray) -> BeamInSpace:
-        """The beam in other coordinates: q = basis @ q_reduced, basis of shape (n, m)."""
+        """Transform the beam to other coordinates: q = basis @ q_reduced, basis of shape (n, m)."""
         return replace(
             self,
             functions=np.tensordot(basis.T, self.functions, 1),
@@ -143,12 +146,12 @@ class BeamInSpace(FieldsOnly):
         return not (self.initial.any() or self.kinks[:, 1:].any() or self.functions[:, :-1].any())
 
     def at(self, q: np.ndarray) -> BentBeam:
-        """The beam at coordinates q (..., n)."""
+        """Return the deformed beam at coordinates q (..., n)."""
         return BentInPlane(self, q) if self.is_planar else BentBeam(self, q)
 
 
 def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.ndarray) -> np.ndarray:
-    """Stiffness (n, n) of strains (n, 6, N) by the law of the sections (6, 6, N).
+    """Compute the elastic stiffness matrix (n, n) for strains (n, 6, N) and section stiffnesses (6, 6, N).
 
     Raises
     ------
@@ -170,7 +173,9 @@ def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.nda
 
 @dataclass(frozen=True)
 class BentBeam(FieldsOnly):
-    """A beam at given coordinates; what is no matrix of them also at several sets (..., n).
+    """A deformed beam at given coordinates.
+
+    All but the matrices is also computed at several sets of coordinates at once, of shape (..., n).
 
     Parameters
     ----------
@@ -185,18 +190,18 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def strains(self) -> np.ndarray:
-        """Strains (..., 6, N)."""
+        """Strains of the deformed beam (..., 6, N), in the order of `STRAINS`."""
         beam = self.beam
         return beam.initial + (self.q @ beam.flat_functions).reshape(*self.q.shape[:-1], *beam.initial.shape)
 
     @property
     def _shortening(self) -> np.ndarray:
-        """Stretch per twist rate (..., N), by the helices of the fibres."""
+        """Derivative of the axial stretch by the twist rate (..., N), as twist turns fibres to helices."""
         return -self.beam.fibres * (self.strains[..., 3, :] + self.beam.pretwist)
 
     @cached_property
     def rotations(self) -> np.ndarray:
-        """Axes of the sections, in columns (..., 3, 3, N + 1)."""
+        """Rotation matrices (..., 3, 3, N + 1) whose columns are the axes of the sections."""
         beam, stations = self.beam, self.beam.stations
         curvature = stations.length * self.strains[..., 3:, :]
         root = quaternion_about(0, 0.0) if self._root is None else self._root.quaternion
@@ -204,12 +209,12 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _within(self) -> np.ndarray:
-        """Axes of the sections at the Gauss points (3, 3, N)."""
+        """Rotation matrices (..., 3, 3, N) of the sections at the Gauss points alone."""
         return self.rotations[..., :-1]
 
     @cached_property
     def tangents(self) -> np.ndarray:
-        """Derivative r' of the position (..., 3, N)."""
+        """Derivative r' of the position of the axis by the arc length (..., 3, N)."""
         if not (self.beam.shears or self.beam.initial[:3].any()):
             return self._within[..., :, 0, :]
         extended, beam, twist = self.strains[..., :3, :].copy(), self.beam, self.strains[..., 3, :]
@@ -229,66 +234,66 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def masses(self) -> MassesInSpace:
-        """Masses at their places in space."""
+        """Masses of the beam at their places on the deformed beam."""
         return self.beam.masses.turned(self.rotations, self.positions)
 
     def strain_rates(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Rates (..., 3, N), in space, of stretch and shears, and of curvatures, by those (..., n)."""
+        """Compute strain rates in space (..., 3, N): of stretch and shears, and of curvatures."""
         strains = np.tensordot(rates, self.beam.functions, 1)
         strains[..., 0, :] += self._shortening * strains[..., 3, :]
         return turn(self._within, strains[..., :3, :]), turn(self._within, strains[..., 3:, :])
 
     def shortening_rate(self, rates: np.ndarray) -> np.ndarray:
-        """Stretch (..., 3, N), in space, that accelerates at constant rates as twist shortens the beam."""
+        """Compute the second rate (..., 3, N) of the stretch by twist rates, as twist shortens the beam."""
         twist_rate = rates @ self.beam.functions[:, 3]
         return -(self.beam.fibres * twist_rate**2)[..., None, :] * self._within[..., 0, :]
 
-    # Turns of the root --------------------------------------------------------------------------------
+    # Rotation of the root on springs ----------------------------------------------------------------------
 
     @cached_property
     def _root(self) -> TurnedRoot | None:
-        """The root, where springs let it turn."""
+        """Rotation of the root at these coordinates; None where the root is clamped."""
         return None if self.beam.hinges is None else TurnedRoot(self.beam.hinges, self.q)
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Turning rates (..., 3, N + 1) by rates (..., n) and curvatures' rates (..., 3, N) in space."""
+        """Compute angular velocities (..., 3, N + 1) of sections by rates of coordinates and curvatures."""
         turning = self.beam.stations.to_sections(bending)
         if self._root is not None:
             turning += self._root.turning(rates)[..., None]
         return turning
 
     def turning_of_root(self, rates: np.ndarray) -> np.ndarray | float:
-        """Turning of the root (..., 3, 1) that accelerates at constant rates (..., n)."""
+        """Compute the angular acceleration of the root (..., 3, 1) at constant rates (..., n)."""
         return 0.0 if self._root is None else self._root.acceleration(rates)[..., None]
 
-    # Motions by the coordinates -----------------------------------------------------------------------
+    # Derivatives of the motion by the coordinates ---------------------------------------------------------
 
     @cached_property
     def _turning(self) -> np.ndarray:
-        """Derivatives W' (n, 3, N) of the rotations by the coordinates."""
+        """Derivatives along the axis of the rotation vectors of sections per coordinate: shape (n, 3, N)."""
         return turn(self._within, self.beam.functions[:, 3:])
 
     @cached_property
     def _straining(self) -> np.ndarray:
-        """Shears and stretch R dg (n, 3, N) by the coordinates."""
+        """Changes of shears and stretch per coordinate, as vectors in space: shape (n, 3, N)."""
         strains = self.beam.functions[:, :3].copy()
         strains[:, 0] += self._shortening * self.beam.functions[:, 3]
         return turn(self._within, strains)
 
     @cached_property
     def _turned(self) -> np.ndarray:
-        """Rotations W (n, 3, N + 1) by the coordinates."""
+        """Rotation vectors of the sections per coordinate, in space: shape (n, 3, N + 1)."""
         return self.turning_rate(np.eye(self.beam.size), self._turning)
 
     @cached_property
     def displacement_rates(self) -> np.ndarray:
-        """Derivatives X' (n, 3, N) of the displacements by the coordinates."""
+        """Derivatives along the axis of its displacements per coordinate: shape (n, 3, N)."""
         rates = cross(self._turned[..., :-1], self.tangents)
         return rates + self._straining if self.beam.shears else rates
 
     @cached_property
     def motions(self) -> np.ndarray:
-        """Displacements and rotations of the stations by the coordinates (n, 6, N + 1 + k)."""
+        """Displacements and rotations of all stations per coordinate: shape (n, 6, N + 1 + k)."""
         stations = self.beam.stations
         motions = np.zeros((self.beam.size, 6, stations.count))
         motions[:, :3] = stations.to_all(self.displacement_rates)
@@ -297,17 +302,20 @@ class BentBeam(FieldsOnly):
 
     @property
     def tip_motions(self) -> np.ndarray:
-        """Displacements of the tip by the coordinates (n, 3)."""
+        """Displacements of the tip per coordinate: shape (n, 3)."""
         return self.motions[:, :3, self.beam.stations.sections - 1]
 
     # Work of forces on the stations -------------------------------------------------------------------
 
     def under(self, forces: StationForces) -> ForcedBeam:
-        """The beam with forces on its stations."""
+        """Load the deformed beam with forces on its stations."""
         return ForcedBeam(self, forces)
 
     def resultants(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forces n, moments m (..., 3, N) by what acts beyond, times weights, and all the moment (..., 3)."""
+        """Compute the forces n and moments m that act beyond each point, and the moment at the root.
+
+        Both (..., 3, N) are times the weights of the rule; the moment at the root is of shape (..., 3).
+        """
         stations = self.beam.stations
         n = stations.from_all(force[..., :3, :])
         moments = force[..., 3:, : stations.sections].copy()
@@ -315,11 +323,11 @@ class BentBeam(FieldsOnly):
         return n, stations.from_sections(moments), moments.sum(axis=-1)
 
     def work(self, force: np.ndarray) -> np.ndarray:
-        """Virtual work (..., n) of forces (..., 6, N + 1 + k) on the stations, per coordinate."""
+        """Compute the virtual work (..., n) of forces (..., 6, N + 1 + k) on the stations, per coordinate."""
         return self.work_of(*self.resultants(force))
 
     def work_of(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Virtual work (..., n) of given resultants (..., 3, N), and of the moment at the root (..., 3)."""
+        """Compute the virtual work (..., n) of resultants (..., 3, N) and of a root moment (..., 3)."""
         beam, stress, functions = self.beam, turn_back(self._within, m), self.beam.flat_functions
         if beam.shears:
             stress = np.concatenate([turn_back(self._within, n), stress], axis=-2)
@@ -329,11 +337,11 @@ class BentBeam(FieldsOnly):
         return work if self._root is None else work + self._root.work(at_root)
 
     def work_change(self, forces: StationForces) -> np.ndarray:
-        """Derivative (n, n) of the virtual work of forces by the coordinates."""
+        """Compute the derivative (n, n) of the virtual work of station forces by the coordinates."""
         return self.under(forces).work_change
 
     def change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Derivative (n, n) of the virtual work of given resultants (3, N), which keep their direction."""
+        """Compute the derivative (n, n) of the virtual work of given resultants (3, N) of fixed direction."""
         beam, W = self.beam, self._turned[..., :-1]
         change = _product(self._turning, cross(m, W)) + _product(W, cross(self.displacement_rates, n))
         if beam.shears:
@@ -346,8 +354,10 @@ class BentBeam(FieldsOnly):
         return change
 
     def of_stations(self, matrices: np.ndarray) -> np.ndarray:
-        """Matrix (n, n) of the coordinates from those of the stations (6, 6, N + 1 + k)."""
-        return _product(self.motions, np.einsum("abj,nbj->naj", matrices, self.motions))
+        """Compute the matrix (n, n) of the coordinates from those of the stations (6, 6, N + 1 + k)."""
+        acting = np.flatnonzero(matrices.any(axis=(1, 2)) | matrices.any(axis=(0, 2)))
+        motions = self.motions[:, acting]
+        return _product(motions, np.einsum("abj,nbj->naj", matrices[np.ix_(acting, acting)], motions))
 
     @cached_property
     def mass(self) -> np.ndarray:
@@ -356,11 +366,11 @@ class BentBeam(FieldsOnly):
 
 
 class BentInPlane(BentBeam):
-    """A beam that bends in the plane of e1 and e2 alone: its sections turn about e3 by angles that add up."""
+    """A deformed beam that bends in the plane of e1 and e2 alone, where rotations about e3 add up."""
 
     @cached_property
     def rotations(self) -> np.ndarray:
-        """Axes of the sections, in columns (..., 3, 3, N + 1)."""
+        """Rotation matrices (..., 3, 3, N + 1) whose columns are the axes of the sections."""
         angle = self.q @ self.beam.angles
         axes = np.zeros((*angle.shape[:-1], 3, 3, angle.shape[-1]))
         axes[..., 0, 0, :] = axes[..., 1, 1, :] = np.cos(angle)
@@ -370,41 +380,18 @@ class BentInPlane(BentBeam):
 
     @cached_property
     def _turned(self) -> np.ndarray:
-        """Rotations W (n, 3, N + 1) by the coordinates."""
+        """Rotation vectors of the sections per coordinate, in space: shape (n, 3, N + 1)."""
         return self.beam.angles[:, None] * np.array([0.0, 0.0, 1.0])[:, None]
 
-    @cached_property
-    def _moved_rates(self) -> np.ndarray:
-        """Derivatives (n, 2, N) of the displacements in the plane by the coordinates."""
-        return np.stack([-self.tangents[1], self.tangents[0]]) * self.beam.angles[:, None, :-1]
-
-    @cached_property
-    def _moved(self) -> np.ndarray:
-        """Displacements in the plane by the coordinates (n, 2, N + 1 + k)."""
-        return self.beam.stations.to_all(self._moved_rates)
-
-    @cached_property
-    def displacement_rates(self) -> np.ndarray:
-        """Derivatives X' (n, 3, N) of the displacements by the coordinates."""
-        return np.pad(self._moved_rates, ((0, 0), (0, 1), (0, 0)))
-
     def change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Derivative (n, n) of the virtual work of given resultants (3, N), which keep their direction."""
-        rates = self._moved_rates
-        return self.beam.angles[:, :-1] @ (rates[:, 0] * n[1] - rates[:, 1] * n[0]).T
-
-    def of_stations(self, matrices: np.ndarray) -> np.ndarray:
-        """Matrix (n, n) of the coordinates from those of the stations (6, 6, N + 1 + k)."""
-        motions, parts = self._moved, [0, 1]
-        if matrices[5].any() or matrices[:, 5].any():
-            turned = self.beam.stations.of_all(self.beam.angles)
-            motions, parts = np.concatenate([motions, turned[:, None]], axis=1), [0, 1, 5]
-        return _product(motions, np.einsum("abj,nbj->naj", matrices[np.ix_(parts, parts)], motions))
+        """Compute the derivative (n, n) of the virtual work of resultants (3, N) of constant direction."""
+        angles, along = self.beam.angles[:, :-1], (self.tangents[:2] * n[:2]).sum(axis=0)
+        return (angles * -along) @ angles.T
 
 
 @dataclass(frozen=True)
 class ForcedBeam(FieldsOnly):
-    """A bent beam with forces on its stations.
+    """A deformed beam with forces on its stations.
 
     Parameters
     ----------
@@ -419,20 +406,20 @@ class ForcedBeam(FieldsOnly):
 
     @cached_property
     def resultants(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """As `BentBeam.resultants`."""
+        """Forces and moments of the sections along the beam: see `BentBeam.resultants`."""
         return self.bent.resultants(self.forces.force)
 
     @cached_property
     def work(self) -> np.ndarray:
-        """Virtual work (n,) per coordinate."""
+        """Virtual work of the forces per coordinate, shape (n,)."""
         return self.bent.work_of(*self.resultants)
 
     @cached_property
     def work_change(self) -> np.ndarray:
-        """Derivative (n, n) of the virtual work by the coordinates."""
+        """Derivative of the virtual work of the forces by the coordinates, shape (n, n)."""
         return self.bent.change_by(*self.resultants) + self.bent.of_stations(self.forces.tangent)
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Products (n, n) of vectors (n, ..., N), summed over components and points."""
+    """Compute the products (n, n) of vectors (n, ..., N), summed over components and points."""
     return a.reshape(len(a), -1) @ b.reshape(len(b), -1).T

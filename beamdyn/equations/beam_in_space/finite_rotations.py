@@ -1,4 +1,4 @@
-"""Rotations along a curve by its curvature, and products of vectors given at many points.
+"""Finite rotations: integrated from a curvature along a curve, and applied to vectors at many points.
 
 Vectors and matrices at points have the points last: (..., 3, N) and (..., 3, 3, N).
 """
@@ -11,25 +11,25 @@ from beamdyn.common.numerics import gauss_rule
 from beamdyn.equations.discretization import Cells, integrals_between_points
 
 _UNIT = np.array([1.0, 0.0, 0.0, 0.0])
-_NEXT = np.array([1, 2, 0])  # component that follows each: the products have few operations on arrays
-_ITERATIONS = 30  # of Picard's method, enough for a turn by 2 pi
-_CONVERGED = 4 * float(np.finfo(float).eps)  # change of a quaternion with which the iteration ends
+_NEXT = np.array([1, 2, 0])  # cyclic successor of each component, for vector products in few operations
+_ITERATIONS = 30  # iterations of Picard's method, enough for a turn by 2 pi
+_CONVERGED = 4 * float(np.finfo(float).eps)  # change of a quaternion below which the iteration has converged
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Vector products of vectors (..., 3, N), which are broadcast."""
+    """Compute the vector products of vectors (..., 3, N), which are broadcast."""
     return (a * b.take(_NEXT, axis=-2) - a.take(_NEXT, axis=-2) * b).take(_NEXT, axis=-2)
 
 
 def skew(a: np.ndarray) -> np.ndarray:
-    """Matrices (3, 3, ...) of vector products with a (3, ...) from the left: skew(a) b = a x b."""
+    """Build the skew-symmetric matrices (3, 3, ...) of vectors a (3, ...): skew(a) b = a x b."""
     matrix = np.zeros((3, *a.shape))
     matrix[0, 1], matrix[0, 2], matrix[1, 2] = -a[2], a[1], -a[0]
     return matrix - matrix.swapaxes(0, 1)
 
 
 def _products_of_quaternions() -> np.ndarray:
-    """Components (4, 4, 4) of the products of unit quaternions: the last index is that of the product."""
+    """Build the multiplication table (4, 4, 4) of quaternions: two factors, then the product."""
     products = np.zeros((4, 4, 4))
     products[0] = products[:, 0] = np.eye(4)
     products[1:, 1:, 0], products[1:, 1:, 1:] = -np.eye(3), -skew(np.eye(3))
@@ -37,8 +37,8 @@ def _products_of_quaternions() -> np.ndarray:
 
 
 _PRODUCT = _products_of_quaternions()
-_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # multiplication by (0, a), by a
-_TURNING = np.einsum(  # rotation matrices, by products of components: y (0, a) y*
+_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # y -> y (0, a), per component of a
+_TURNING = np.einsum(  # rotation matrices a -> y (0, a) y*, per product of two components of a quaternion y
     "ajc,b,cbi->abij", _PRODUCT[:, 1:], [1.0, -1.0, -1.0, -1.0], _PRODUCT[..., 1:]
 ).reshape(16, 9)
 
@@ -60,7 +60,7 @@ def turn_tensors(R: np.ndarray, tensors: np.ndarray) -> np.ndarray:
 
 
 def turn_law(R: np.ndarray, law: np.ndarray) -> np.ndarray:
-    """Turn matrices (6, 6, N) of forces and moments by rotations (3, 3, N)."""
+    """Rotate stiffness or mass matrices of sections (6, 6, N) by rotations (3, 3, N)."""
     turned = np.empty_like(law)
     for i in (slice(0, 3), slice(3, 6)):
         for j in (slice(0, 3), slice(3, 6)):
@@ -71,7 +71,7 @@ def turn_law(R: np.ndarray, law: np.ndarray) -> np.ndarray:
 def integrate_curvature(
     cells: Cells, curvature: np.ndarray, kinks: np.ndarray, root: np.ndarray = _UNIT
 ) -> np.ndarray:
-    """Rotations from the root to the Gauss points of cells and to the tip.
+    """Integrate a curvature to rotations from the root to the Gauss points of cells and to the tip.
 
     The unit quaternion of R' = R skew(curvature) satisfies a linear equation, y' = y (0, curvature)/2, which
     Gauss collocation solves with an error that falls exponentially with the number of points on a cell.  The
@@ -98,7 +98,7 @@ def integrate_curvature(
     Quaternions of a curve: standard.  Gauss methods keep quadratic invariants: Cooper (1987), IMA Journal of
     Numerical Analysis 7, 1-13.
     """
-    halves, shape = np.diff(cells.ends) / 4, curvature.shape[:-2]  # half the turn
+    halves, shape = np.diff(cells.ends) / 4, curvature.shape[:-2]  # half the angle
     rates = np.moveaxis(curvature.reshape(-1, 3, len(halves), cells.points) * halves[:, None], 1, -1)
     within, across = _collocate(rates, integrals_between_points(cells.points), gauss_rule(cells.points)[1])
     root = np.broadcast_to(root, (*shape, 4)).reshape(-1, 4)
@@ -135,31 +135,31 @@ def _collocate(rates: np.ndarray, A: np.ndarray, b: np.ndarray) -> tuple[np.ndar
 
 
 def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
-    """Unit quaternions (..., 4) of turns by angles (...) [rad] about axis 0, 1 or 2."""
+    """Build the unit quaternions (..., 4) of rotations by angles (...) [rad] about axis 0, 1 or 2."""
     turned = np.zeros((*np.shape(angle), 4))
     turned[..., 0], turned[..., 1 + axis] = np.cos(np.divide(angle, 2)), np.sin(np.divide(angle, 2))
     return turned
 
 
 def quaternions_by_vectors(vectors: np.ndarray) -> np.ndarray:
-    """Unit quaternions (..., 4) of turns by vectors (..., 3) [rad]."""
+    """Build the unit quaternions (..., 4) of rotation vectors (..., 3) [rad]."""
     half = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True)) / 2
     return np.concatenate([np.cos(half), vectors / 2 * np.sinc(half / np.pi)], axis=-1)
 
 
 def product(y: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Products of quaternions (..., 4), which are broadcast."""
+    """Multiply quaternions (..., 4), which are broadcast."""
     from_left = (y @ _PRODUCT.reshape(4, 16)).reshape(*y.shape, 4)
     return np.einsum("...bc,...b->...c", from_left, z)
 
 
 def rotation_matrices(y: np.ndarray) -> np.ndarray:
-    """Rotation matrices (S, 3, 3, N) of quaternions (S, N, 4), which are scaled to the length 1."""
+    """Compute the rotation matrices (S, 3, 3, N) of quaternions (S, N, 4), which are normalized first."""
     squares = (y[..., None] * y[..., None, :]).reshape(-1, 16)
     matrices = squares @ _TURNING / squares[:, ::5].sum(axis=1, keepdims=True)
     return np.moveaxis(matrices.reshape(*y.shape[:-1], 3, 3), 1, -1)
 
 
 def longer_semi_axis(c: np.ndarray) -> np.ndarray:
-    """Largest magnitudes (...) over phi of vectors Re(c exp(i phi)), c of shape (d, ...): of ellipses."""
+    """Compute the longer semi-axis (...) of the ellipses Re(c exp(i phi)) over phi, c of shape (d, ...)."""
     return np.sqrt(((np.abs(c) ** 2).sum(axis=0) + np.abs((c * c).sum(axis=0))) / 2)

@@ -1,4 +1,4 @@
-"""A beam in space in any motion on a carrier in any motion: its exact inertial forces and energies.
+"""Exact inertial forces and energies of a beam in space that moves on a moving carrier.
 
 With the rates k. and g. of the strains, the sections turn against the carrier with the rate w and move with
 the velocity v,
@@ -11,6 +11,9 @@ and in axes that turn with the carrier at the rate W a centre of mass c has the 
     c.. + 2 W x c. + W. x c + W x (W x c),
 
 a section of inertia I the rate of angular momentum I (w. + W. + W x w) + (w + W) x I (w + W).
+
+Arrays over N + 1 + k stations have the N Gauss points of the strains, the tip and the k point masses: see
+`station_forces`.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ import numpy as np
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.beam_in_space.bent_beam import BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import cross, turn
+from beamdyn.equations.beam_in_space.tip_forces import TipForces
 from beamdyn.equations.root_motion import RootMotion
 
 _AT_REST = np.zeros(3)
@@ -46,14 +50,14 @@ class Carrier:
 
     @classmethod
     def of_root(cls, axis: np.ndarray, root: RootMotion) -> Carrier:
-        """The carrier that turns about an axis (3,) and moves the root of the beam."""
+        """Build the motion of a carrier that rotates about an axis (3,) and moves the beam's root."""
         acceleration = np.stack([root.root_axial, root.root_transverse, root.root_across], axis=-1)
         return cls(axis * root.speed[..., None], axis * root.acceleration[..., None], acceleration)
 
 
 @dataclass(frozen=True)
 class MovingBeam(FieldsOnly):
-    """A beam at given coordinates and rates on a carrier, at one time or several.
+    """A beam at given coordinates and rates on a moving carrier, at one time or several.
 
     Parameters
     ----------
@@ -63,34 +67,37 @@ class MovingBeam(FieldsOnly):
         Rates of the coordinates.
     carrier : Carrier
         Motion of the carrier.
+    load : TipForces or None
+        Load at the tip.
     """
 
     bent: BentBeam
     rates: np.ndarray
     carrier: Carrier
+    load: TipForces | None = None
 
     @cached_property
     def _strain_rates(self) -> tuple[np.ndarray, np.ndarray]:
-        """Rates (..., 3, N), in space, of stretch and shears, and of the curvatures."""
+        """Rates of strain in space, (..., 3, N) each: of stretch and shears, and of the curvatures."""
         return self.bent.strain_rates(self.rates)
 
     @cached_property
     def _turning(self) -> np.ndarray:
-        """Turning rates (..., 3, N + 1) of the sections against the carrier."""
+        """Angular velocities (..., 3, N + 1) of the sections relative to the carrier [rad/s]."""
         return self.bent.turning_rate(self.rates, self._strain_rates[1])
 
     @cached_property
     def _tangent_rate(self) -> np.ndarray:
-        """Rate (..., 3, N) of the derivative r' of the position."""
+        """Rate of change (..., 3, N) of the derivative r' of the axis' position by the arc length."""
         return cross(self._turning[..., :-1], self.bent.tangents) + self._strain_rates[0]
 
     @cached_property
     def velocity(self) -> np.ndarray:
-        """Velocities (..., 3, N + 1 + k) of the axis against the carrier."""
+        """Velocities (..., 3, N + 1 + k) of the stations relative to the carrier [m/s]."""
         return self.bent.beam.stations.to_all(self._tangent_rate)
 
     def forces(self, accelerations: np.ndarray) -> np.ndarray:
-        """Inertial forces on the stations (..., 6, N + 1 + k), for accelerations (..., n)."""
+        """Compute inertial forces and moments on stations (..., 6, N + 1 + k) for accelerations (..., n)."""
         bent, stations, masses = self.bent, self.bent.beam.stations, self.bent.masses
         straining, bending = bent.strain_rates(accelerations)
         w, strained = self._turning[..., :-1], self._strain_rates
@@ -112,17 +119,17 @@ class MovingBeam(FieldsOnly):
         return np.concatenate([F, M + cross(masses.lever, F)], axis=-2)
 
     def residual(self, accelerations: np.ndarray) -> np.ndarray:
-        """Sum of elastic, damping and inertial forces (..., n): 0 in motion."""
-        beam = self.bent.beam
+        """Sum of elastic, damping and inertial forces, less the load at the tip (..., n): 0 in motion."""
+        beam, forces = self.bent.beam, self.forces(accelerations)
         elastic = self.bent.q @ beam.stiffness + self.rates @ beam.damping
-        return elastic + self.bent.work(self.forces(accelerations))
+        return elastic + self.bent.work(forces if self.load is None else forces - self.load.forces(self.bent))
 
     @property
     def energy(self) -> np.ndarray:
-        """Energy integral (...) [J] of a carrier that turns steadily: constant in undamped free motion.
+        """Compute the energy integral (...) [J] on a steadily rotating carrier.
 
         It is the kinetic energy against the carrier, the elastic one and the potential of the centrifugal
-        forces and of the acceleration of the root.
+        forces, of the acceleration of the root and of a dead force at the tip; other loads there have none.
         """
         bent, masses, W = self.bent, self.bent.masses, self.carrier.turning[..., None]
         turning = bent.beam.stations.of_all(self._turning)
@@ -132,4 +139,6 @@ class MovingBeam(FieldsOnly):
         kinetic += (each - (W * turn(masses.inertia, W)).sum(axis=-2)).sum(axis=-1)
         elastic = ((bent.q @ bent.beam.stiffness) * bent.q).sum(axis=-1)
         by_root = (self.carrier.root_acceleration[..., None] * masses.centre).sum(axis=-2) @ masses.mass
+        if self.load is not None and not self.load.follows:
+            by_root = by_root - bent.tip @ self.load.force
         return (kinetic + elastic) / 2 + by_root

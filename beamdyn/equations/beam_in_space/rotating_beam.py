@@ -1,4 +1,4 @@
-"""The beam in space on a carrier that turns: its equations of motion, and linear about any state.
+"""The beam in space on a rotating carrier: its equations of motion, also linearized about any state.
 
 The coordinates and the elastic energy are those of the fields of the straight beam (bending in two
 directions, shear, stretch, torsion), whose functions are here those of the strains.  What the root's motion
@@ -19,17 +19,12 @@ from numpy.polynomial import legendre
 
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.equations.assembly import damping_terms
+from beamdyn.equations.beam_in_space import bent_beam
 from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
-from beamdyn.equations.beam_in_space.bent_beam import (
-    STRAINS,
-    BeamInSpace,
-    BentBeam,
-    ForcedBeam,
-    elastic_stiffness,
-)
 from beamdyn.equations.beam_in_space.finite_rotations import turn, turn_law, turn_tensors
 from beamdyn.equations.beam_in_space.moving_beam import Carrier, MovingBeam
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses
+from beamdyn.equations.beam_in_space.tip_forces import TipForces, forces_at_tip
 from beamdyn.equations.discretization import CLAMPED, FIXED, ArcQuadrature, Discretization, RootConditions
 from beamdyn.equations.equations_of_motion import Equations, Shape
 from beamdyn.equations.fields.bending_and_shear import Bending, SecondBending, SecondShear, Shear
@@ -43,14 +38,15 @@ from beamdyn.scene.section_matrices import split_mass
 from beamdyn.scene.sections import offset_components
 
 _AXES = np.eye(3)
-_KEPT = 4  # states of the beam that are kept
-_HINGES = "curvature", "second curvature"  # of the fields that turn the root
-_DIRECTIONS = "in the direction of bending", "across"  # of what a bent beam adds to the deflection
+_KEPT = 4  # number of states of the beam that are cached
+_HINGES = "curvature", "second curvature"  # strains of the fields whose functions turn the root
+# Directions of the deflection in the names of a bent beam's blocks.
+_DIRECTIONS = "in the direction of bending", "across"
 _ROOT: tuple[Quantity, ...] = "root_axial", "root_transverse", "root_across"
 
 
 class _Strain(NamedTuple):
-    """The strain of a field of the straight beam: a derivative by x of its functions, times a sign."""
+    """The strain that a field of the straight beam causes: name, order of derivative by x, root, and sign."""
 
     name: str
     order: int
@@ -59,7 +55,7 @@ class _Strain(NamedTuple):
 
 
 def _strains_of_fields(scene: Scene) -> dict[str, _Strain]:
-    """The strain of each field; positive deflection across, and torsion, turn sections backwards."""
+    """Find the strain that each field causes; a sign of -1 where it turns sections about a negative axis."""
     mount, warps = scene.mount, scene.modelled_beam.warping_stiffness is not None
     torsion = CLAMPED if warps else FIXED
     resists = "warping_stiffness" if warps else "torsion_stiffness"
@@ -74,7 +70,7 @@ def _strains_of_fields(scene: Scene) -> dict[str, _Strain]:
 
 
 def axis_of_rotation(scene: Scene) -> np.ndarray:
-    """Axis (3,) of positive rotation of the carrier along e1, e2, e3."""
+    """Compute the axis (3,) of positive rotation of the carrier along e1, e2, e3."""
     (c, s), (cosine, sine) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
     return -np.array([sine, cosine * s, cosine * c])
 
@@ -91,17 +87,19 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         strain = known[name]
         of_field = spaces.functions(strain.conditions)
         along = of_field.evaluate(quadrature.xi, strain.order)
-        functions[place, STRAINS.index(strain.name)] = strain.sign * along / length**strain.order
+        functions[place, bent_beam.STRAINS.index(strain.name)] = strain.sign * along / length**strain.order
         if strain.name in _HINGES:
             turn_of_root = of_field.evaluate(np.zeros(1), 1)[:, 0] / length
-            hinges[place, STRAINS.index(strain.name) - 3] = strain.sign * turn_of_root
+            hinges[place, bent_beam.STRAINS.index(strain.name) - 3] = strain.sign * turn_of_root
         if strain.name == "curvature":
             slopes[place] = of_field.evaluate(np.concatenate([[0.0], quadrature.xi, [1.0]]), 1) / length
     if beam.matrices is None:
-        _keep_lengths(functions, _tension(beam, quadrature.xi))
+        # Stretch is added to bending, so that the lines through the centres of tension keep their lengths.
+        offset, across = _tension(beam, quadrature.xi)
+        functions[:, 0] += offset * functions[:, 5] - across * functions[:, 4]
     curvature, kinks = curve_of_axis(beam, quadrature)
     nothing = np.zeros((linear.size, linear.size))
-    model = BeamInSpace(
+    model = bent_beam.BeamInSpace(
         stations,
         _masses(scene, stations),
         np.concatenate([np.zeros((3, len(quadrature.xi))), curvature]),
@@ -113,22 +111,23 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         None if np.isinf(scene.mount.root_stiffnesses).all() else hinges,
         slopes[:, 1:],
     )
-    rotating = RotatingBeam(model, linear, axis_of_rotation(scene))
+    load = forces_at_tip(scene, model.at(np.zeros(linear.size)))
+    rotating = RotatingBeam(model, linear, axis_of_rotation(scene), load)
     return rotating if beam.matrices is None else _with_law(rotating, scene, discretization)
 
 
 def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretization) -> RotatingBeam:
-    """The beam with the stiffness of its sections' matrices, and damping of its modes with that."""
+    """Replace stiffness and modal damping of the beam by those of its 6 x 6 section matrices."""
     beam, model, linear = scene.modelled_beam, rotating.beam, rotating.linear
     assert beam.matrices is not None
     xi = model.stations.quadrature.xi
     law = turn_law(_turned_sections(beam, xi)[..., :-1], beam.matrices.at("stiffness", xi))
     if isinstance(discretization, Ritz) and not discretization.on_each_segment:
         linear = _with_blocks_of(linear, discretization.functions)
-        strains = [STRAINS.index(_strains_of_fields(scene)[name].name) for name in linear.blocks]
+        strains = [bent_beam.STRAINS.index(_strains_of_fields(scene)[name].name) for name in linear.blocks]
         model = replace(model, functions=_strains_by_forces(model, law, discretization.functions)[strains])
         model = replace(model, functions=model.functions.reshape(linear.size, *law.shape[1:]), slopes=None)
-    K = elastic_stiffness(model.stations, model.functions, law)
+    K = bent_beam.elastic_stiffness(model.stations, model.functions, law)
     terms, none = [*terms_of_blocks(linear, "stiffness", K, 0)], np.zeros_like(K)
     undamped = replace(
         rotating,
@@ -144,14 +143,14 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
 
 
 def _with_blocks_of(linear: Equations, size: int) -> Equations:
-    """Equations with the same blocks, of one size each."""
+    """Replace the coordinates of equations by blocks of the same names, each of the given size."""
     blocks = {name: slice(k * size, (k + 1) * size) for k, name in enumerate(linear.blocks)}
     shapes = {name: Shape(name, np.eye(size)) for name in blocks}
     return replace(linear, blocks=blocks, terms=(), loads=(), shapes=shapes, sections=(), coarse=None)
 
 
-def _strains_by_forces(model: BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
-    """Strains (6, n, 6, N) by forces and moments that are n polynomials over the whole beam each.
+def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
+    """Compute strains (6, n, 6, N) under forces and moments that are n polynomials over the whole beam each.
 
     Those in space are smooth; their components in the axes of the sections turn with the axis of the beam.
     """
@@ -166,7 +165,7 @@ def _strains_by_forces(model: BeamInSpace, law: np.ndarray, count: int) -> np.nd
 def terms_of_blocks(
     equations: Equations, name: str, matrix: np.ndarray, order: int, quantity: Quantity = "unity"
 ) -> Iterator[Term]:
-    """Yield terms of a matrix (n, n), block by block."""
+    """Split a matrix (n, n) into terms of the equations of motion, one for each pair of blocks."""
     for row, i in equations.blocks.items():
         for column, j in equations.blocks.items():
             if matrix[i, j].any():
@@ -174,7 +173,7 @@ def terms_of_blocks(
 
 
 def _masses(scene: Scene, stations: BeamStations) -> Masses:
-    """Masses of a scene's beam at stations: of sections, of the body at the tip, and point masses."""
+    """Gather the masses of a scene's beam at stations: of sections, of the tip body, and point masses."""
     beam, tip, xi = scene.modelled_beam, scene.beam.tip or TipMass(0.0), stations.quadrature.xi
     weights = stations.quadrature.weights * beam.length
     m, centre, inertia = _masses_of_sections(beam, xi)
@@ -187,7 +186,7 @@ def _masses(scene: Scene, stations: BeamStations) -> Masses:
 
 
 def _masses_of_sections(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mass per length (N,), its centre (3, N) and inertia (3, 3, N) in the axes of the sections, at xi."""
+    """Evaluate mass per length (N,), centres (3, N) and inertia (3, 3, N) in the axes of sections, at xi."""
     if beam.matrices is not None:
         return split_mass(beam.matrices.at("mass", xi))
     none = np.zeros_like(xi)
@@ -198,23 +197,18 @@ def _masses_of_sections(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def _tension(beam: Beam, xi: np.ndarray) -> np.ndarray:
-    """Components (2, N) in the direction of bending and across of the centres of tension [m], at xi."""
+    """Evaluate offsets (2, N) of centres of tension [m] in the direction of bending and across, at xi."""
     if beam.matrices is not None:
         K = beam.matrices.at("stiffness", xi)
         return np.stack([-K[0, 5], K[0, 4]]) / K[0, 0]
     return np.stack([np.zeros_like(xi) if c is None else c(xi) for c in offset_components(beam)[2:]])
 
 
-def _keep_lengths(functions: np.ndarray, tension: np.ndarray) -> None:
-    """Let bending (n, 6, N) stretch the axis so that the centres of tension (2, N) keep their distances."""
-    functions[:, 0] += tension[0] * functions[:, 5] - tension[1] * functions[:, 4]
-
-
 def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean square distance (N,) of fibres from the axis, and twist (N,) of the unloaded sections, at xi.
+    """Evaluate the mean square distance (N,) of fibres from the axis, and the pretwist (N,), at xi.
 
-    About their centre of tension, sections are as homogeneous in their stiffness as in their mass about its
-    own; without torsion it does not matter.
+    The distribution of stiffness about the centre of tension is taken to be that of mass about the centre of
+    mass; without torsion it does not matter.
     """
     twist = np.zeros_like(xi) if beam.twist is None else beam.twist.derivative()(xi) / beam.length
     if beam.torsion_stiffness is None:
@@ -226,7 +220,7 @@ def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _turned_sections(beam: Beam, xi: np.ndarray) -> np.ndarray:
-    """Axes (3, 3, N + 1) of the unloaded sections at xi (N,) and at the tip, turned by the twist."""
+    """Compute the axes (3, 3, N + 1) of unloaded sections at xi (N,) and at the tip, turned by the twist."""
     twist = np.zeros(len(xi) + 1) if beam.twist is None else np.append(beam.twist(xi), beam.tip_twist)
     axes = np.zeros((3, 3, len(twist)))
     axes[0, 0] = 1.0
@@ -247,15 +241,18 @@ class RotatingBeam(FieldsOnly):
         functions, elastic stiffness and damping are those of this beam.
     axis : ndarray, shape (3,)
         Axis of positive rotation of the carrier along e1, e2, e3.
+    load : TipForces or None
+        Load at the tip.
     """
 
-    beam: BeamInSpace
+    beam: bent_beam.BeamInSpace
     linear: Equations
     axis: np.ndarray
+    load: TipForces | None = None
 
     @property
     def quantities(self) -> tuple[Quantity, ...]:
-        """Quantities of the root's motion that load the beam."""
+        """Quantities of the root's motion that load the beam, such as its acceleration along an axis."""
         return "speed_squared", "acceleration", *_ROOT
 
     @property
@@ -270,25 +267,25 @@ class RotatingBeam(FieldsOnly):
 
     @property
     def angles(self) -> np.ndarray:
-        """Integrated strains per coordinate, by which changes are measured: shape (n, k)."""
+        """Strains integrated from the root per coordinate, a measure of changes of the shape: (n, k)."""
         return self.beam.angles
 
     @property
     def stiffness(self) -> np.ndarray:
-        """Elastic stiffness (n, n)."""
+        """Elastic stiffness matrix, shape (n, n)."""
         return self.beam.stiffness
 
     @cached_property
     def about_straight(self) -> Equations:
-        """Equations of small motions about the straight beam."""
-        return self.at(np.zeros(self.size)).linearized()
+        """Equations of small motions about the straight beam, without a load at its tip."""
+        return replace(self, load=None).at(np.zeros(self.size)).linearized()
 
     def reduced(self, modal: Equations) -> RotatingBeam:
-        """The beam in the coordinates of equations to which those about the straight beam were reduced."""
-        return RotatingBeam(self.beam.reduced(self.basis_of(modal)), modal, self.axis)
+        """Return the beam in the coordinates to which equations about the straight beam were reduced."""
+        return replace(self, beam=self.beam.reduced(self.basis_of(modal)), linear=modal)
 
     def basis_of(self, modal: Equations) -> np.ndarray:
-        """Coordinates (n, m) of the beam per coordinate of equations to which its own were reduced."""
+        """Compute the basis (n, m) of a reduced model in the coordinates of the beam."""
         basis = np.zeros((self.size, modal.size))
         for name, place in self.linear.blocks.items():
             shape = modal.shapes[name if name in modal.shapes else f"{name}, {_DIRECTIONS[0]}"]
@@ -296,7 +293,7 @@ class RotatingBeam(FieldsOnly):
         return basis
 
     def nearest(self, other: RotatingBeam, q: np.ndarray) -> np.ndarray:
-        """Coordinates (n,) whose strains are nearest to those of another discretization at q."""
+        """Find the coordinates (n,) whose strains are nearest to another discretization's at q."""
         own, rule = self.beam, self.beam.stations.quadrature
         between = other.beam.stations.quadrature.interpolate_to(rule.xi)
         strains = np.tensordot(q, other.beam.functions, 1) @ between.T * np.sqrt(rule.weights)
@@ -306,7 +303,7 @@ class RotatingBeam(FieldsOnly):
         return np.linalg.lstsq(matrix.T, strains.ravel())[0]
 
     def at(self, q: np.ndarray) -> BentState:
-        """The beam at coordinates q (..., n); the last few are kept, as they are asked for again."""
+        """Return the state of the beam at coordinates q (..., n); recent states are cached."""
         key = q.tobytes()
         if key not in self._kept:
             if len(self._kept) >= _KEPT:
@@ -319,16 +316,16 @@ class RotatingBeam(FieldsOnly):
         return {}
 
     def tip(self, q: np.ndarray) -> np.ndarray:
-        """Position (..., 3) of the tip from the root along e1, e2, e3 [m], at coordinates q (..., n)."""
+        """Compute the position (..., 3) of the tip along e1, e2, e3 [m] at coordinates q (..., n)."""
         return self.beam.at(q).tip
 
     def curvature(self, q: np.ndarray, xi: np.ndarray) -> np.ndarray:
-        """Curvature (..., k) [1/m] in the direction of bending at q (..., n) and x/L = xi (k,)."""
-        own = self.beam.functions[:, STRAINS.index("curvature")]
+        """Compute the curvature (..., k) [1/m] in the direction of bending, at q (..., n) and xi (k,)."""
+        own = self.beam.functions[:, bent_beam.STRAINS.index("curvature")]
         return q @ own @ self.beam.stations.quadrature.interpolate_to(xi).T
 
     def tip_angle(self, q: np.ndarray) -> float:
-        """Angle of the tip [rad] at coordinates q (n,): its slope in one plane, else from e1 on."""
+        """Compute the angle of the tip from e1 [rad] at q (n,); it is signed for one plane only."""
         if self.beam.is_planar:
             return float(q @ self.angles[:, -1])
         along = self.beam.at(q).rotations[:, 0, -1]
@@ -337,7 +334,7 @@ class RotatingBeam(FieldsOnly):
 
 @dataclass(frozen=True)
 class BentState(FieldsOnly):
-    """A beam on a carrier at given coordinates.
+    """A deformed beam on a rotating carrier, at given coordinates.
 
     Parameters
     ----------
@@ -348,15 +345,15 @@ class BentState(FieldsOnly):
     """
 
     of: RotatingBeam
-    bent: BentBeam
+    bent: bent_beam.BentBeam
 
     def positions(self, xi: np.ndarray) -> np.ndarray:
-        """Positions (k, 3) along e1, e2, e3 [m] at x/L = xi of shape (k,)."""
+        """Compute the positions (k, 3) along e1, e2, e3 [m] at x/L = xi of shape (k,)."""
         weights = self.of.length * self.of.beam.stations.quadrature.integrate_to(xi)
         return weights @ self.bent.tangents.T
 
-    def under(self, values: Mapping[Quantity, float]) -> ForcedBeam:
-        """The beam with its inertial forces under given values of the quantities, kept for the next call."""
+    def under(self, values: Mapping[Quantity, float]) -> bent_beam.ForcedBeam:
+        """Load the beam with the inertial forces under given values of the root's quantities (cached)."""
         key = tuple(values.items())
         if key not in self._known:
             root = np.array([values.get(quantity, 0.0) for quantity in _ROOT])
@@ -365,54 +362,73 @@ class BentState(FieldsOnly):
         return self._known[key]
 
     @cached_property
-    def _known(self) -> dict[tuple[tuple[Quantity, float], ...], ForcedBeam]:
+    def _known(self) -> dict[tuple[tuple[Quantity, float], ...], bent_beam.ForcedBeam]:
         return {}
 
+    @cached_property
+    def _loaded(self) -> bent_beam.ForcedBeam | None:
+        """The beam with the load at its tip."""
+        return None if self.of.load is None else self.bent.under(self.of.load.on(self.bent))
+
+    @property
+    def force_at_rest(self) -> np.ndarray:
+        """Generalized elastic force, less that of the load at the tip (n,)."""
+        elastic = self.of.stiffness @ self.q
+        return elastic if self._loaded is None else elastic - self._loaded.work
+
+    @property
+    def stiffness_at_rest(self) -> np.ndarray:
+        """Derivative (n, n) of `force_at_rest`; not symmetric where the load has no potential."""
+        return self.of.stiffness if self._loaded is None else self.of.stiffness - self._loaded.work_change
+
     def inertia(self, values: Mapping[Quantity, float]) -> np.ndarray:
-        """Generalized inertial force (n,) under given values of the quantities."""
+        """Compute the generalized inertial force (n,) under given values of the root's quantities."""
         return self.under(values).work
 
     def inertia_change(self, values: Mapping[Quantity, float]) -> np.ndarray:
-        """Derivative (n, n) of `inertia` by the coordinates."""
+        """Compute the derivative (n, n) of the generalized inertial force by the coordinates."""
         return self.under(values).work_change
 
     def inertia_of(self, quantity: Quantity) -> np.ndarray:
-        """Generalized inertial force (n,) per unit of a quantity."""
+        """Compute the generalized inertial force (n,) per unit of one quantity of the root's motion."""
         return self.inertia({quantity: 1.0})
 
     def stiffness_of(self, quantity: Quantity) -> np.ndarray:
-        """Derivative (n, n) of `inertia_of` by the coordinates."""
+        """Compute the derivative (n, n) by the coordinates of the inertial force per unit of one quantity."""
         return self.inertia_change({quantity: 1.0})
 
     def work(self, rates: np.ndarray, accelerations: np.ndarray, root: RootMotion) -> np.ndarray:
-        """Residual (..., n) of the equations of motion, for rates and accelerations of the shape of q."""
-        return MovingBeam(self.bent, rates, Carrier.of_root(self.of.axis, root)).residual(accelerations)
+        """Compute the residual (..., n) of the equations of motion, for rates and accelerations like q."""
+        carrier = Carrier.of_root(self.of.axis, root)
+        return MovingBeam(self.bent, rates, carrier, self.of.load).residual(accelerations)
 
     @property
     def q(self) -> np.ndarray:
-        """Coordinates (..., n)."""
+        """Coordinates of this state, shape (..., n)."""
         return self.bent.q
 
     @property
     def mass(self) -> np.ndarray:
-        """Mass matrix (n, n)."""
+        """Mass matrix at this state, shape (n, n)."""
         return self.bent.mass
 
     @cached_property
     def gyroscopic(self) -> np.ndarray:
-        """Gyroscopic matrix per speed (n, n)."""
+        """Gyroscopic matrix per speed at this state, shape (n, n)."""
         euler = self.stiffness_of("acceleration")
         return euler - euler.T
 
     def linearized(self) -> Equations:
-        """Equations of small motions about this state, the elastic force of which is among the loads."""
-        linear, beam = self.of.linear, self.of.beam
+        """Return the equations of small motions about this state, whose elastic force is among the loads."""
+        linear = self.of.linear
         terms = [
             *terms_of_blocks(linear, "mass", self.bent.mass, 2),
             *terms_of_blocks(linear, "Coriolis coupling", self.gyroscopic, 1, "speed"),
             *(t for t in linear.terms if t.quantity == "unity" and t.order < 2),
         ]
-        loads = [*self._loads("elastic force", beam.stiffness @ self.bent.q, "unity")]
+        if self._loaded is not None:
+            terms += terms_of_blocks(linear, "stiffness by the load at the tip", -self._loaded.work_change, 0)
+        loads = [*self._loads("elastic force", self.force_at_rest, "unity")]
         for quantity in self.of.quantities:
             change = self.stiffness_of(quantity)
             terms += terms_of_blocks(linear, f"stiffness by {quantity}", change, 0, quantity)
@@ -430,12 +446,12 @@ class BentState(FieldsOnly):
         )
 
     def _loads(self, name: str, vector: np.ndarray, quantity: Quantity) -> Iterator[Load]:
-        """Loads of the left-hand side (n,), by blocks."""
+        """Split a force of the left-hand side (n,) into loads of the right-hand side, one for each block."""
         for row, i in self.of.linear.blocks.items():
             yield Load(name, row, vector[i], quantity, -1.0)
 
     def _deflection(self, place: slice, direction: int) -> Deflection:
-        """Deflection in a direction by the coordinates of a block, with its loads."""
+        """Build the deflection in a direction by the coordinates of one block, with its inertial loads."""
         masses, axis = self.bent.masses, np.array([-_AXES[2], _AXES[1]][direction])
         by_root = self.bent.work(masses.translated(_AXES[1 + direction]).force)
         by_turning = -self.bent.work(masses.euler(axis).force)
@@ -446,7 +462,7 @@ class BentState(FieldsOnly):
 
 @dataclass(frozen=True)
 class DeflectedFunctions(FieldsOnly):
-    """Changes of the deflection of a bent beam in a direction, as functions of x/L.
+    """Changes of a bent beam's deflection in one direction per coordinate, as functions of x/L.
 
     Parameters
     ----------
@@ -458,13 +474,13 @@ class DeflectedFunctions(FieldsOnly):
         0 for the direction of bending at the root, 1 for that across.
     """
 
-    bent: BentBeam
+    bent: bent_beam.BentBeam
     place: slice
     direction: int
 
     @property
     def size(self) -> int:
-        """Number of functions."""
+        """Number of functions: of the block's coordinates."""
         return self.place.stop - self.place.start
 
     def end(self, order: int) -> np.ndarray:
@@ -472,7 +488,7 @@ class DeflectedFunctions(FieldsOnly):
         return self.evaluate(np.ones(1), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the functions (order 0) or derivatives by x/L (1, 2) at xi (k,): shape (n, k)."""
+        """Evaluate the functions (order 0) or their slopes by x/L (order 1) at xi (k,): shape (n, k)."""
         stations = self.bent.beam.stations
         moving = self.bent.displacement_rates[self.place, 1 + self.direction] * stations.length
         if order == 0:

@@ -1,4 +1,4 @@
-"""Stations along a beam: the points at which its masses stand and at which forces act.
+"""Stations along a beam: the points where masses are placed and forces act.
 
 Stations are the N Gauss points of a rule along the beam, its tip, and k point masses.  Motions of a station
 are (X, W): the displacement of the beam's axis and the rotation of its section, components in space.  Forces
@@ -20,7 +20,7 @@ from beamdyn.equations.discretization import ArcQuadrature
 
 @dataclass(frozen=True)
 class BeamStations(FieldsOnly):
-    """Integrals along a beam to its stations, and their transposes.
+    """Integrals along a beam from the root to its stations, and their transposes.
 
     Parameters
     ----------
@@ -38,41 +38,41 @@ class BeamStations(FieldsOnly):
 
     @property
     def sections(self) -> int:
-        """Number N + 1 of stations that have a rotation."""
+        """Number N + 1 of stations that have a rotation: Gauss points and tip."""
         return len(self.quadrature.xi) + 1
 
     @property
     def count(self) -> int:
-        """Number of all stations."""
+        """Number N + 1 + k of all stations: Gauss points, tip and point masses."""
         return self.sections + len(self.lumps)
 
     @cached_property
     def _to_lumps(self) -> np.ndarray:
-        """Weights (k, N) of the integrals from the root to the point masses."""
+        """Weights (k, N) of the integrals from the root to each point mass."""
         return self.quadrature.integrate_to(self.lumps)
 
     def to_sections(self, values: np.ndarray) -> np.ndarray:
-        """Integrate values (..., N) per length from the root: (..., N + 1)."""
+        """Integrate values (..., N) per length from the root to Gauss points and tip: shape (..., N + 1)."""
         return self.length * self.quadrature.integrate(values)
 
     def to_all(self, values: np.ndarray) -> np.ndarray:
-        """Integrate values (..., N) per length from the root: (..., N + 1 + k)."""
+        """Integrate values (..., N) per length from the root to all stations: shape (..., N + 1 + k)."""
         to_sections = self.to_sections(values)
         if not self.lumps.size:
             return to_sections
         return np.concatenate([to_sections, self.length * values @ self._to_lumps.T], axis=-1)
 
     def of_all(self, of_sections: np.ndarray) -> np.ndarray:
-        """Values (..., N + 1 + k) of all stations from those of sections (..., N + 1); others are 0."""
+        """Append zeros for point masses to values (..., N + 1) of sections: shape (..., N + 1 + k)."""
         none = np.zeros((*of_sections.shape[:-1], len(self.lumps)))
         return np.concatenate([of_sections, none], axis=-1) if self.lumps.size else of_sections
 
     def from_sections(self, forces: np.ndarray) -> np.ndarray:
-        """Apply the transpose of `to_sections` to forces (..., N + 1): (..., N), sums of what acts beyond."""
+        """Apply the transpose of `to_sections`: sums (..., N) of forces (..., N + 1) beyond each point."""
         return self.length * self.quadrature.transposed(forces)
 
     def from_all(self, forces: np.ndarray) -> np.ndarray:
-        """Apply the transpose of `to_all` to forces (..., N + 1 + k): (..., N)."""
+        """Apply the transpose of `to_all`: sums (..., N) of forces (..., N + 1 + k) beyond each point."""
         total = self.from_sections(forces[..., : self.sections])
         if self.lumps.size:
             total += self.length * forces[..., self.sections :] @ self._to_lumps
@@ -81,7 +81,7 @@ class BeamStations(FieldsOnly):
 
 @dataclass(frozen=True)
 class Masses:
-    """Masses at the stations; moments and positions are given in the axes of the undeformed beam.
+    """Masses at the stations of a beam, in the axes of its unloaded sections.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ class Masses:
         return bool(self.inertia.any())
 
     def turned(self, R: np.ndarray, positions: np.ndarray) -> MassesInSpace:
-        """The masses at positions (..., 3, N + 1 + k) of the axis, turned by R (..., 3, 3, N + 1)."""
+        """Place the masses at positions (..., 3, N + 1 + k) of the axis, turned by R (..., 3, 3, N + 1)."""
         levers = np.zeros_like(positions)
         levers[..., : self.centre.shape[1]] = turn(R, self.centre)
         inertia = np.zeros((*R.shape[:-1], len(self.mass)))
@@ -114,14 +114,14 @@ class Masses:
 
 @dataclass(frozen=True)
 class StationForces:
-    """Forces on the stations and how they follow a motion: (F, M) = force + tangent (X, W).
+    """Forces on the stations and their change with a small motion: (F, M) = force + tangent (X, W).
 
     Parameters
     ----------
     force : ndarray, shape (6, N + 1 + k)
         Forces [N] and moments [N m].
     tangent : ndarray, shape (6, 6, N + 1 + k)
-        Their derivatives by displacements and rotations.
+        Derivatives of forces and moments by displacements and rotations of the stations.
     """
 
     force: np.ndarray
@@ -130,9 +130,9 @@ class StationForces:
 
 @dataclass(frozen=True)
 class MassesInSpace:
-    """Masses at their places in space: mass m, centre c = axis + lever, tensor of inertia I about it.
+    """Masses on a deformed beam: mass m, centre c = axis + lever, tensor of inertia I about the centre.
 
-    Their inertial forces are mass times acceleration, and the rate of angular momentum, with the sign of the
+    Inertial forces are mass times acceleration, and the rate of angular momentum, with the sign of the
     left-hand side of the equations of motion.
 
     Parameters
@@ -162,19 +162,19 @@ class MassesInSpace:
 
     @cached_property
     def matrix(self) -> np.ndarray:
-        """Mass matrices (6, 6, N + 1 + k)."""
+        """Compute the mass matrices (6, 6, N + 1 + k) of the stations."""
         return self._of_centre(np.eye(3), self.inertia)
 
     def centrifugal(self, axis: np.ndarray) -> StationForces:
-        """Inertial forces per squared speed of a rotation about a unit axis (3,), and their derivatives."""
+        """Compute inertial forces per squared speed about a unit axis (3,), and their derivatives."""
         return self.carried(axis, speed_squared=1.0)
 
     def euler(self, axis: np.ndarray) -> StationForces:
-        """Inertial forces per angular acceleration about an axis (3,), and their derivatives."""
+        """Compute the inertial forces per angular acceleration about an axis (3,), and their derivatives."""
         return self.carried(axis, acceleration=1.0)
 
     def translated(self, direction: np.ndarray) -> StationForces:
-        """Inertial forces per acceleration of the root in a direction (3,), and their derivatives."""
+        """Compute inertial forces per acceleration of the root in a direction (3,), and derivatives."""
         return self.carried(np.zeros(3), root=direction)
 
     def carried(
@@ -184,7 +184,7 @@ class MassesInSpace:
         acceleration: float = 0.0,
         root: np.ndarray = np.zeros(3),  # noqa: B008  (it is not changed)
     ) -> StationForces:
-        """Inertial forces by a carrier that turns about an axis (3,) and moves the root, and derivatives.
+        """Compute the inertial forces on a carrier that rotates about an axis (3,) and moves the root.
 
         With B = speed_squared axis x + acceleration, masses are accelerated by B (axis x c) and the root's
         acceleration (3,), and the angular momentum I axis about their centres changes by B (I axis).
@@ -194,7 +194,9 @@ class MassesInSpace:
         A, momentum, turning = B @ about, None, np.zeros((3, 3, 1))
         if self.turns:
             momentum = np.einsum("abj,b->aj", self.inertia, axis)
-            change = np.einsum("abj,bc->acj", self.inertia, about) - skew(momentum)  # d(I axis) by W
+            change = np.einsum("abj,bc->acj", self.inertia, about) - skew(
+                momentum
+            )  # derivative by a rotation
             turning = np.tensordot(B, change, 1)
         tangent = self._of_centre(A, turning)
         forces = self._with_levers(self.mass * (A @ self.centre + root[:, None]), tangent)
@@ -203,14 +205,18 @@ class MassesInSpace:
         return forces
 
     def _with_levers(self, F: np.ndarray, tangent: np.ndarray) -> StationForces:
-        """Forces at the centres, with their moments about the axis, which change as the levers turn."""
+        """Add to forces at the mass centres their moments about the axis, with their derivatives."""
         if self.has_levers:
             tangent[3:, 3:] += np.einsum("abj,bcj->acj", skew(F), skew(self.lever))
         moments = cross(self.lever, F) if self.has_levers else np.zeros_like(F)
         return StationForces(np.concatenate([F, moments]), tangent)
 
     def _of_centre(self, A: np.ndarray, turning: np.ndarray) -> np.ndarray:
-        """Matrices (6, 6, N + 1 + k) of forces m A (displacement of the centre) and moments turning W."""
+        """Build matrices (6, 6, N + 1 + k) of forces and moments by displacements and rotations.
+
+        The forces are the mass times A times the displacement of the mass centre, the moments `turning` times
+        the rotation of the section; both are taken about the axis.
+        """
         matrix = np.zeros((6, 6, len(self.mass)))
         matrix[:3, :3] = A[..., None] * self.mass
         matrix[3:, 3:] = turning

@@ -1,4 +1,4 @@
-"""Bending, with its sections normal to the axis, and shear (Timoshenko), each in two directions.
+"""Fields of bending, with sections normal to the axis, and of shear (Timoshenko), in two directions each.
 
 The deflection is u = u_b + u_s, with the sections' rotation u_b'.  Shear is thus a field that vanishes at
 the root like the stretch; there is no locking, and the slender beam is the exact limit.
@@ -27,7 +27,7 @@ from beamdyn.scene.sections import section_tensor
 
 
 class Bending(TransverseField):
-    """Bending in the direction of the bending angle, which every scene has."""
+    """Bending in the direction of the bending angle: the field that every scene has."""
 
     name = "bending"
     direction = 0
@@ -40,7 +40,7 @@ class Bending(TransverseField):
     }
 
     def complete(self, scene: Scene) -> Scene:
-        """Add a tip body, damping, springs at the root, and angles at which no term vanishes."""
+        """Return the scene with tip body, damping, springs and angles that make every term present."""
         body = TipMass(1.0, inertia=1.0, transverse_inertia=0.8, axial_inertia=0.5)
         mount = Mount(1.0, math.pi, 1.0, root_stiffness=1.0, second_root_stiffness=1.0, precone=0.5)
         springs = (PointSpring(scene.beam.length, scene.beam.bending_stiffness(np.zeros(1))[0]),)
@@ -48,22 +48,22 @@ class Bending(TransverseField):
         return replace(scene.undamped, beam=beam, mount=mount, damping_ratio=0.5)
 
     def conditions(self, mount: Mount) -> RootConditions:
-        """Clamped, or hinged where a spring holds the root."""
+        """Return the conditions at the root: clamped, or hinged where a spring holds the root."""
         at_root = HINGED if math.isfinite(mount.root_stiffnesses[self.direction]) else CLAMPED
         return at_root._replace(stiffness="bending_stiffness", direction=self.direction)
 
     def stiffening(self, section: Rectangle, length: float) -> Profile:
-        """Bending stiffness of sections that keep their shape over that of sections that camber."""
+        """Compute the ratio of the bending stiffness of sections that keep their shape to cambering ones."""
         return section.camber_stiffening
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
-        """Yield bending stiffness and root spring."""
+        """Yield the bending stiffness and the spring at the root."""
         stiffness = section_tensor(pair.rows.beam, "bending_stiffness").get(pair.directions)
         if stiffness is not None:
             scene = pair.rows.scene
             if scene.physics.camber:
-                assert scene.beam.section is not None, "a scene with camber has a section"
-                stiffness = stiffness * self.stiffening(scene.beam.section, scene.beam.length)
+                assert scene.beam.strip is not None, "a scene with camber has a section"
+                stiffness = stiffness * self.stiffening(scene.beam.strip, scene.beam.length)
             yield pair.term("bending stiffness", pair.integrate(stiffness, 2))
         spring = pair.rows.scene.mount.root_stiffnesses[self.direction]
         if pair.rows is pair.columns and math.isfinite(spring):
@@ -72,7 +72,7 @@ class Bending(TransverseField):
 
 
 class SecondBending(Bending):
-    """Bending in the direction across, where both planes are modelled."""
+    """Bending in the direction across, for scenes with both planes."""
 
     name = "second bending"
     direction = 1
@@ -80,7 +80,7 @@ class SecondBending(Bending):
     partners = (*Bending.partners, Bending())
 
     def stiffening(self, section: Rectangle, length: float) -> Profile:
-        """Bending stiffness at a root that keeps the shape of sections, over that of free ones."""
+        """Compute the ratio of bending stiffness near a clamped root, which keeps shape, to free."""
         return section.stiffening_across(length)
 
 
@@ -98,18 +98,18 @@ class Shear(TransverseField):
     }
 
     def conditions(self, mount: Mount) -> RootConditions:
-        """No deflection at the root."""
+        """Return the conditions at the root: no shear deflection."""
         return FIXED._replace(stiffness="shear_stiffness", direction=self.direction)
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
-        """Yield the shear stiffness of shear with shear."""
+        """Yield the shear stiffness between two shear fields."""
         stiffness = section_tensor(pair.rows.beam, "shear_stiffness").get(pair.directions)
         if stiffness is not None and not pair.rows.field.rotates:
             yield pair.term("shear stiffness", pair.integrate(stiffness, 1))
 
 
 class SecondShear(Shear):
-    """Shear deflection in the direction across, where shear and both planes are modelled."""
+    """Shear deflection in the direction across, for scenes with shear and both planes."""
 
     name = "second shear"
     direction = 1

@@ -44,7 +44,7 @@ class Term:
     factor: float = 1.0
 
     def coefficient(self, root: RootMotion) -> np.ndarray:
-        """Its coefficient at the times of `root`."""
+        """Compute factor times quantity at the times of the root's motion."""
         return self.factor * getattr(root, self.quantity)
 
 
@@ -59,13 +59,13 @@ class Load:
     factor: float = 1.0
 
     def coefficient(self, root: RootMotion) -> np.ndarray:
-        """Its coefficient at the times of `root`."""
+        """Compute factor times quantity at the times of the root's motion."""
         return self.factor * getattr(root, self.quantity)
 
 
 @dataclass(frozen=True)
 class Deflection:
-    """Transverse deflection of the beam by a field: its trial functions, and their loads.
+    """Transverse deflection of the beam by one field: its trial functions, and the loads on them.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Deflection:
     P : ndarray, shape (n,)
         Load under a unit root acceleration in the direction of the deflection [kg].
     Q, Q_across : ndarray, shape (n,)
-        Loads under a unit angular acceleration in its plane, and in that of the other direction [kg m].
+        Loads under a unit angular acceleration in the plane of the deflection, and in the other plane [kg m].
     direction : int
         0 for deflection in the direction of the bending angle, 1 for the direction across.
     """
@@ -91,12 +91,12 @@ class SectionFunctions(Protocol):
 
     @property
     def of_each(self) -> int:
-        """Number of coordinates of each function across; those of the last come last."""
+        """Number of coordinates of each function across the width, which are consecutive."""
         ...
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection at the corner of the tip in the direction across (n,), to any scale."""
+        """Deflection per coordinate (n,) at the tip's corner in the direction across, up to a scale."""
         ...
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
@@ -104,21 +104,21 @@ class SectionFunctions(Protocol):
         ...
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate the second derivatives by 2 y/b at x/L (k,), as means over the width: shape (n, k)."""
+        """Evaluate second derivatives by 2 y/b at x/L (k,), averaged over the width: shape (n, k)."""
         ...
 
 
 class Coordinates(Protocol):
-    """What the equations of motion ask of the functions of a field; a `Space` has more."""
+    """Functions of a field as far as the equations of motion use them; a `Space` offers more."""
 
     @property
     def size(self) -> int:
-        """Number of functions."""
+        """Number of trial functions."""
         ...
 
     @property
     def coarse(self) -> np.ndarray | None:
-        """Indices of functions that span those of the coarser discretization; None where no few do."""
+        """Indices of functions that span the coarser discretization; None where no subset does."""
         ...
 
 
@@ -151,7 +151,7 @@ class FieldEquations:
 
 
 class Field(ABC):
-    """Base class of fields.
+    """Base class of fields: unknown functions along the beam, such as bending.
 
     In order to add a field, write a subclass in a module of its own in `beamdyn.equations.fields`, and
     name it in the list `FIELDS` there:
@@ -186,7 +186,7 @@ class Field(ABC):
         return all(getattr(scene.physics, name) == value for name, value in self.requires.items())
 
     def complete(self, scene: Scene) -> Scene:
-        """Extend the scene so that every term of this field is present: by default it is."""
+        """Extend the scene so that every term of this field is present; by default it is unchanged."""
         return scene
 
     @abstractmethod

@@ -1,4 +1,4 @@
-"""Names of the terms and loads that offsets of sections add, by the quantity that multiplies them."""
+"""Names of the terms and loads that offsets of section centres add, by the quantity that multiplies each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What offsets of the sections' centres add: coupling of torsion with bending, and loads.
+"""Offsets of the sections' centres from the axis: their coupling of torsion with bending, and their loads.
 
 The axis of the beam is the line of the sections' shear centres.  The centre of mass lies at c beside it,
 that of tension, about which the section bends, at t; both have components along e1 and e2.  A section that
@@ -42,22 +42,22 @@ from beamdyn.scene.profile import FRACTION, ONE, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import offset_components
 
-_C, _T = 0, 2  # first components of c and of t, among those of both
-_TURN = 2  # number of the rotation by torsion, after the tilts towards e1 and e2
+_C, _T = 0, 2  # index of the first component of c, and of t, in arrays of both
+_TURN = 2  # index of the rotation by torsion, after the tilts towards e1 and e2
 
 
 @dataclass(frozen=True)
 class SectionMotion:
-    """A displacement of the axis, or a rotation of the sections, by a field.
+    """Motion of the sections by a field: a displacement of the axis or a rotation.
 
     Parameters
     ----------
     field : str
         Name of the field.
     conditions : RootConditions
-        Conditions of its functions at the root.
+        Conditions that the field's functions satisfy at the root.
     at_tip : ndarray, shape (n,)
-        Its value at the tip body's place on the axis, per coordinate.
+        Value of the motion at the tip body's place on the axis, per coordinate.
     along : int or None
         Direction of the displacement: 0, 1, 2 for b1, e1, e2; None for a rotation.
     rotation : int or None
@@ -72,19 +72,19 @@ class SectionMotion:
 
     @property
     def order(self) -> int:
-        """Order of the derivative of the functions by x: 1 for a tilt."""
+        """Order of the derivative of the functions by x that the motion is: 1 for a tilt, else 0."""
         return int(self.rotation in (0, 1))
 
     @cached_property
     def on_axis(self) -> np.ndarray:
-        """Displacement of the axis along b1, e1, e2: shape (3,)."""
+        """Displacement of the axis along b1, e1, e2 by a unit motion: shape (3,)."""
         return np.zeros(3) if self.along is None else np.eye(3)[self.along]
 
     @cached_property
     def beside(self) -> np.ndarray:
-        """Displacement of the centre of mass beyond that, per component of c and t: shape (3, 4)."""
+        """Displacement of the centre of mass relative to the axis, per component of c and t: shape (3, 4)."""
         moved = np.zeros((3, 4))
-        if self.rotation == _TURN:  # K c
+        if self.rotation == _TURN:  # the displacement is K c, symbols as in the docstring of this module
             moved[1, _C + 1], moved[2, _C] = 1.0, -1.0
         elif self.rotation is not None:
             moved[0, _C + self.rotation], moved[0, _T + self.rotation] = -1.0, 1.0
@@ -92,12 +92,12 @@ class SectionMotion:
 
 
 def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
-    """Second derivative of the displacement of the centre of mass by two rotations: shape (3, 4)."""
+    """Compute the second derivative of the mass centre's displacement by two rotations: shape (3, 4)."""
     i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
     assert i is not None and j is not None, "both are rotations"
     if i == j == _TURN:
         moved[1, _C] = moved[2, _C + 1] = -1.0
-    elif _TURN in (i, j):  # -K c along the beam
+    elif _TURN in (i, j):  # the displacement is -K c along the beam
         tilt = min(i, j)
         moved[0, _C + 1 - tilt] = 2.0 * tilt - 1.0
     else:
@@ -111,7 +111,10 @@ def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
 
 @lru_cache(maxsize=256)
 def _moment(beam: Beam, component: int, power: int) -> Profile | None:
-    """Mass per length times a component of c or t and a power of x [kg, kg m]; None for 0."""
+    """Compute mass per length times an offset and a power of x [kg, kg m]; None if it is 0.
+
+    The offset is one of the four components of c and t, the centres of mass and of tension.
+    """
     offset = offset_components(beam)[component]
     first = offset and beam.mass_per_length * offset
     return first and (first * FRACTION).scaled(beam.length) if power else first
@@ -119,12 +122,12 @@ def _moment(beam: Beam, component: int, power: int) -> Profile | None:
 
 @lru_cache(maxsize=64)
 def _pulled(beam: Beam) -> list[list[Profile | None]]:
-    """Mass outboard, without x and with it, times each component of t [kg m, kg m2]."""
+    """Compute the mass outboard, and its first moment, times offsets of the tension centre [kg m, kg m2]."""
     return [[t and outboard * t for t in offset_components(beam)[_T:]] for outboard in axial_tension(beam)]
 
 
 class _CoupledMatrix(NamedTuple):
-    """A matrix over the coordinates of two motions, with its transpose times a sign where they are two."""
+    """A matrix over the coordinates of two motions, which the equations of both use with a sign."""
 
     rows: str
     columns: str
@@ -134,7 +137,7 @@ class _CoupledMatrix(NamedTuple):
     mirrored: float = 1.0
 
     def placed(self) -> Iterator[tuple[tuple[str, str, Quantity, int], np.ndarray]]:
-        """Yield the matrix, and that of the columns' equations, each with its place."""
+        """Yield the matrix and, for two motions, its transpose times the sign, each with its place."""
         yield (self.rows, self.columns, self.quantity, self.order), self.matrix
         if self.mirrored:
             place = self.columns, self.rows, self.quantity, self.order
@@ -143,7 +146,7 @@ class _CoupledMatrix(NamedTuple):
 
 @dataclass(frozen=True)
 class Offsets:
-    """The terms of offsets of a scene over function spaces.
+    """Terms and loads by offsets of a scene's sections, over function spaces.
 
     Parameters
     ----------
@@ -152,11 +155,11 @@ class Offsets:
     spaces : Spaces
         Function spaces on the beam.
     turn : SectionMotion
-        The turn by torsion.
+        Rotation of the sections by torsion.
     trials : sequence of Trial
         Fields that deflect the beam.
     stretched : sequence of SectionMotion
-        Displacement along the beam, where stretch is modelled.
+        Displacement along the beam; empty unless stretch is modelled.
     """
 
     scene: Scene
@@ -168,12 +171,12 @@ class Offsets:
 
     @cached_property
     def tilting(self) -> list[Trial]:
-        """The fields that tilt the sections."""
+        """Fields that tilt the sections, by bending."""
         return [trial for trial in self.trials if trial.field.rotates]
 
     @cached_property
     def motions(self) -> list[SectionMotion]:
-        """All motions of the sections."""
+        """All motions of the sections: displacements, tilts and the rotation by torsion."""
         moved = [
             SectionMotion(t.field.name, t.conditions, t.centre, along=1 + t.field.direction)
             for t in self.trials
@@ -186,13 +189,13 @@ class Offsets:
 
     @cached_property
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
-        """B and P, along b1, e1, e2."""
+        """Matrices of Coriolis and Euler acceleration (B), and of centrifugal (P), along b1, e1, e2."""
         a = np.array([exact_cos_sin(self.scene.mount.precone)[1], *axis_in_section(self.scene)])
         return -np.cross(a, np.eye(3)).T, np.eye(3) - np.outer(a, a)
 
     @cached_property
     def accelerations(self) -> list[tuple[Quantity, np.ndarray, int]]:
-        """Acceleration of the axis by each quantity: a vector, times x to a power, 0 or 1."""
+        """Accelerations of the axis by each quantity: a vector, times x to the power 0 or 1."""
         (B, P), (along, first, second) = self.frame, np.eye(3)
         return [
             ("root_axial", along, 0),
@@ -204,7 +207,7 @@ class Offsets:
 
     @cached_property
     def _parametric(self) -> list[tuple[Quantity, np.ndarray, int]]:
-        """The accelerations that change the stiffness: only along the beam if none is across it."""
+        """Accelerations of the axis that change the stiffness; only axial ones if none is transverse."""
         scene = self.scene
         steady = scene.motion is None or isinstance(scene.motion, SteadyRotation)
         if steady and not scene.gravity and not aligned_cos_sin(scene.mount.setting_angle)[1]:
@@ -213,18 +216,18 @@ class Offsets:
 
     @cached_property
     def _beside_axis(self) -> list[tuple[Quantity, np.ndarray]]:
-        """Acceleration (3, 4) of the centre of mass relative to the axis, per component of c and t."""
+        """Accelerations (3, 4) of the mass centre relative to the axis, per component of c and t."""
         (B, P), none = self.frame, np.zeros((3, 2))
         return [
             ("acceleration", np.hstack([B[:, 1:], none])),
             ("speed_squared", np.hstack([-P[:, 1:], none])),
         ]
 
-    # Moments of the mass and integrals ----------------------------------------------------------------
+    # Moments of the mass, and integrals ---------------------------------------------------------------
 
     @cached_property
     def _tip(self) -> tuple[TipMass, np.ndarray]:
-        """Tip body, and the components of c and t there (4,) [m]."""
+        """Tip body, and the offsets there of the centres of mass, its own, and of tension (4,) [m]."""
         beam = self.scene.modelled_beam
         tip, twist = beam.tip or TipMass(0.0), beam.tip_twist
         of_tension = [
@@ -234,21 +237,21 @@ class Offsets:
         return tip, np.array([*of_mass, *of_tension])
 
     def _of_tip(self, coefficients: np.ndarray, power: int) -> float:
-        """Sum moments of the tip body with coefficients of c and t (4,)."""
+        """Compute the tip body's mass times coefficients of c and t (4,) and a power of its position."""
         (tip, components), length = self._tip, self.scene.beam.length
         if not tip.mass:
             return 0.0
         return float(tip.mass * (length + tip.offset) ** power * (coefficients @ components))
 
     def _of_sections(self, coefficients: np.ndarray, power: int) -> Iterator[tuple[float, Profile]]:
-        """Yield the moments of the sections, each with its coefficient, that are not 0."""
+        """Yield nonzero moments of the sections by component of c and t (4,), each with its coefficient."""
         beam = self.scene.modelled_beam
         for component, value in enumerate(coefficients.tolist()):
             if value and (moment := _moment(beam, component, power)) is not None:
                 yield value, moment
 
     def _outboard(self, coefficients: np.ndarray, power: int) -> Profile | None:
-        """Sum of the moments outboard of each section, with coefficients of c and t (4,); None if 0."""
+        """Sum the moments outboard of each section, with coefficients of c and t (4,); None if 0."""
         of_tip, length = self._of_tip(coefficients, power), self.scene.beam.length
         parts = [moment.scaled(value * length) for value, moment in self._of_sections(coefficients, power)]
         outboard = [part.outboard_integral() for part in parts] + [ONE.scaled(of_tip)] * bool(of_tip)
@@ -257,7 +260,7 @@ class Offsets:
     def _integrate(
         self, rows: SectionMotion, columns: SectionMotion, coefficients: np.ndarray, power: int
     ) -> np.ndarray | None:
-        """Integrate two motions over the mass times components of c and t and a power of x; None if 0."""
+        """Integrate products of two motions over mass, offsets c and t, and a power of x; None if 0."""
         orders = rows.order, columns.order
         found = [
             value * self._along(moment, rows.conditions, columns.conditions, orders)
@@ -270,7 +273,7 @@ class Offsets:
     def _along(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int]
     ) -> np.ndarray:
-        """Integrate over x derivatives by x of two sets of functions; each integral is computed once."""
+        """Integrate a weight times derivatives by x of two sets of functions; integrals are cached."""
         key = weight, rows, columns, orders
         if key not in self._known:
             scale = self.scene.beam.length ** (1 - sum(orders))
@@ -280,7 +283,7 @@ class Offsets:
     # Terms --------------------------------------------------------------------------------------------
 
     def terms(self) -> Iterator[Term]:
-        """Yield the terms; those of one name and place are summed."""
+        """Yield the terms by offsets, summed over those of the same name and place."""
         sums: dict[tuple[str, str, Quantity, int], np.ndarray] = {}
         parts = self._moved, self._carried, self._drawn_in, self._sheared, self._turned, self._tightened
         for part in chain.from_iterable(each() for each in parts):
@@ -290,7 +293,7 @@ class Offsets:
             yield Term(NAMES[quantity, order], rows, columns, order, matrix, quantity)
 
     def _moved(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the acceleration of what two motions move, each to first order."""
+        """Yield inertia, Coriolis, Euler and centrifugal matrices of first-order displacements."""
         B, P = self.frame
         kinds: list[tuple[np.ndarray, float, list[tuple[Quantity, int, float]]]] = [
             (np.eye(3), 1.0, [("unity", 2, 1.0)]),
@@ -304,7 +307,7 @@ class Offsets:
             moved = one_way + mirrored * one_way.swapaxes(0, 1)
             for a, b in zip(*np.nonzero(np.triu(moved.any(axis=2), 1)), strict=True):
                 rows, columns = self.motions[a], self.motions[b]
-                if mirrored < 0 and rows.order + columns.order:  # of a tilt
+                if mirrored < 0 and rows.order + columns.order:  # the mirrored matrix couples a tilt
                     continue
                 if (found := self._integrate(rows, columns, moved[a, b], 0)) is not None:
                     for quantity, order, factor in uses:
@@ -313,7 +316,7 @@ class Offsets:
                         )
 
     def _carried(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the acceleration of the axis on what rotations move to second order."""
+        """Yield the work of the axis' acceleration on second-order displacements by rotations."""
         rotations = [motion for motion in self.motions if motion.rotation is not None]
         for rows, columns in combinations_with_replacement(rotations, 2):
             for quantity, vector, power in self._parametric:
@@ -323,7 +326,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field, columns.field, quantity, 0, found, mirrored)
 
     def _drawn_in(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the axial force as bending and torsion draw in the line of centres of tension."""
+        """Yield the work of the axial force as bending and torsion shorten the line of centres of tension."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for trial in self.trials if vector[0] else ():
@@ -353,7 +356,7 @@ class Offsets:
                     yield _CoupledMatrix(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
 
     def _tightened(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the axial force by what lies beside the axis, on the slopes of the beam."""
+        """Yield the work of the axial force from masses off the axis on the slopes of the beam."""
         ahead = self._tip[0].offset
         parametric = [quantity for quantity, _, _ in self._parametric]
         for quantity, matrix in self._beside_axis:
@@ -370,7 +373,7 @@ class Offsets:
     # Loads --------------------------------------------------------------------------------------------
 
     def loads(self) -> Iterator[Load]:
-        """Yield the loads by the accelerations of the axis and of what lies beside it."""
+        """Yield the loads by accelerations of the axis, and of the mass centres relative to the axis."""
         sums: dict[tuple[str, Quantity], np.ndarray] = {}
         for motion in self.motions:
             for quantity, coefficients, power in self._accelerated(motion):
@@ -394,7 +397,7 @@ class Offsets:
     def _accelerated(self, motion: SectionMotion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
         """Yield coefficients of c and t (4,) in the work on a motion, with the power of x.
 
-        The axial force acts at the centre of tension; what it does there stands apart.
+        The work of the axial force, which acts at the centre of tension, is a load of its own.
         """
         of_mass = motion.beside * np.array([1.0, 1.0, 0.0, 0.0])
         for quantity, vector, power in self.accelerations:
@@ -403,5 +406,5 @@ class Offsets:
             yield quantity, motion.on_axis @ matrix, 0
 
     def _load(self, weight: Profile, conditions: RootConditions, order: int) -> np.ndarray:
-        """Integrate over x derivatives by x of functions."""
+        """Integrate a weight times derivatives by x of functions with given root conditions: shape (n,)."""
         return self.spaces.functions(conditions).load(weight, order) * self.scene.beam.length ** (1 - order)

@@ -39,13 +39,13 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
 _NAME = "torsion"
-_TURNED = FIXED._replace(stiffness="torsion_stiffness")  # at the root
+_TURNED = FIXED._replace(stiffness="torsion_stiffness")  # conditions of torsion at the root
 _WARPED = CLAMPED._replace(stiffness="warping_stiffness")
 
 
 @dataclass(frozen=True)
 class TurnedSections:
-    """Deflection of sections of unknown width that turn by the functions along the beam.
+    """Deflection of twisting sections of unknown width: the torsion functions along the beam.
 
     Parameters
     ----------
@@ -57,20 +57,20 @@ class TurnedSections:
 
     @property
     def of_each(self) -> int:
-        """Number of coordinates of each function across."""
+        """Number of coordinates of each function across, which are consecutive."""
         return self.along.size
 
     @property
     def corner(self) -> np.ndarray:
-        """Twist at the tip (n,), as which a corner deflects."""
+        """Twist at the tip per coordinate (n,), which stands for the deflection of a corner."""
         return self.along.end(0)
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """None: the sections keep their shape."""
+        """Return zeros: twisting sections keep their shape."""
         return np.zeros((self.along.size, len(xi)))
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Refuse a surface: a ValueError, as the width is not known."""
+        """Raise a ValueError: no surface can be drawn, as the width of the section is not known."""
         raise ValueError("the width of the sections is not known, but that of beams by Beam.rectangular")
 
 
@@ -79,7 +79,7 @@ def assemble_section_torsion(
 ) -> FieldEquations:
     """Assemble torsion of a beam with a torsional stiffness and two rotary inertias.
 
-    Offsets couple it with the partners, the fields that deflect the beam, and with a stretch that has the
+    Offsets couple torsion with the partners (fields that deflect the beam), and with a stretch that has the
     conditions given at the root.
     """
     beam = scene.modelled_beam
@@ -100,7 +100,7 @@ def assemble_section_torsion(
 
 
 def _terms(scene: Scene, space: Space) -> Iterator[Term]:
-    """Yield the terms of torsion alone."""
+    """Yield the terms of torsion, without coupling to other fields."""
     beam, L, tip = scene.modelled_beam, scene.beam.length, _tip_body(scene)
     (a1, a2), (cosine, _) = axis_in_section(scene), exact_cos_sin(scene.mount.precone)
     turn, (polar, broad, oblique) = np.outer(space.end(0), space.end(0)), _inertias(beam)
@@ -124,12 +124,9 @@ def _terms(scene: Scene, space: Space) -> Iterator[Term]:
 
 
 def _loads(scene: Scene, space: Space) -> Iterator[Load]:
-    """Yield the loads on torsion alone."""
-    beam, (_, broad, oblique), (a1, a2) = (
-        scene.modelled_beam,
-        _inertias(scene.modelled_beam),
-        axis_in_section(scene),
-    )
+    """Yield the loads on torsion, without those of offsets."""
+    beam, (a1, a2) = scene.modelled_beam, axis_in_section(scene)
+    _, broad, oblique = _inertias(beam)
     L, B = beam.length, centrifugal_inertia(_tip_body(scene), beam.tip_twist)
     turned = L * space.load(broad) + (B[0, 0] - B[1, 1]) * space.end(0)
     yield Load("twisting by rotation", _NAME, turned, "speed_squared", -a1 * a2)
@@ -146,22 +143,22 @@ def _loads(scene: Scene, space: Space) -> Iterator[Load]:
 
 
 def _tip_body(scene: Scene) -> TipMass:
-    """The body at the tip, with moments of inertia about the axis of the beam."""
+    """Return the body at the tip, with moments of inertia about the axis of the beam."""
     return (scene.beam.tip or TipMass(0.0)).about(0.0)
 
 
 @lru_cache(maxsize=64)
 def _inertias(beam: Beam) -> tuple[Profile, Profile, Profile | None]:
-    """R11 + R22, R22 - R11, and R12 if it is not 0: about the shear centre, about which sections turn."""
+    """Compute R11 + R22, R22 - R11, and R12 if it is not 0, about the shear centre, where sections turn."""
     R = section_tensor(replace(beam, tension_offset=None), "rotary_inertia")
     return R[0, 0] + R[1, 1], R[1, 1] + R[0, 0].scaled(-1.0), R.get((0, 1))
 
 
 @lru_cache(maxsize=64)
 def _pulled_straight(beam: Beam) -> list[Profile]:
-    """Tension per root acceleration and per squared speed times the squared radius of the pulled fibres.
+    """Compute tension per root acceleration and per squared speed, times the fibres' squared radius.
 
-    They are taken to be where the mass is, about the centre of tension.
+    The fibres are taken to be distributed as the mass is, about the centre of tension.
     """
     R1, R2 = beam.rotary_inertia, beam.second_rotary_inertia
     assert R1 is not None and R2 is not None, "a scene with torsion has its properties"
@@ -171,5 +168,5 @@ def _pulled_straight(beam: Beam) -> list[Profile]:
 
 
 def _term(name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0) -> Term:
-    """A stiffness of torsion."""
+    """Build a stiffness term of torsion."""
     return Term(name, _NAME, _NAME, 0, matrix, quantity, factor)

@@ -19,11 +19,11 @@ from beamdyn.scene.beam import TipMass
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene
 
-STRETCHED = FIXED._replace(stiffness="axial_stiffness")  # at the root
+STRETCHED = FIXED._replace(stiffness="axial_stiffness")  # conditions of the stretch at the root
 
 
 class Stretch(Field):
-    """Axial stretch of the beam."""
+    """Field of the axial stretch of the beam."""
 
     name = "stretch"
     partners: ClassVar[tuple[TransverseField, ...]] = (*SecondShear.partners, SecondShear())
@@ -56,7 +56,7 @@ class Stretch(Field):
     }
 
     def complete(self, scene: Scene) -> Scene:
-        """Set `physics.stretch`, and an axial stiffness if there is none."""
+        """Return the scene with `physics.stretch`, and with an axial stiffness if it has none."""
         stiffness = scene.beam.axial_stiffness or scene.beam.bending_stiffness
         beam, physics = replace(scene.beam, axial_stiffness=stiffness), replace(scene.physics, stretch=True)
         return replace(scene, beam=beam, physics=physics)
@@ -64,7 +64,7 @@ class Stretch(Field):
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
         """Assemble eqs. (13) of Lee and Yoo (2019), and the coupling in (14).
 
-        They have the mass M11 (15), the axial stiffness KS (16), its softening by spin, the loads (20), (21).
+        The terms are mass M11 (15), axial stiffness KS (16), its spin softening, and the loads (20), (21).
         """
         s, beam, space = self.name, scene.beam, spaces.functions(STRETCHED)
         tip = beam.tip or TipMass(0.0)
@@ -89,7 +89,10 @@ class Stretch(Field):
 
 
 def _coupling(trial: Trial) -> list[Term]:
-    """Coupling, by the mass M12 (15), with a deflection in the plane, or by precone any."""
+    """Couple the stretch with a deflection in the plane of rotation, or with any under precone.
+
+    The coupling is by the mass matrix M12 of eq. (15) of Lee and Yoo (2019).
+    """
     b, s, beam, i = trial.field.name, Stretch.name, trial.beam, trial.field.direction
     by_beam = product_by_mass(beam, trial.spaces, STRETCHED, trial.conditions)
     M12 = by_beam + trial.tip.mass * np.outer(trial.spaces.functions(STRETCHED).end(0), trial.centre)

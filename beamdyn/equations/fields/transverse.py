@@ -1,4 +1,4 @@
-"""Fields that deflect the beam transversely, and the terms that each pair of them has in common.
+"""Fields that deflect the beam transversely, and the terms that each pair of these fields shares.
 
 The deflection is u2 = sum d_i v_i in the plane of rotation and u3 = sum n_i v_i out of it, over the fields
 v_i, each of which bends or shears the beam in one of two directions e1, e2 fixed to the root:
@@ -49,7 +49,7 @@ _ROOT_ACCELERATIONS: tuple[Quantity, Quantity] = "root_transverse", "root_across
 
 @dataclass(frozen=True)
 class Trial:
-    """Trial functions of a transverse field of a scene, and what is evaluated of them at the tip.
+    """Trial functions of a transverse field of a scene, with their values at the tip.
 
     Symbols are those of docs/conventions.md.
 
@@ -87,7 +87,7 @@ class Trial:
 
     @classmethod
     def of(cls, field: TransverseField, scene: Scene, spaces: Spaces) -> Trial:
-        """Trial functions of a field over function spaces."""
+        """Build the trial functions of a field over function spaces."""
         beam, conditions = scene.modelled_beam, field.conditions(scene.mount)
         tip, space = (beam.tip or _NO_BODY).about(beam.tip_tension_offset), spaces.functions(conditions)
         slope = space.end(1) / beam.length
@@ -96,13 +96,13 @@ class Trial:
         return cls(field, scene, spaces, beam, tip, conditions, space, rotation, centre)
 
     def loads(self) -> tuple[Deflection, list[Load]]:
-        """The deflection with its loads under unit accelerations, and the terms of the right-hand side."""
+        """Build the deflection with its loads under unit accelerations, and the loads of the equations."""
         beam, tip, space, i, name = self.beam, self.tip, self.space, self.field.direction, self.field.name
         (d, n), (cosine, sine) = plane_components(self.scene), exact_cos_sin(self.scene.mount.precone)
         sections = section_tensor(beam, "rotary_inertia") if self.field.rotates else {}
         P = load_by_mass(beam, space) + tip.mass * self.centre
         moment = first_moment_by_mass(beam, space) + tip.mass * (beam.length + tip.offset) * self.centre
-        tilting = []  # of sections and tip body, as the beam's end turns towards either direction
+        tilting = []  # angular accelerations tilt sections and tip body towards either direction
         for k, inertia in enumerate(tilting_inertia(tip, beam.tip_twist)[i]):
             load = inertia * self.rotation
             tilting.append(load + space.load(sections[i, k], 1) if (i, k) in sections else load)
@@ -124,18 +124,18 @@ class Trial:
 
 @dataclass(frozen=True)
 class Pair:
-    """Integrals of products of two transverse fields, which may be the same.
+    """Integrals of products of two transverse fields, which may be the same field.
 
     Parameters
     ----------
     rows, columns : Trial
         The trial functions.
     directions : tuple of int
-        Directions of the two.
+        Directions in which the two fields deflect the beam.
     rotate : bool
-        Whether both turn the sections.
+        Whether both fields turn the sections.
     tilts : ndarray, shape (n, m)
-        Products of the rotations D at the tip [1/m2].
+        Products of the two fields' rotations D at the tip [1/m2].
     """
 
     rows: Trial
@@ -146,7 +146,7 @@ class Pair:
 
     @classmethod
     def of(cls, rows: Trial, columns: Trial) -> Pair:
-        """Pair two fields."""
+        """Pair the trial functions of two fields, with the products of their rotations at the tip."""
         directions = rows.field.direction, columns.field.direction
         rotate = rows.field.rotates and columns.field.rotates
         return cls(rows, columns, directions, rotate, np.outer(rows.rotation, columns.rotation))
@@ -154,11 +154,11 @@ class Pair:
     def term(
         self, name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0, order: int = 0
     ) -> Term:
-        """Term of the equations of the first field by the coordinates of the second."""
+        """Build a term of the first field's equations that multiplies the second field's coordinates."""
         return Term(name, self.rows.field.name, self.columns.field.name, order, matrix, quantity, factor)
 
     def integrate(self, weight: Profile, *orders: int) -> np.ndarray:
-        """Integrate over x the weight times derivatives by x of the given order, or orders, of both."""
+        """Integrate over x a weight times derivatives of both fields by x, of one order or one each."""
         first, last = orders[0], orders[-1]
         length = self.rows.beam.length
         if self.rows is self.columns and first == last:
@@ -175,7 +175,7 @@ class Pair:
 
     @cached_property
     def translation(self) -> np.ndarray:
-        """Mass of the centres of gravity of sections, point masses and tip body [kg]."""
+        """Mass matrix of sections, point masses and tip body moving with their centres of gravity [kg]."""
         rows, columns = self.rows, self.columns
         lumps = product_at_lumps(rows.beam, rows.space, columns.space)
         by_mass = self.integrate(rows.beam.mass_per_length, 0) + lumps
@@ -187,7 +187,8 @@ class TransverseField(Field):
 
     direction: ClassVar[int]
     rotates: ClassVar[bool]
-    partners: ClassVar[tuple[TransverseField, ...]]  # the fields before this one, the first of all first
+    # The fields that precede this one in the list, the first field of all first.
+    partners: ClassVar[tuple[TransverseField, ...]]
     explanations: ClassVar[Mapping[str, Explanation]] = {
         "mass": Explanation("M22 q2''", why.say_mass),
         "rotary inertia of sections": Explanation("R22 q2''", "rotary inertia is modelled"),
@@ -229,7 +230,7 @@ class TransverseField(Field):
     }
 
     def conditions(self, mount: Mount) -> RootConditions:
-        """Conditions at the root."""
+        """Return the conditions at the root."""
         raise NotImplementedError
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
@@ -237,7 +238,7 @@ class TransverseField(Field):
         raise NotImplementedError
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
-        """Assemble eq. (14) of Lee and Yoo (2019), corrected, with tip body, and what goes beyond them."""
+        """Assemble eq. (14) of Lee and Yoo (2019), corrected, with the tip body and further effects."""
         own = Trial.of(self, scene, spaces)
         terms = [*_terms(Pair.of(own, own))]
         for partner in self.partners:
@@ -254,19 +255,19 @@ class TransverseField(Field):
 
 
 def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Components d on b2 and n on b3 of the directions e1, e2."""
+    """Compute components of the directions of bending e1 and e2: two along b2, then two along b3."""
     c, s = aligned_cos_sin(scene.mount.bending_angle)
     return (c, -s), (s, c)
 
 
 def axis_in_section(scene: Scene) -> tuple[float, float]:
-    """Components of the axis of rotation in the direction of bending at the root, and in that across."""
+    """Compute the axis of rotation's components in the direction of bending at the root, and across."""
     (c, s), (cosine, _) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
     return cosine * s, cosine * c
 
 
 def _terms(pair: Pair) -> Iterator[Term]:
-    """Yield mass and stiffness: of the sections, of springs, by tension and by rotation."""
+    """Yield mass and stiffness: elastic, of springs, by tension and by rotation."""
     rows, columns, (i, j) = pair.rows, pair.columns, pair.directions
     scene, beam, tip, sections = rows.scene, rows.beam, rows.tip, section_tensor(rows.beam, "rotary_inertia")
     cosine, sine = exact_cos_sin(scene.mount.precone)
@@ -292,7 +293,7 @@ def _terms(pair: Pair) -> Iterator[Term]:
 
 
 def _spin(pair: Pair, cosine: float, sine: float) -> Iterator[Term]:
-    """Work of rotation on masses that move in the plane of rotation, or tilt out of it, with a precone."""
+    """Yield the work of centrifugal forces on masses that move in the plane of rotation or tilt out of it."""
     (i, j), beam, (d, n) = pair.directions, pair.rows.beam, plane_components(pair.rows.scene)
     if softening := d[i] * d[j] + sine**2 * n[i] * n[j]:
         yield pair.term("spin softening", pair.translation, "speed_squared", -softening)
@@ -322,16 +323,16 @@ def _spin(pair: Pair, cosine: float, sine: float) -> Iterator[Term]:
             yield pair.term("twisting by inertia", matrix, "speed_squared", cosine**2 / 2)
 
 
-# What the part of the rotation about the beam adds, in both directions ----------------------------
+# Coupling by the part of the rotation about the beam (precone) --------------------------------------
 
 
 def _coriolis(pair: Pair) -> Iterator[Term]:
-    """Skew coupling of the directions, by Coriolis and Euler forces."""
+    """Yield the skew-symmetric coupling of the two directions by Coriolis and Euler forces."""
     _, sine = exact_cos_sin(pair.rows.scene.mount.precone)
     (i, j), tip = pair.directions, pair.rows.tip
     if not sine or i == j:
         return
-    # The second moment of the tip body along the beam: no matter how it is turned about it.
+    # The second moment of the tip body along the beam does not depend on its rotation about the beam.
     along = (tip.inertia + tip.inertia_about_bending_direction - tip.axial_inertia) / 2
     mass, across = pair.translation + along * pair.tilts, sine if i == 0 else -sine
     yield pair.term("Coriolis coupling of planes", mass, "speed", 2 * across, order=1)
@@ -339,9 +340,9 @@ def _coriolis(pair: Pair) -> Iterator[Term]:
 
 
 def _euler_of_turned(pair: Pair, sine: float) -> Iterator[Term]:
-    """Work of Euler forces on sections and tip body that bending tilts and turns about the beam.
+    """Yield the work of Euler forces on sections and tip body that bending tilts, and turns about the beam.
 
-    Of an inertia B it is that of the symmetric part of B T, with a quarter turn T about the beam.
+    The matrix is the symmetric part of B T, with the inertia B and a quarter turn T about the beam.
     """
     (i, j), beam, tip, T = pair.directions, pair.rows.beam, pair.rows.tip, _QUARTER_TURN
     turned = centrifugal_inertia(tip, beam.tip_twist) @ T

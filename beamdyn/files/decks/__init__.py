@@ -1,1 +1,1 @@
-"""Blades of other programs: read, audited, and written as a scene."""
+"""Blades of other programs: read, audited, and written as scenes."""

@@ -1,11 +1,11 @@
-"""What a deck amounts to: mass and its moments, steep steps, and its mode shapes beside ours."""
+"""Audit of a deck: mass and its moments, steep steps, and its mode shapes beside computed ones."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -21,9 +21,9 @@ from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene
 
 SHAPE_NAMES: Mapping[str, str] = {"flap 1": "BldFl1Sh", "flap 2": "BldFl2Sh", "edge 1": "BldEdgSh"}
-PLACES = np.linspace(0, 1, 401)  # x/L at which shapes are compared and fitted
+PLACES = np.linspace(0, 1, 401)  # positions x/L at which shapes are compared and fitted
 _POWERS = np.arange(2, 7)
-_TOLERANCE = 1e-6  # tolerance of the frequencies of the shapes
+_TOLERANCE = 1e-6  # tolerance of the frequencies of computed shapes
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class ModePolynomial:
     frequency: float
 
     def lines(self) -> list[str]:
-        """The lines of a blade file of ElastoDyn."""
+        """Write the lines that a blade file of ElastoDyn has for this polynomial."""
         name, said = (
             SHAPE_NAMES[self.mode],
             f"{self.mode.split()[0].capitalize()} mode {self.mode.split()[1]}",
@@ -82,20 +82,22 @@ def fit_mode_polynomials(scene: Scene, speed: float) -> tuple[ModePolynomial, ..
 def _fit(scene: Scene, mode: str, speed: float) -> ModePolynomial:
     shape, frequency = shape_of(scene, mode, speed)
     last = PLACES ** _POWERS[-1]
-    others = PLACES[:, None] ** _POWERS[:-1] - last[:, None]  # each is 0 at the tip: the sum stays 1
-    first = np.linalg.lstsq(others, shape - last, rcond=None)[0].round(6)  # as many digits as are written
+    # Each of these functions is 0 at the tip, so that the deflection there stays 1.
+    others = PLACES[:, None] ** _POWERS[:-1] - last[:, None]
+    # As many digits as are written to the file.
+    first = np.linalg.lstsq(others, shape - last, rcond=None)[0].round(6)
     coefficients = (*map(float, first), round(1 - float(first.sum()), 6))
     difference = float(np.abs(polynomial(coefficients) - shape).max())
     return ModePolynomial(mode, coefficients, difference, frequency)
 
 
 def polynomial(coefficients: tuple[float, ...] | np.ndarray) -> np.ndarray:
-    """The polynomial with the powers 2 to 6 at `PLACES`."""
+    """Evaluate the polynomial with the powers 2 to 6 at `PLACES`."""
     return PLACES[:, None] ** _POWERS @ np.asarray(coefficients)
 
 
 def shape_of(scene: Scene, mode: str, speed: float) -> tuple[np.ndarray, float]:
-    """The mode at `PLACES`, 1 at the tip, of the plane alone and without twist; and its frequency [Hz]."""
+    """Compute a mode at `PLACES`, 1 at the tip, of one plane without twist, and its frequency [Hz]."""
     plane, number = mode.split()
     modes = natural_modes(_one_plane(scene, plane), speed, int(number), tolerance=_TOLERANCE)
     shape = np.real(modes.shape(PLACES * scene.beam.length))[-1]
@@ -103,25 +105,20 @@ def shape_of(scene: Scene, mode: str, speed: float) -> tuple[np.ndarray, float]:
 
 
 def _one_plane(scene: Scene, plane: str) -> Scene:
-    """The blade without twist, bending in one plane alone: the model of the deck's program."""
+    """Return the blade without twist, bending in one plane alone: the model of the deck's program."""
     second = scene.beam.second_bending_stiffness
     stiffness: Profile | None = scene.beam.bending_stiffness if plane == "flap" else second
     assert stiffness is not None
     blade = scene.beam
-    beam = Beam(
-        blade.length,
-        blade.mass_per_length,
-        stiffness,
-        tip=_turned(blade.tip, plane),
-        point_masses=blade.point_masses,
-    )
+    bodies: dict[str, Any] = {"tip": _turned(blade.tip, plane), "point_masses": blade.point_masses}
+    beam = Beam(blade.length, blade.mass_per_length, stiffness, **bodies)
     angle = math.pi / 2 if plane == "flap" else 0.0
     mount = Mount(scene.mount.radius, scene.mount.setting_angle, angle)
     return replace(scene.undamped, beam=beam, mount=mount, physics=Physics())
 
 
 def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
-    """The tip body for bending in the plane."""
+    """Return the tip body as it moves when the blade bends in one plane."""
     tip = tip and replace(tip, offset_across=0.0)
     if tip is None or plane == "flap":
         return tip
@@ -131,9 +128,9 @@ def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
 # What a deck amounts to ---------------------------------------------------------------------------
 
 
-STEEP = 3.0  # factor between neighbouring stations from which a step is named
-_SUM_ERROR = 1e-3  # error of the sum of a mode shape's coefficients that ElastoDyn lets pass
-_SHAPE_ERROR = 0.05  # difference of a mode shape, of its tip deflection, that is warned of
+STEEP = 3.0  # factor between neighbouring stations from which on a step is reported
+_SUM_ERROR = 1e-3  # error of the sum of a mode shape's coefficients that ElastoDyn accepts
+_SHAPE_ERROR = 0.05  # difference of a mode shape, over its tip deflection, above which a warning is given
 _STEPPED = ("mass_per_length", "bending_stiffness", "second_bending_stiffness")
 _STEPPED_NAMES = {"mass_per_length": "mass", "bending_stiffness": "flap stiffness"}
 _STEPPED_NAMES |= {"second_bending_stiffness": "edge stiffness"}
@@ -165,7 +162,7 @@ class PropertyStep:
     factor: float
 
     def sentence(self) -> str:
-        """Say it."""
+        """Word the step as a sentence."""
         place = (
             f"at x/L = {self.start:g}"
             if self.start == self.end
@@ -210,7 +207,7 @@ class ShapeCheck:
 
 @dataclass(frozen=True)
 class DeckAudit(Result):
-    """What a deck amounts to.
+    """Audit of a deck: mass, moments, steep steps, and mode shapes.
 
     Properties are linear between stations.  Mass and moments are those of the blade with
     point masses along it, without its tip body.
@@ -266,7 +263,10 @@ class DeckAudit(Result):
     warnings: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """Stations, mass, centre and steep steps of the blade in one line; see `Result.headline`."""
+        """Yield stations, mass, centre and steep steps of the blade, parts of a one-line summary.
+
+        See `Result.headline`.
+        """
         yield f"{counted(self.stations, 'station')}, {number(self.mass, 'kg')}"
         yield f"centre at {number(self.centre, 'm')}"
         yield counted(len(self.steps), "steep step") if self.steps else ""
@@ -274,7 +274,7 @@ class DeckAudit(Result):
 
 
 def audit(blade: Blade, scene: Scene) -> DeckAudit:
-    """Audit a blade, by the beam of its scene."""
+    """Audit a blade, with the beam of its scene."""
     beam, hub = scene.beam, scene.mount.radius
     mass, first, second = moments_about_root(beam)
     speed = blade.speed * math.pi / 30
@@ -299,7 +299,7 @@ def audit(blade: Blade, scene: Scene) -> DeckAudit:
 
 
 def find_steps(blade: Blade) -> tuple[PropertyStep, ...]:
-    """Properties that change by a factor of `STEEP` or more between neighbouring stations."""
+    """Find the properties that change by a factor of `STEEP` or more between neighbouring stations."""
     x = blade.stations
     found: list[PropertyStep] = []
     for name in _STEPPED:

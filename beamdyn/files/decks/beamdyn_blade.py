@@ -38,8 +38,8 @@ from beamdyn.scene.section_matrices import (
 )
 
 _ROWS, _SIGNS = [2, 0, 1, 5, 3, 4], np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
-_ANGLE = 0.05  # degrees by which angles that are linear between stations may be off the splines
-_SAMPLES = 8  # of each part of a spline, between key points
+_ANGLE = 0.05  # angle [deg] by which angles that are linear between stations may differ from the splines
+_SAMPLES = 8  # number of samples of each part of a spline, between two key points
 _MOST_STATIONS = 100
 _MAIN_NAMES = {plain_name(name): name for name in ("member_total", "kp_total", "BldFile")}
 _BLADE_NAMES = {plain_name(name): name for name in ("station_total", "damp_type")}
@@ -80,7 +80,7 @@ def read_main_file(text: DataText, hub_radius: float) -> Blade:
 
 
 def _read_key_points(text: DataText, found: dict[str, NamedValue]) -> tuple[np.ndarray, list[int]]:
-    """Coordinates [m] and twist [deg] of the key points (k, 4), and their lines."""
+    """Read coordinates [m] and twist [deg] of the key points (k, 4), and their lines."""
     count = named_count(text, found["kptotal"], least=3)
     heads = ("kpxr", "kpyr", "kpzr", "initialtwist")
     at = [n for n in range(1, len(text.lines) + 1) if [*map(plain_name, text.words(n)[:4])] == [*heads]]
@@ -92,7 +92,7 @@ def _read_key_points(text: DataText, found: dict[str, NamedValue]) -> tuple[np.n
 
 
 def _read_members(text: DataText, found: dict[str, NamedValue], points: int) -> list[slice]:
-    """Key points of each member, the first of which is the last of the one before."""
+    """Read the key points of each member; the first of a member is the last of the one before."""
     count, line = named_count(text, found["membertotal"], least=1), found["kptotal"].line
     members, start = [], 0
     for k in range(1, count + 1):
@@ -109,7 +109,7 @@ def _read_members(text: DataText, found: dict[str, NamedValue], points: int) -> 
 
 
 def _numbers(text: DataText, line: int, count: int, name: str) -> list[float]:
-    """The first numbers of a line, which must have as many."""
+    """Read the first numbers of a line, which must have at least as many."""
     words = text.words(line)[:count] if line <= len(text.lines) else []
     if len(words) < count:
         raise text.refusal(min(line, len(text.lines)), f"expected {count} numbers, {name}")
@@ -132,7 +132,7 @@ def _check_line(text: DataText, points: np.ndarray, lines: Sequence[int]) -> Non
 
 
 def _angles_of_line(points: np.ndarray, members: Sequence[slice]) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Lengths along the line [m] (n,), and twist, sweep and prebend there [deg], of many places."""
+    """Compute lengths along the line [m] (n,), and twist, sweep and prebend there [deg], at many places."""
     lengths, found = [np.zeros(1)], []
     for member in members:
         own = points[member]
@@ -148,7 +148,7 @@ def _angles_of_line(points: np.ndarray, members: Sequence[slice]) -> tuple[np.nd
 
 
 def _arcs(spline: CubicSpline, at: np.ndarray) -> np.ndarray:
-    """Lengths of a curve between neighbouring places."""
+    """Compute the lengths of a curve between neighbouring places."""
     t, w = gauss_rule(4)
     middle, half = (at[1:] + at[:-1]) / 2, np.diff(at) / 2
     speed = np.linalg.norm(spline(middle[:, None] + half[:, None] * t, 1)[..., :3], axis=2)
@@ -156,14 +156,14 @@ def _arcs(spline: CubicSpline, at: np.ndarray) -> np.ndarray:
 
 
 def _places(x: np.ndarray, angles: Sequence[np.ndarray], stations: np.ndarray) -> np.ndarray:
-    """Stations x/L, and those between which the angles are linear enough; a kink between members twice."""
+    """Choose stations x/L between which the angles are linear enough; a kink between members counts twice."""
     jumps = [np.abs(a[1:] - a[:-1]) > _ANGLE for a in angles]
     kinks = x[1:][(x[1:] == x[:-1]) & np.any(jumps, axis=0)]
     kept = np.sort(np.concatenate([np.union1d(stations, kinks), kinks]))
     while len(kept) < _MOST_STATIONS:
         along = [_interpolated(x, kept, _interpolated(kept, x, a)) for a in angles]
         apart = np.abs(np.subtract(angles, along)).max(axis=0)
-        apart[np.isin(x, kept)] = 0.0  # nothing is gained by a station that is kept
+        apart[np.isin(x, kept)] = 0.0  # stations that are kept already need not be added
         if apart.max() <= _ANGLE:
             break
         kept = np.sort(np.append(kept, x[apart.argmax()]))
@@ -171,7 +171,7 @@ def _places(x: np.ndarray, angles: Sequence[np.ndarray], stations: np.ndarray) -
 
 
 def _interpolated(at: np.ndarray, x: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values at places in ascending order; one that is twice in both has those of both sides of a jump."""
+    """Interpolate at ascending places; a place that occurs twice gets the values on both sides of a jump."""
     left, right = np.interp(-at, -x[::-1], values[::-1]), np.interp(at, x, values)
     return np.where(np.append(at[1:] == at[:-1], False), left, right)
 
@@ -214,12 +214,12 @@ def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
 
 
 def _to_ours(matrices: np.ndarray) -> np.ndarray:
-    """Matrices (n, 6, 6) in the order and axes of this package."""
+    """Convert matrices (n, 6, 6) to the order and axes of this package."""
     return _SIGNS[:, None] * matrices[:, _ROWS][:, :, _ROWS] * _SIGNS
 
 
 def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], list[np.ndarray]]:
-    """Stations (n,), their lines, and the two matrices (n, 6, 6) of each, in the file's order."""
+    """Read stations (n,), their lines, and the two matrices (n, 6, 6) of each, in the file's order."""
     heads = [n for n, line in enumerate(text.lines, 1) if "distributedproperties" in plain_name(line)]
     if not heads:
         raise text.lacking("expected a line DISTRIBUTED PROPERTIES above the stations")
@@ -238,7 +238,7 @@ def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], l
 def _check_matrices(
     text: DataText, name: str, stations: np.ndarray, lines: Sequence[int], matrices: np.ndarray
 ) -> None:
-    """Refuse matrices that are not symmetric and positive definite, or the mass of no section."""
+    """Refuse matrices that are not symmetric and positive definite, or a mass that no section has."""
     ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
     checks = [
         (asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"),
@@ -256,7 +256,7 @@ def _check_matrices(
 
 
 def _damping(text: DataText, kind: NamedValue) -> tuple[IgnoredProperty, ...]:
-    """The record of the damping, if there is any."""
+    """Record the damping, which the scene does not have, if there is any."""
     if kind.word == "0":
         return ()
     heads = [n for n in range(kind.line, len(text.lines) + 1) if text.words(n)[:1] == ["mu1"]]

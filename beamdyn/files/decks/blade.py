@@ -1,4 +1,4 @@
-"""What every deck says of a blade, in the words of this package, whatever program wrote it."""
+"""Descriptions of blades that all decks share, in the terms of this package, whatever program wrote them."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Stations:
 
 
 def read_stations(text: DataText, known: Sequence[DeckColumn], count: NamedValue) -> Stations:
-    """Read the table of a file.
+    """Read the table of stations of a file.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def read_stations(text: DataText, known: Sequence[DeckColumn], count: NamedValue
     known : sequence of DeckColumn
         Columns of the program; the first is the position, from 0 at the root to 1 at the tip.
     count : NamedValue
-        How many rows the file says it has.
+        Number of rows that the file states.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def read_stations(text: DataText, known: Sequence[DeckColumn], count: NamedValue
 
 
 def _find_heads(text: DataText, known: Sequence[DeckColumn], count: NamedValue) -> int:
-    """Line of the heads: the first whose first word is that of the position."""
+    """Find the line of the heads: the first whose first word is the head of the position."""
     first = plain_name(known[0].name)
     for line in range(count.line + 1, len(text.lines) + 1):
         if [plain_name(word) for word in text.words(line)[:1]] == [first]:
@@ -121,7 +121,7 @@ def _rest(missing: Sequence[str]) -> str:
 
 
 def _check_units(text: DataText, line: int, heads: Sequence[DeckColumn]) -> None:
-    """Refuse a line below the heads that is not of their units.
+    """Refuse a line below the heads that does not have their units.
 
     The programs skip it unread, and take the numbers in their own units whatever stands there.
     """
@@ -139,14 +139,14 @@ def _check_units(text: DataText, line: int, heads: Sequence[DeckColumn]) -> None
 
 
 def _plain_unit(unit: str) -> str:
-    """A unit without what programs write differently: N-m^2 is Nm2."""
+    """Return a unit without differences in notation: N-m^2 is Nm2."""
     return re.sub(r"[\s^*·.-]", "", unit).lower().replace("²", "2")
 
 
 def _read_rows(
     text: DataText, first: int, heads: Sequence[DeckColumn], count: NamedValue
 ) -> tuple[np.ndarray, tuple[int, ...]]:
-    """The numbers, shape (rows, columns), and the line of each row."""
+    """Read the numbers, shape (rows, columns), and the line of each row."""
     wanted = named_count(text, count)
     said = f"{count.name} = {wanted} in line {count.line}"
     rows: list[list[float]] = []
@@ -204,7 +204,7 @@ def _check_positive(text: DataText, lines: Sequence[int], column: DeckColumn, va
 
 @dataclass(frozen=True)
 class IgnoredProperty:
-    """Something of a deck that the scene does not have.
+    """A property of a deck that the scene does not have.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ class IgnoredProperty:
         return f"{' to '.join(ends)} {self.unit}".rstrip()
 
     def sentence(self) -> str:
-        """Name, values and reason."""
+        """Word the property: name, values and reason."""
         return f"{self.name} ({self.values}): {self.reason}"
 
 
@@ -315,7 +315,7 @@ class Blade:
 
 
 def ignore(name: str, values: float | Sequence[float] | np.ndarray, unit: str, reason: str) -> tuple:
-    """The record of a property that is left out, with its range; none where all its values are zero."""
+    """Record a property that is left out, with its range; empty where all its values are zero."""
     array = np.atleast_1d(np.asarray(values, dtype=float))
     if not array.any():
         return ()
@@ -325,7 +325,7 @@ def ignore(name: str, values: float | Sequence[float] | np.ndarray, unit: str, r
 def ignore_columns(
     table: Stations, used: Sequence[str], reasons: Mapping[str, str]
 ) -> tuple[IgnoredProperty, ...]:
-    """The columns of a table that the scene does not have; `used` are the others."""
+    """Record the columns of a table that the scene does not have; `used` are the others."""
     return tuple(
         entry
         for name, values in table.columns.items()

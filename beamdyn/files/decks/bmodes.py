@@ -49,7 +49,7 @@ _NO_TORSION = "they act in torsion, which needs tor_stff, flp_iner and edge_iner
 _REASONS: dict[str, str] = dict.fromkeys(_OFFSETS, _NO_TORSION)
 _USED = ("sec_loc", "str_tw", "tw_iner", "mass_den", "flp_iner", "edge_iner", "flp_stff", "edge_stff")
 _USED = (*_USED, "tor_stff", "axial_stff", "span_loc")
-# By the name that Beam.from_stiffness has: column and multiplier.
+# Column and multiplier of each property, by the name that Beam.from_stiffness has.
 _PROPERTIES = {
     "mass_per_length": ("mass_den", "sec_mass_mult"),
     "bending_stiffness": ("flp_stff", "flp_stff_mult"),
@@ -76,7 +76,7 @@ def read_main_file(text: data_text.DataText) -> Blade:
         name: data_text.named_number(text, named) for name, named in found.items() if name != "secpropsfile"
     }
 
-    # Refuse what is no cantilevered blade.
+    # Refuse values of anything but a cantilevered blade.
     def check(key: str, good: bool, wanted: str) -> None:
         data_text.check_named(text, found[key], good, wanted)
 
@@ -115,14 +115,14 @@ def read_main_file(text: data_text.DataText) -> Blade:
 def _tip_body(
     values: dict[str, float], axis: float | None
 ) -> tuple[dict[str, float], tuple[IgnoredProperty, ...]]:
-    """Arguments of `TipMass`, and what is not in them.
+    """Return arguments of `TipMass`, and a record of what they leave out.
 
     BModes takes the moments of inertia about the centre of gravity, x for lag, y for flap, z for torsion.
     """
     flap, lag, torsion = (values[f"i{2 * axis}tip"] for axis in "yxz")
     tip = {"mass": values["tipmass"], "offset": values.get("cmaxial", 0.0)}
     left_out: tuple[IgnoredProperty, ...] = ()
-    if axis is not None:  # the shear centre at the tip along y, where torsion is known
+    if axis is not None:  # offset from the shear centre at the tip along y, where torsion is known
         tip["offset_across"] = axis - values["cmloc"] if tip["mass"] else 0.0
     else:
         left_out += ignore("cm_loc", values["cmloc"], "m", _NO_TORSION)
@@ -163,7 +163,7 @@ def read_section_file(
 def _read_sections(
     text: data_text.DataText, length: float, hub_radius: float, multipliers: dict[str, float]
 ) -> tuple[Blade, float | None]:
-    """The blade, and the shear centre at its tip along y [m]; None without torsion."""
+    """Read the blade, and the shear centre at its tip along y [m]; None without torsion."""
     found = data_text.named_values(text, {"nsecs"})
     data_text.check_all_there(text, found, {"nsecs": "n_secs"})
     table = read_stations(text, _columns(text), found["nsecs"])
@@ -188,7 +188,10 @@ def _read_sections(
 def _from_shear_centre(
     text: data_text.DataText, table: Stations, columns: dict[str, np.ndarray], *offsets: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Columns from the shear centre by `convert_offsets`; an error names the line without stiffness."""
+    """Convert columns from the shear centre by `convert_offsets`.
+
+    An error names the line without stiffness.
+    """
     edge = columns["second_bending_stiffness"]
     axial = columns.get("axial_stiffness", np.zeros_like(edge))
     converted = convert_offsets(edge, axial, *offsets)
@@ -202,7 +205,7 @@ def _from_shear_centre(
 def convert_offsets(
     edge: np.ndarray, axial: np.ndarray, mass: np.ndarray, shear: np.ndarray, tension: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Offsets from the shear centre in the direction across, and the stiffness about the centre of tension.
+    """Compute offsets from the shear centre across, and the stiffness about the centre of tension.
 
     Parameters
     ----------
@@ -219,7 +222,7 @@ def convert_offsets(
 
 
 def _columns(text: data_text.DataText) -> tuple[DeckColumn, ...]:
-    """The columns: the first is sec_loc, or span_loc in older files."""
+    """Return the columns of the program; the first is sec_loc, or span_loc in older files."""
     firsts = {
         data_text.plain_name(word) for line in range(1, len(text.lines) + 1) for word in text.words(line)[:1]
     }
@@ -229,7 +232,7 @@ def _columns(text: data_text.DataText) -> tuple[DeckColumn, ...]:
 def _properties(
     table: Stations, multipliers: dict[str, float]
 ) -> tuple[dict[str, np.ndarray], tuple[IgnoredProperty, ...]]:
-    """The properties of the beam, and what is not in them."""
+    """Return the properties of the beam, and a record of what they leave out."""
     given = {
         name: multipliers.get(multiplier, 1.0) * table.columns[column]
         for name, (column, multiplier) in _PROPERTIES.items()

@@ -1,4 +1,4 @@
-"""A blade in a CSV file with units in its heads."""
+"""Reading of blades from CSV files with units in their heads."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from beamdyn.common.edge.inputs import Quantity
 from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.scenes import RADIUS, read_station_file
 
-_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # heads of twist in other programs, whose sense is the opposite
+_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # heads of twist in other programs, which has the opposite sense
 _MORE = {RADIUS: Quantity("m"), **dict.fromkeys(_STRUCTURAL_TWIST, Quantity("rad"))}
 _NEEDED = ("mass_per_length", "bending_stiffness")
 _SECTION = ("width", "thickness")
 
 
 def is_csv(text: DataText) -> bool:
-    """Whether the text is a table with units in brackets in its first line, but for comments."""
+    """Whether a text is a table with units in brackets in its first line that is no comment."""
     first = next((line for n, line in enumerate(text.lines, 1) if not text.is_comment(n)), "")
     return text.path.suffix.lower() in (".csv", ".tsv") or ("[" in first and any(c in first for c in ",;\t"))
 
 
 def needs_length(text: DataText) -> bool:
-    """Whether its positions are fractions of the length."""
+    """Whether the positions are fractions of a length that must be given."""
     return "x/L" in read_station_file(text, _MORE).named()
 
 
 def needs_hub_radius(text: DataText) -> bool:
-    """Whether its positions do not begin at the hub."""
+    """Whether the positions are not distances from the axis, so that the hub radius must be given."""
     return RADIUS not in read_station_file(text, _MORE).named()
 
 
@@ -69,7 +69,7 @@ def read_csv_blade(text: DataText, length: float, hub_radius: float) -> Blade:
 
 
 def _positions(table: CsvTable, length: float, hub_radius: float) -> tuple[np.ndarray, float, float]:
-    """Stations x/L, length and radius of the hub [m]."""
+    """Return stations x/L, the length, and the radius of the hub [m]."""
     named, text = table.named(), table.text
     if RADIUS in named:
         r = np.array(named[RADIUS].values)
@@ -87,7 +87,7 @@ def _positions(table: CsvTable, length: float, hub_radius: float) -> tuple[np.nd
 
 
 def _fractions(x: np.ndarray, length: float) -> np.ndarray:
-    """Fractions of the length, rounded as those of scene files are."""
+    """Compute fractions of the length, rounded like those of scene files."""
     return np.array([round(float(each) / length, 14) for each in x])
 
 
@@ -109,7 +109,7 @@ def _properties(table: CsvTable) -> dict[str, np.ndarray]:
 
 
 def _with_twist(table: CsvTable, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The columns with the twist in degrees, in this package's sense."""
+    """Return the columns with the twist in degrees, in this package's sense."""
     senses = {"twist": 1.0, **dict.fromkeys(_STRUCTURAL_TWIST, -1.0)}
     given = [name for name in senses if name in columns]
     if len(given) > 1:

@@ -1,4 +1,4 @@
-"""Decks: a blade of another program, as a scene."""
+"""Decks: blades of other programs, read as scenes."""
 
 from __future__ import annotations
 
@@ -62,7 +62,10 @@ class Deck(Result):
     blade: Blade = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Kind and title of the deck, and length of its blade, in one line; see `Result.headline`."""
+        """Yield kind and title of the deck, and length of its blade, parts of a one-line summary.
+
+        See `Result.headline`.
+        """
         yield self.kind
         yield repr(self.title) if self.title else ""
         yield f"{number(self.scene.beam.length, 'm')} long"
@@ -70,11 +73,11 @@ class Deck(Result):
 
     @cached_property
     def audit(self) -> DeckAudit:
-        """Mass and moments, steep steps, and the files' mode shapes beside ours."""
+        """Mass and moments, steep steps, and the files' mode shapes beside computed ones."""
         return audit(self.blade, self.scene)
 
     def fit_mode_polynomials(self, speed: float | None = None) -> tuple[ModePolynomial, ...]:
-        """Polynomials of the mode shapes, such as a blade file of ElastoDyn states: flap 1, flap 2, edge 1.
+        """Fit polynomials to the mode shapes that a blade file of ElastoDyn states: flap 1, flap 2, edge 1.
 
         Each is a mode of one plane without twist, as that program takes them.
 
@@ -99,7 +102,7 @@ class Deck(Result):
         )
 
     def scene_text(self) -> str:
-        """The scene as the text of a TOML file: the stations as a table, what is ignored as comments."""
+        """Write the scene as TOML text, with a table of stations, and ignored properties as comments."""
         names = ", ".join(Path(source).name for source in self.sources)
         head = [f"{self.title or 'A blade'}", f"Read from {names} ({self.kind})."]
         if self.ignored:
@@ -178,7 +181,7 @@ def read_deck(
 
 
 def read_deck_text(text: DataText, length: float | None = None, hub_radius: float | None = None) -> Deck:
-    """Read a blade from the text of a file; arguments as of `read_deck`."""
+    """Read a blade from the text of a file; arguments as for `read_deck`."""
     given = {
         "length": None if length is None else size("length", length, "m"),
         "hub_radius": None if hub_radius is None else not_negative("hub_radius", hub_radius, "m"),
@@ -191,13 +194,13 @@ def read_deck_text(text: DataText, length: float | None = None, hub_radius: floa
 
 
 def is_deck(text: DataText) -> bool:
-    """Whether a text is one of the files that are read."""
+    """Whether a text is one of the files that can be read."""
     known = any(len(named_values(text, names)) == len(names) for _, names, _, _ in _READERS)
     return known or csv_table.is_csv(text)
 
 
 def _read(text: DataText, given: dict[str, float | None]) -> Blade:
-    """The blade of a file, whatever program wrote it."""
+    """Read the blade of a file, whatever program wrote it."""
     for read, names, remedy, wanted in _READERS:
         if len(named_values(text, names)) == len(names):
             needed = _needed(text, given, remedy, **{name: name in wanted for name in given})
@@ -211,7 +214,7 @@ def _read(text: DataText, given: dict[str, float | None]) -> Blade:
 
 
 _BOTH = ("length", "hub_radius")
-# Readers, the values that tell their files from others, what says what their files lack, and what that is.
+# Readers, with the values that identify their files, the place of what the files lack, and what that is.
 _READERS: tuple[tuple[Callable[..., Blade], set[str], str, tuple[str, ...]], ...] = (
     (elastodyn.read_blade_file, {"nblinpst"}, "the main file has TipRad and HubRad", _BOTH),
     (elastodyn.read_main_file, {"tiprad", "bldfile1"}, "", ()),
@@ -231,7 +234,7 @@ _READERS: tuple[tuple[Callable[..., Blade], set[str], str, tuple[str, ...]], ...
 def _needed(
     text: DataText, given: dict[str, float | None], remedy: str, length: bool, hub_radius: bool
 ) -> dict[str, float]:
-    """Length and radius of the hub, each of which must be given where it is needed, and only there."""
+    """Return length and hub radius where the file lacks them; refuse one that is missing or not needed."""
     needed = {"length": length, "hub_radius": hub_radius}
     for name, value in given.items():
         if value is not None and not needed[name]:

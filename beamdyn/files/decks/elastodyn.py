@@ -2,8 +2,10 @@
 
 The blade's axes are x downwind, y to the trailing edge, z from root to tip; the rotor turns about +x.
 Positive structural twist and pitch turn the section about -z, to feather: the flap direction is
-cos(twist) x - sin(twist) y.  Here b1 = z, b2 = y, b3 = -x (the carrier turns about -n3), and the flap
-direction c b2 + s b3 is the same line at psi = 90 deg - twist - pitch: a twist is the deck's times -1.
+cos(twist) x - sin(twist) y.  In the axes of this package (docs/conventions.md) b1 = z, b2 = y, b3 = -x, and
+the carrier turns about -n3.  The flap direction is the line cos(psi) b2 + sin(psi) b3 with
+psi = 90 deg - twist - pitch; psi is the bending angle plus the twist of this package, which thus is minus
+the deck's.
 """
 
 from __future__ import annotations
@@ -107,7 +109,7 @@ def read_main_file(text: data_text.DataText) -> Blade:
 
 
 def named_file(text: data_text.DataText, named: data_text.NamedValue) -> Path:
-    """The file that a file names, from its own folder; it must be there."""
+    """Return the path of a file that a file names, relative to that file's folder; it must exist."""
     path = text.path.parent / named.word.replace("\\", "/")
     if not path.is_file():
         raise text.refusal(named.line, f"expected the file {named.name}, but there is none at {path}")
@@ -138,9 +140,9 @@ def read_blade_file(text: data_text.DataText, length: float, hub_radius: float) 
         return np.array([data_text.named_number(text, found[data_text.plain_name(name)]) for name in names])
 
     damping = numbers(*_DAMPING) / 100
-    # What the file says it is of: its second line, or that below two lines of dashes in FAST 7.
+    # Description of the file: its second line, or in FAST 7 the one below two lines of dashes.
     plain = (line.strip() for line in text.lines[:4] if not line.startswith("--"))
-    # The factor of each column; positive.
+    # Factor of each column, which must be positive.
     factors = {}
     for name, column in _FACTORS.items():
         named = found[data_text.plain_name(name)]
@@ -162,7 +164,7 @@ def read_blade_file(text: data_text.DataText, length: float, hub_radius: float) 
 
 
 def _doubt_order(heads: Sequence[str]) -> Iterator[str]:
-    """Yield a warning of heads that stand in another order than that in which ElastoDyn reads the numbers.
+    """Yield a warning if heads stand in another order than that in which ElastoDyn reads the numbers.
 
     Its second column, which it does not use, was AeroCent, then PitchAxis, and is gone in newer versions.
     """
@@ -187,7 +189,7 @@ def _properties(table: Stations, factors: Mapping[str, float]) -> dict[str, np.n
 
 
 def _ignored_settings(damping: np.ndarray, tuners: np.ndarray) -> tuple[IgnoredProperty, ...]:
-    """Damping, and tuners that are not 1."""
+    """Record damping, and tuners that are not 1."""
     if np.ptp(damping) == 0:
         reason = f"natural frequencies are undamped; damping_ratio = {damping[0]:.9g} in [model] has it"
     else:

@@ -1,4 +1,4 @@
-"""Turbines of OpenFAST: the main file, and those of ElastoDyn and BeamDyn that it names."""
+"""Turbines of OpenFAST: the main file, and the files of ElastoDyn and BeamDyn that it names."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from beamdyn.files.decks import beamdyn_blade, elastodyn
 from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.decks.elastodyn import named_file
 
-_ELASTODYN, _BEAMDYN = 1, 2  # CompElast; 3 is a simplified ElastoDyn
+_ELASTODYN, _BEAMDYN = 1, 2  # values of CompElast; 3 is a simplified ElastoDyn
 _NO_TIP_MASS = "OpenFAST leaves it out where BeamDyn computes the blades; tip in [beam] has a body there"
 
 
 def read_openfast_file(text: DataText) -> Blade:
-    """Read the first blade of the turbine: that of BeamDyn, where it computes it, else that of ElastoDyn."""
+    """Read the first blade of the turbine: that of BeamDyn if BeamDyn computes it, else that of ElastoDyn."""
     found = named_values(text, {"edfile", "compelast", "bdbldfile1"})
     model = named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
     rotor = elastodyn.read_main_file(read_data(named_file(text, found["edfile"])))

@@ -1,4 +1,4 @@
-"""A blade as a scene file: its tables, and its text with the stations as a table with units."""
+"""Writing of a blade as a scene file: its tables, and its text with a table of stations with units."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from beamdyn.scene.section_matrices import UPPER, entry_name, entry_units
 
 _UNITS = dict.fromkeys(ANGLE_UNITS, "deg") | PROPERTY_UNITS
 _TIP_UNITS = {name: each.unit for name, each in descriptions(TipMass).items()}
-_DIGITS = 15  # digits of numbers in the file: those that a float keeps
+_DIGITS = 15  # digits of numbers in the file, as many as a float keeps
 
 
 def tables_of(blade: Blade) -> dict[str, Any]:
-    """The tables of the scene of a blade, as tomllib reads them.
+    """Return the tables of the scene of a blade, as tomllib reads them.
 
     The blade points outward; its flap, in which `bending_stiffness` counts, bends out of the plane of
     rotation where twist and pitch are 0.
@@ -30,7 +30,7 @@ def tables_of(blade: Blade) -> dict[str, Any]:
             "bending_angle": f"{_number(90 - blade.pitch)} deg",
         },
     }
-    if blade.precone:  # downwind is -b3
+    if blade.precone:  # downwind is the direction -b3
         tables["mount"]["precone"] = f"{_number(-blade.precone)} deg"
     if blade.tip:
         units = {key: unit for key, unit in _TIP_UNITS.items() if key == "mass" or blade.tip.get(key)}
@@ -51,7 +51,7 @@ def tables_of(blade: Blade) -> dict[str, Any]:
 
 
 def _tables_of_stations(blade: Blade) -> dict[str, Any]:
-    """What varies along the blade, and where there are any, the matrices of its sections."""
+    """Return tables of properties along the blade, and of its sections' matrices if it has any."""
     if blade.matrices is None:
         return {"stations": _rows(blade)}
     given = {"stations": _rows(blade)} if _names(blade, _UNITS) else {}
@@ -59,7 +59,7 @@ def _tables_of_stations(blade: Blade) -> dict[str, Any]:
 
 
 def _matrix_rows(matrices: BladeMatrices) -> list[list[Any]]:
-    """Heads and rows of the entries that are not 0 throughout."""
+    """Return heads and rows of the matrices' entries that are not 0 throughout."""
     both = {"K": matrices.stiffness, "M": matrices.mass}
     entries = {
         f"{entry_name(letter, i, j)}": values[:, i, j] for letter, values in both.items() for i, j in UPPER
@@ -77,7 +77,7 @@ def _names(blade: Blade, among: Iterable[str]) -> list[str]:
 
 
 def _rows(blade: Blade) -> list[list[Any]]:
-    """Heads and rows of the stations."""
+    """Return heads and rows of the stations."""
     names = _names(blade, _UNITS)
     heads = ["x/L", *(f"{name} [{_UNITS[name]}]" for name in names)]
     columns = [blade.stations, *(blade.columns[name] for name in names)]
@@ -85,7 +85,7 @@ def _rows(blade: Blade) -> list[list[Any]]:
 
 
 def _number(value: float) -> str:
-    """A number with as many digits as a float keeps, and without the sign of zero."""
+    """Word a number with as many digits as a float keeps, and zero without a sign."""
     return f"{value + 0.0:.{_DIGITS}g}"
 
 
@@ -93,12 +93,12 @@ def _number(value: float) -> str:
 
 
 def text_of(tables: Mapping[str, Any], comments: Mapping[str, Iterable[str]]) -> str:
-    """The text of a scene file.
+    """Write the text of a scene file.
 
     Parameters
     ----------
     tables : mapping
-        As `tables_of` makes them.
+        Tables of the scene file, as `tables_of` makes them.
     comments : mapping
         Sentences by the table that they stand above, "" for the head of the file.
     """
@@ -116,7 +116,7 @@ def text_of(tables: Mapping[str, Any], comments: Mapping[str, Iterable[str]]) ->
 
 
 def _commented(sentences: Iterable[str]) -> Iterator[str]:
-    """Comment lines; what would end a comment early is shown as a blank."""
+    """Yield comment lines; characters that would end a comment are shown as blanks."""
     for sentence in sentences:
         yield f"# {''.join(c if c.isprintable() else ' ' for c in sentence)}".rstrip()
 
@@ -124,7 +124,7 @@ def _commented(sentences: Iterable[str]) -> Iterator[str]:
 def _assignment(key: str, value: Any) -> Iterator[str]:
     if isinstance(value, list):
         yield f"{key} = ["
-        # The rows in columns that are aligned.
+        # The rows have aligned columns.
         heads, *numbers = value
         cells = [[f'"{head}"' for head in heads], *([_cell(value) for value in row] for row in numbers)]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
@@ -138,7 +138,7 @@ def _assignment(key: str, value: Any) -> Iterator[str]:
 
 
 def _cell(value: float) -> str:
-    """A number as TOML writes it: large ones with an exponent."""
+    """Word a number as TOML does, large ones with an exponent."""
     text = _number(value)
     if "e" not in text and abs(value) >= 1e6:
         mantissa, _, exponent = f"{value:.{_DIGITS - 1}e}".partition("e")

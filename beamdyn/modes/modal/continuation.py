@@ -13,13 +13,17 @@ from typing import Protocol
 
 import numpy as np
 
-_FIRST, _LONGEST, _SHORTEST = 0.05, 0.2, 1e-7  # arc lengths of a step
-_ITERATIONS = 12  # iterations of Newton's method
-_EASY = 4  # iterations up to which the next step is longer
-_CONVERGED = 1e-14  # change of the slope angles [rad]
-_STALLED = 1e-9  # change of the slope angles from which on rounding may end the iteration [rad]
-_STRAYED = 0.5  # correction of a step over its length, above which it may have met another curve
-_LOOSE = 2.0  # the same where the points on both sides are known to be on one curve
+# First, longest and shortest step along a curve, as an arc length (see `_metric`).
+_FIRST, _LONGEST, _SHORTEST = 0.05, 0.2, 1e-7
+_ITERATIONS = 12  # largest number of iterations of Newton's method in a step
+_EASY = 4  # number of iterations of a step up to which the next step is longer
+# Change of the slope angles by an iteration, below which the iteration has converged [rad].
+_CONVERGED = 1e-14
+# Change of the slope angles by an iteration, below which rounding may end the iteration [rad].
+_STALLED = 1e-9
+_STRAYED = 0.5  # correction of a step over its length, above which the step may have met another curve
+_LOOSE = 2.0  # largest correction of a step over its length where both sides are known to be on one curve
+_SYMMETRIC = 1e-9  # relative skew-symmetric part of a matrix that counts as rounding
 _NEAR = 1e-4  # arc length within which directions of another sign are a bifurcation, and no other curve
 
 
@@ -28,29 +32,29 @@ class Problem(Protocol):
 
     @property
     def angles(self) -> np.ndarray:
-        """Slope angles per coordinate (n, k), by which coordinates are measured."""
+        """Slope angles per coordinate (n, k), the measure of changes of the coordinates."""
         ...
 
     @property
     def scale(self) -> float:
-        """Change of the parameter that counts as an angle of 1."""
+        """Change of the parameter that counts as much as an angle of 1 rad."""
         ...
 
     def residual(self, q: np.ndarray, p: float) -> np.ndarray:
-        """The residual r (n,)."""
+        """Compute the residual r (n,) at coordinates q (n,) and a parameter p."""
         ...
 
     def jacobian(self, q: np.ndarray, p: float) -> np.ndarray:
-        """The derivative of r by q, shape (n, n)."""
+        """Compute the derivative of r by q, shape (n, n)."""
         ...
 
     def rate(self, q: np.ndarray, p: float) -> np.ndarray:
-        """The derivative of r by p, shape (n,)."""
+        """Compute the derivative of r by p, shape (n,)."""
         ...
 
 
 class NotConverged(ArithmeticError):
-    """Newton's method found no solution."""
+    """Raised when Newton's method finds no solution."""
 
 
 @dataclass(frozen=True)
@@ -87,13 +91,13 @@ def solve_at(problem: Problem, q: np.ndarray, p: float) -> np.ndarray:
 
 
 def start_curve(problem: Problem, q: np.ndarray, p: float, towards: float) -> Point:
-    """The point of a curve at a solution, to be followed towards larger (1) or smaller (-1) parameters."""
+    """Find the direction of a curve at a solution, towards larger (1) or smaller (-1) parameters."""
     q_rate = -np.linalg.solve(problem.jacobian(q, p), problem.rate(q, p)) * problem.scale
     return _normalized(problem, q, p, q_rate, 1.0, towards)
 
 
 def follow(problem: Problem, start: Point, longest: float = _LONGEST, easy: int = _EASY) -> Iterator[Point]:
-    """Yield the points of a curve, beginning after `start`, in steps that follow its curvature.
+    """Yield the points of a curve beyond `start`, in steps adapted to its curvature.
 
     Parameters
     ----------
@@ -102,7 +106,7 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST, easy: int 
     start : Point
         A point of the curve.
     longest : float
-        Longest step, by the change of the slope angles, or of the parameter over its size.
+        Longest step, as a change of the slope angles, or of the parameter over its size.
     easy : int
         Iterations of Newton's method up to which the next step is longer.
 
@@ -115,7 +119,7 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST, easy: int 
     while True:
         try:
             following, iterations = advance(problem, point, step)
-            # Stability that changes otherwise than by a turning point is that of another curve.
+            # If stability changes other than at a turning point, the point is on another curve.
             stability = count_negative(problem, following.q, following.p)
             if abs(stability - before) != int(following.p_rate * point.p_rate < 0) and step > _NEAR:
                 raise NotConverged
@@ -133,23 +137,28 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST, easy: int 
 
 
 def count_negative(problem: Problem, q: np.ndarray, p: float) -> int:
-    """Number of negative eigenvalues of the symmetric Jacobian at a solution: 0 where it is stable."""
+    """Number of negative eigenvalues of the Jacobian at a solution: 0 where it is stable, if symmetric."""
     matrix = problem.jacobian(q, p)
     return int((scaled_eigenvalues(matrix, np.diag(matrix)) < 0).sum())
 
 
 def scaled_eigenvalues(matrix: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
-    """Eigenvalues (n,) of a symmetric matrix in coordinates that make a diagonal one of +-1, from the lowest.
+    """Compute eigenvalues (n,) of a matrix in coordinates that make a diagonal one +-1, from the lowest.
 
     Their signs are those of the matrix itself (Sylvester), which rounding hides where coordinates are of
-    unlike sizes, as those of short elements are.
+    unlike sizes, as those of short elements are.  Of a matrix that is not symmetric, as by a load without
+    potential, only the real ones: an even number is missing, so that the sign of the determinant is theirs.
     """
     size = np.sqrt(np.where(diagonal == 0, 1.0, np.abs(diagonal)))
-    return np.linalg.eigvalsh(matrix / np.outer(size, size))
+    scaled = matrix / np.outer(size, size)
+    if np.abs(scaled - scaled.T).max() < _SYMMETRIC * np.abs(scaled).max():
+        return np.linalg.eigvalsh(scaled)
+    values = np.linalg.eigvals(scaled)
+    return np.sort(values.real[values.imag == 0])
 
 
 def advance(problem: Problem, point: Point, step: float, strayed: float = _STRAYED) -> tuple[Point, int]:
-    """Advance along a curve by an arc length; also the number of iterations that it took.
+    """Advance along a curve by an arc length; return the number of iterations, too.
 
     A correction larger than the step times `strayed` is refused.
     """
@@ -164,12 +173,12 @@ def advance(problem: Problem, point: Point, step: float, strayed: float = _STRAY
 
 
 def find_turning_point(problem: Problem, before: Point, after: Point) -> Point:
-    """Find where the parameter is extreme, between two successive points of a curve."""
+    """Find the point between two successive points of a curve at which the parameter is extreme."""
     return _find_between(problem, before, after, lambda point: point.p_rate)
 
 
 def find_at(problem: Problem, before: Point, after: Point, p: float) -> np.ndarray:
-    """Find the coordinates at a parameter, between two successive points of a curve."""
+    """Find the coordinates at a parameter between two successive points of a curve."""
     if p in (before.p, after.p):
         return before.q if p == before.p else after.q
     share = (p - before.p) / (after.p - before.p)
@@ -185,7 +194,7 @@ def find_at(problem: Problem, before: Point, after: Point, p: float) -> np.ndarr
 
 def _find_between(problem: Problem, before: Point, after: Point, function: Callable[[Point], float]) -> Point:
     """Find the root of a function between two successive points of a curve, along its arc."""
-    from scipy.optimize import brentq  # here, because it takes as long to import as all the rest
+    from scipy.optimize import brentq  # imported here, because it takes as long to import as all the rest
 
     reach = _metric(problem, after.q - before.q, (after.p - before.p) / problem.scale)
 
@@ -198,7 +207,7 @@ def _find_between(problem: Problem, before: Point, after: Point, function: Calla
 
 
 def _newton(problem: Problem, q: np.ndarray, p: float, point: Point | None) -> tuple[np.ndarray, float, int]:
-    """Iterate to a solution: at fixed p, or across the direction of a curve that leaves `point`."""
+    """Iterate to a solution, at fixed p or in the plane across a curve's direction at `point`."""
     last = np.inf
     for iteration in range(1, _ITERATIONS + 1):
         r = problem.residual(q, p)
@@ -216,7 +225,7 @@ def _newton(problem: Problem, q: np.ndarray, p: float, point: Point | None) -> t
 
 
 def _bordered(problem: Problem, q: np.ndarray, p: float, point: Point) -> np.ndarray:
-    """Jacobian by q and p/scale, bordered by the direction of the curve."""
+    """Compute the Jacobian by coordinates and scaled parameter, bordered by the direction of the curve."""
     weights = problem.angles @ (problem.angles.T @ point.q_rate) / problem.angles.shape[1]
     return np.block(
         [
@@ -227,7 +236,7 @@ def _bordered(problem: Problem, q: np.ndarray, p: float, point: Point) -> np.nda
 
 
 def _metric(problem: Problem, q: np.ndarray, p: float) -> float:
-    """Arc length of a change: of the root mean square of the angles, and of the scaled parameter."""
+    """Compute the arc length of a change: the root mean square of angles, and the scaled parameter."""
     return float(np.sqrt(np.mean((q @ problem.angles) ** 2) + p**2))
 
 

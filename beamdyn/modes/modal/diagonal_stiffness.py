@@ -1,4 +1,4 @@
-"""Symmetric eigenproblems with a diagonal stiffness, many at once: diag(d) z = w^2 M z, by their inverse."""
+"""Batches of symmetric eigenproblems with a diagonal stiffness, diag(d) z = w^2 M z, by their inverse."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ import scipy.linalg
 from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
-# Rounding errors beyond those that stand beside the pencil.
-_TWO_PLANES, _ON_SPRINGS = 3.0, 2.0  # their rounding over that of one clamped plane, on random scenes
-_CANCELLED = 0.5 * _EPS  # error by entries of the stiffness that cancel where twist couples two planes
-_FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu; five times the error measured at mode 100
-LEAST_STIFFNESS = 0.1  # relative to the stiffness at rest: below it the eigenproblem is shifted
-_LARGEST_SHIFT = 256  # largest exponent of 4 of a shift: beyond it numbers overflow
-_LARGEST_BATCHED = 64  # size of matrices up to which one batched call computes all eigenvectors
+# Rounding errors in addition to those of `equations_of_motion`.
+# Rounding errors with two planes and on springs, over those of one clamped plane.
+_TWO_PLANES, _ON_SPRINGS = 3.0, 2.0
+_CANCELLED = 0.5 * _EPS  # relative error by stiffness entries that cancel where twist couples two planes
+_FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu, five times the error measured at mode 100
+LEAST_STIFFNESS = 0.1  # fraction of the stiffness at rest below which the eigenproblem is shifted
+_LARGEST_SHIFT = 256  # largest exponent of 4 in a shift: beyond it numbers overflow
+_LARGEST_BATCHED = 64  # largest size of matrices whose eigenvectors are all computed in one batched call
 
 
 def solve_diagonal(
@@ -25,9 +26,9 @@ def solve_diagonal(
     Parameters
     ----------
     mass : ndarray, shape (n, n) or (S, n, n)
-        M of all problems, or of each.
+        Mass matrix M of all problems, or of each.
     stiffness : ndarray, shape (S, n)
-        d of each.
+        Diagonal stiffness d of each problem.
     count : int
         Number of modes k.
     lowest_at_rest : float or ndarray, shape (S,)
@@ -55,7 +56,7 @@ def solve_diagonal(
 
 
 def inverse_squares(mass: np.ndarray, stiffness: np.ndarray, count: int) -> np.ndarray:
-    """Find 1/w^2 (S, k) of `solve_diagonal`, where no stiffness is below `LEAST_STIFFNESS`."""
+    """Compute 1/w^2 (S, k) as in `solve_diagonal`, for stiffnesses not below `LEAST_STIFFNESS`."""
     scale = 1 / np.sqrt(stiffness)
     mu = np.linalg.eigvalsh(scale[:, :, None] * mass * scale[:, None, :])
     return above_rounding(mu[:, : -count - 1 : -1])
@@ -64,7 +65,10 @@ def inverse_squares(mass: np.ndarray, stiffness: np.ndarray, count: int) -> np.n
 def _solve_scaled(
     M: np.ndarray, d: np.ndarray, count: int, lowest_at_rest: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Solve diag(d) z = w^2 M z for positive d (S, n): squared frequencies w^2, vectors z, rounding of w."""
+    """Solve d z = w^2 M z for positive diagonal stiffness d (S, n) and mass M.
+
+    Return squared angular frequencies w^2, vectors z, and relative rounding errors of w.
+    """
     scale = 1 / np.sqrt(d)
     mu, z = _solve_largest(scale[:, :, None] * M * scale[:, None, :], count)
     return 1 / mu, z * scale[:, :, None] / np.sqrt(mu)[:, None, :], forward_error(mu)
@@ -73,7 +77,10 @@ def _solve_scaled(
 def _solve_shifted(
     M: np.ndarray, d: np.ndarray, count: int, lowest_at_rest: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Solve as `_solve_scaled`, but for any d, with the positive definite diag(d) + shift M."""
+    """Solve d z = w^2 M z for any diagonal stiffness d, by the positive definite d + shift M.
+
+    The results are as those of `_solve_scaled`.
+    """
     shift = _find_shift(M, d, lowest_at_rest)
     K = shift[:, None, None] * M
     K[:, np.arange(d.shape[1]), np.arange(d.shape[1])] += d
@@ -88,23 +95,23 @@ def _solve_shifted(
 
 
 def _solve_largest(A: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the largest eigenvalues, descending, and their vectors, of a batch of symmetric matrices."""
+    """Compute the largest eigenvalues, descending, and eigenvectors of a batch of symmetric matrices."""
     n = A.shape[-1]
     if n <= _LARGEST_BATCHED:
         mu, z = np.linalg.eigh(A)
-    else:  # most of the time goes into the vectors, of which only a few are computed
+    else:  # most of the time is spent on vectors, so only a few are computed
         modes = [scipy.linalg.eigh(a, subset_by_index=(n - count, n - 1)) for a in A]
         mu, z = (np.array(values) for values in zip(*modes, strict=True))
     return above_rounding(mu[:, : -count - 1 : -1]), z[:, :, : -count - 1 : -1]
 
 
 def above_rounding(mu: np.ndarray) -> np.ndarray:
-    """Raise eigenvalues (..., k), descending, to half their rounding error: it may make them negative."""
+    """Raise eigenvalues (..., k), descending, to half their rounding error, so that none is negative."""
     return np.maximum(mu, _FORWARD / 2 * mu[..., :1])
 
 
 def forward_error(mu: np.ndarray) -> np.ndarray:
-    """Relative error of 1/sqrt(mu) (..., k) by the eigensolver, for descending mu."""
+    """Estimate the relative error of 1/sqrt(mu) (..., k) by the eigensolver, for descending mu."""
     return _FORWARD * mu[..., :1] / mu
 
 
@@ -114,9 +121,10 @@ def _find_shift(M: np.ndarray, d: np.ndarray, smallest: np.ndarray) -> np.ndarra
     Raises
     ------
     LinAlgError
-        If rounding hides whether a shift does.
+        If rounding hides whether a shift makes it positive definite.
     """
-    low, high = np.full(len(d), -1), np.zeros(len(d), dtype=int)  # exponents that fail, and that are tried
+    # Exponents that fail, and exponents being tried.
+    low, high = np.full(len(d), -1), np.zeros(len(d), dtype=int)
     failing, M = np.arange(len(d)), np.broadcast_to(M, (len(d), *M.shape[-2:]))
     while (
         failing := failing[~_are_definite(M[failing], d[failing], smallest[failing] * 4.0 ** high[failing])]
@@ -132,7 +140,7 @@ def _find_shift(M: np.ndarray, d: np.ndarray, smallest: np.ndarray) -> np.ndarra
 
 
 def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray:
-    """Whether diag(d) + shift M is positive definite beyond rounding: M (S, n, n), d (S, n), shifts (S,)."""
+    """Whether diag(d) + shift M is positive definite beyond rounding, for M (S, n, n), d and shifts."""
     n = d.shape[1]
     K = shift[:, None, None] * M
     K[:, np.arange(n), np.arange(n)] += d
@@ -143,12 +151,12 @@ def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray
 def rounding_of_matrices(
     terms: np.ndarray, squared: np.ndarray, z: np.ndarray, size: np.ndarray, mass: np.ndarray
 ) -> np.ndarray:
-    """Relative error (S, k) of frequencies by rounding of the matrices of conservative equations.
+    """Estimate the relative error (S, k) of frequencies by rounding of conservative equations' matrices.
 
     Parameters
     ----------
     terms : ndarray, shape (S, n)
-        The diagonal stiffness with the absolute value of each of its terms.
+        The diagonal stiffness, summed over the absolute values of its terms.
     squared, z : ndarray, shapes (S, k) and (S, n, k)
         Squared frequencies and modes, in coordinates in which the stiffness is diagonal.
     size : ndarray, shape (S, n, k)
@@ -156,21 +164,21 @@ def rounding_of_matrices(
     mass : ndarray, shape (n, n) or (S, n, n)
         Absolute values of the mass matrix of the pencil.
     """
-    modal_terms = np.einsum("snk,sn->sk", z**2, terms)  # the modal stiffness without cancellation
+    modal_terms = np.einsum("snk,sn->sk", z**2, terms)  # modal stiffness without cancellation
     modal_norm = (z**2).sum(axis=1) * terms.max(axis=1, keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):
         by_terms, by_norm = modal_terms / np.abs(squared), modal_norm / np.abs(squared)
-    modal_mass = (size * (mass @ size)).sum(axis=1)  # 1 without cancellation
-    growth = max(1.0, terms.shape[1] / ROUNDING_SIZE)  # rounding adds up over the functions
+    modal_mass = (size * (mass @ size)).sum(axis=1)  # modal mass without cancellation
+    growth = max(1.0, terms.shape[1] / ROUNDING_SIZE)  # rounding errors add up over the functions
     return growth * (BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
 
 
 def rounding_of_scene(
     pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, size: np.ndarray, rounding: np.ndarray
 ) -> np.ndarray:
-    """Relative error (S, k) of frequencies by rounding, from that of a clamped beam in one plane.
+    """Estimate the relative rounding error (S, k) of frequencies from that of a clamped beam in one plane.
 
-    Two planes add what cancels of large entries of the stiffness of a stiff plane.  The absolute values
+    With two planes, cancelling large stiffness entries of a stiff plane add to it.  The absolute values
     `size` of the modes have shape (S, n, k).
     """
     if pencil.planes == 1:

@@ -15,36 +15,37 @@ from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import InvalidValue, within
 from beamdyn.common.results.statements import TOLERANCE, Statement
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.mass import axial_tension
+from beamdyn.equations.mass import steady_tension
 from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
-from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.modal.error_estimate import EstimatedModes, solve_with_error
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.beam import Beam
-from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor
 
-DEFAULT_TARGET = 1e-11  # relative error of eigenvalues by default: two digits below the promised 1e-9
-TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance accepted
+DEFAULT_TARGET = 1e-11  # default relative error of eigenvalues: two digits below the promised 1e-9
+TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance that is accepted
 MOMENTS_TARGET = 1e-10  # smallest target of moment bases, whose stated errors are some 30 times the true ones
 FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
-# Smallest targets of beams in space, of few segments and of many, where each function costs much.
+# Smallest targets of beams in space, of few segments and of many, where each function is expensive.
 SPACE_TARGET, SEGMENTED_SPACE_TARGET = 1e-7, 1e-4
 PLATE_TARGET = 1e-4  # smallest target of a strip as a plate, whose convergence is algebraic
-_MOST_SEGMENTS = 200  # segments of a beam between its stations and breakpoints
-_MOST_IN_ALL = 1000  # Ritz functions on all segments together: an eigenproblem of a second
+_MOST_SEGMENTS = 200  # largest number of segments of a beam between its stations and breakpoints
+# Largest number of Ritz functions on all segments together: solving their eigenproblem takes a second.
+_MOST_IN_ALL = 1000
 _FEW_SEGMENTS = 6  # segments up to which polynomials on each need fewer functions than moments over the beam
-_MANY_ON_EACH = 2  # modes for each segment, beyond which moments need more functions, and lose digits
+_MANY_ON_EACH = 2  # modes per segment beyond which moments need more functions, and lose digits
 # Forces in each direction beyond the number of modes, and for each digit, which public blades need; twisted
 # sections bend under the forces in both directions.
 _IN_STRAIGHT, _IN_TWISTED = (11, 2.5), (6, 2.3)
-_ON_LAYERS = 8  # fewest elements on a segment for a layer, so that a mesh of half as many resolves it, too
-_OF_ELEMENTS = 0.1  # accuracy for which their layers are cut off: there are elements beyond, too
-_MANY = 10_000  # modes, more than any discretization gives
+# Least number of elements on a segment for a boundary layer, so that half as many resolve the layer, too.
+_ON_LAYERS = 8
+_OF_ELEMENTS = 0.1  # accuracy for which layers are cut off with finite elements, which continue beyond
+_MANY = 10_000  # a number of modes that no discretization gives
 _NAMES = "ritz", "fem"
-_FEWEST_FUNCTIONS = 9  # fewest functions: else the coarser basis lacks only one, which may not affect a mode
+# Least number of functions: with fewer, the coarser basis lacks only one, which may not affect a mode.
+_FEWEST_FUNCTIONS = 9
 
 DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
 
@@ -77,7 +78,7 @@ def solve_to_tolerance(
 def _solve_finer(
     found: EstimatedModes, speeds: np.ndarray, modes: int, extra: int = 0
 ) -> EstimatedModes | None:
-    """The modes of the next finer model; None if there is none, or rounding of so many functions bars it."""
+    """Solve the modes of the next finer model; None if there is none, or it fails by rounding."""
     if (finer := refine_model(found.model)) is None:
         return None
     try:
@@ -105,7 +106,6 @@ def choose_model(
     speeds: np.ndarray,
     modes: int,
     target: float = DEFAULT_TARGET,
-    cheapest: bool = False,
 ) -> Model:
     """Find the smallest model whose estimated error meets a target at the slowest and fastest speed.
 
@@ -121,8 +121,6 @@ def choose_model(
         Number of modes.
     target : float
         Relative error of the eigenvalues to be met; at least 1e-7 for finite elements.
-    cheapest : bool
-        Begin with the smallest sensible model, instead of one that usually meets the default target.
 
     Returns
     -------
@@ -134,7 +132,7 @@ def choose_model(
         If the discretization is unknown or has too few functions for the modes, or the beam has too many
         segments.
     """
-    return _choose(scene, discretization, speeds, modes, target, cheapest)[0]
+    return _choose(scene, discretization, speeds, modes, target, cheapest=False)[0]
 
 
 def model_to_tolerance(
@@ -144,7 +142,7 @@ def model_to_tolerance(
     modes: int,
     tolerance: float | None,
 ) -> Model:
-    """Find the model of `solve_to_tolerance`; without a tolerance that of `choose_model`."""
+    """Find the model as `solve_to_tolerance` does, or without a tolerance as `choose_model` does."""
     if tolerance is None:
         return choose_model(scene, discretization, speeds, modes)
     tolerance = within("tolerance", tolerance, *TOLERANCES)
@@ -159,7 +157,10 @@ def _choose(
     target: float,
     cheapest: bool,
 ) -> tuple[Model, EstimatedModes | None]:
-    """Find the model of `choose_model`, and its modes at the slowest and fastest speed, if solved."""
+    """Find the model of `choose_model`, and its modes at the slowest and fastest speed if it solved them.
+
+    `cheapest` begins with the smallest sensible model, instead of one that usually meets the default target.
+    """
     check_discretization(discretization)
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
     target = affordable_target(scene, discretization, target)
@@ -170,7 +171,7 @@ def _choose(
     models = list_models(split, discretization, modes, target, cheapest, split is not scene)
     if not isinstance(discretization, str):
         return next(models), None
-    # Some functions of a model may depend on others.
+    # Some functions of a model may be linear combinations of others.
     first = next(m for m in models if m.solver.size >= modes or refine_model(m) is None)
     reached = within_reach(first.discretization, target)
     at_ends = refine(
@@ -182,7 +183,7 @@ def _choose(
 
 
 def affordable_target(scene: Scene, discretization: DiscretizationChoice, target: float) -> float:
-    """A target of the error, or the least that finite elements, or the functions of a plate, aim at."""
+    """Limit the target of the error to what elements, plates and beams in space can reach at fair cost."""
     if not isinstance(discretization, str):
         return target
     of_space = SEGMENTED_SPACE_TARGET if _count_segments(scene) > _FEW_SEGMENTS else SPACE_TARGET
@@ -191,7 +192,7 @@ def affordable_target(scene: Scene, discretization: DiscretizationChoice, target
 
 
 def within_reach(discretization: Discretization, target: float) -> float:
-    """A target of the error, or the least at which a basis aims: moment bases state too large errors."""
+    """Limit the target of the error for moment bases, whose estimated errors are too large."""
     return target if discretization.converges_regularly else max(target, MOMENTS_TARGET)
 
 
@@ -203,9 +204,10 @@ def list_models(
     cheapest: bool,
     has_layers: bool = False,
 ) -> Iterator[Model]:
-    """List the models to try, from the smallest sensible one to the finest; of an instance, that one.
+    """List the models to try, from the smallest sensible one to the finest; an instance is the only one.
 
-    `has_layers` says whether segments are those of `end_layers`, which need several elements.
+    `cheapest` begins with the smallest sensible model, instead of one that usually meets the default target;
+    `has_layers` says whether segments were made for layers at the ends, which need several elements.
     The other parameters and what is raised are those of `choose_model`.
     """
     segments = len(scene.modelled_beam.breakpoints) - 1
@@ -233,7 +235,7 @@ def _refinements(model: Model | None) -> Iterator[Model]:
 
 
 def refine_model(model: Model) -> Model | None:
-    """The next finer model; None if there is none that is affordable."""
+    """Build the next finer model; None if there is none that is affordable."""
     finer = model.discretization.finer()
     if isinstance(finer, Ritz):  # finite elements have their own limit
         segments = _count_segments(model.scene) if finer.on_each_segment else 1
@@ -242,20 +244,20 @@ def refine_model(model: Model) -> Model | None:
     if finer is None:
         return None
     refined = Model(model.scene, finer)
-    if refined.coarser.discretization == model.discretization:  # it is there already
+    if refined.coarser.discretization == model.discretization:  # the coarser model has been built already
         refined.__dict__["coarser"] = model
     return refined
 
 
 def _count_segments(scene: Scene) -> int:
-    """Number of segments of the beam between its stations and breakpoints."""
+    """Count the segments of the beam between its stations and breakpoints."""
     return len(scene.modelled_beam.breakpoints) - 1
 
 
 def _first_ritz(
     scene: Scene, segments: int, modes: int, target: float, cheapest: bool, has_layers: bool
 ) -> Discretization:
-    """Basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
+    """Choose a basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
     if scene.models_width:
         return Ritz(min(max(5, int(np.ceil(2 + modes - np.log10(target)))), MOST_FUNCTIONS))
     if segments > _FEW_SEGMENTS and modes <= _MANY_ON_EACH * segments:
@@ -271,8 +273,9 @@ def _first_ritz(
 def _first_fem(
     scene: Scene, segments: int, modes: int, target: float, cheapest: bool, has_layers: bool
 ) -> Discretization:
-    """Mesh of elements enough on each segment; layers at the ends need several."""
-    from beamdyn.equations.fem import MOST_ELEMENTS, MOST_REFINED, Fem  # here: scikit-fem is slow to import
+    """Choose a mesh with enough elements on each segment; layers at the ends need several."""
+    # Imported here, because scikit-fem is slow to import.
+    from beamdyn.equations.fem import MOST_ELEMENTS, MOST_REFINED, Fem
 
     least, on_each = min(16 * segments, MOST_REFINED) if cheapest else 80, _ON_LAYERS if has_layers else 2
     return Fem(min(max(least, on_each * segments, 4 * modes), MOST_ELEMENTS), on_each=on_each)
@@ -286,7 +289,7 @@ def ensure_size(scene: Scene, discretization: DiscretizationChoice, modes: int) 
 
 
 def most_modes(scene: Scene, discretization: DiscretizationChoice, modes: int) -> int:
-    """A number of modes, or as many of them as the functions of a given discretization serve, at least 1."""
+    """Limit a number of modes to those that a given discretization can compute, at least 1."""
     if isinstance(discretization, str):
         return modes
     check_discretization(discretization)
@@ -294,7 +297,7 @@ def most_modes(scene: Scene, discretization: DiscretizationChoice, modes: int) -
 
 
 def _most_that_fit(discretization: Discretization, modes: int, segments: int) -> int:
-    """The most of some modes for which a discretization has functions enough."""
+    """Find the largest number up to `modes` for which a discretization has functions enough."""
     if _fits(discretization, modes, segments):
         return modes
     fewer = range(1, min(modes, _MANY))
@@ -302,29 +305,30 @@ def _most_that_fit(discretization: Discretization, modes: int, segments: int) ->
 
 
 def _fits(discretization: Discretization, modes: int, segments: int) -> bool:
-    """Whether a beam of some segments has functions enough."""
+    """Whether a discretization has functions enough for `modes` modes on a number of segments."""
     on_each = isinstance(discretization, Ritz) and discretization.on_each_segment
     return discretization.fits(-(-modes // segments) if on_each else modes)
 
 
 def check_discretization(discretization: object) -> None:
-    """Refuse what is neither the name of a discretization nor one."""
+    """Refuse an argument that is neither a discretization nor the name of one."""
     named = isinstance(discretization, str) and discretization in _NAMES
     if not named and (isinstance(discretization, str | type) or not hasattr(discretization, "spaces")):
         bound = f"give {', '.join(map(repr, _NAMES))}, a beamdyn.Ritz or a beamdyn.Fem"
         raise InvalidValue("discretization", discretization, bound)
 
 
-_LENGTHS = 5.0  # of a layer at least; a half more for each factor e of accuracy, as energy falls by e^2
+_LENGTHS = 5.0  # smallest length of a layer in decay lengths; half a length more per factor e of accuracy
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4  # longest parts of the beam that get functions of their own
 _SHORTEST = 1e-4  # length of the shortest layer
-_TOWARD_TIP = (0.7, 0.95, 0.992)  # x/L between which the length of a layer at an unknown speed lies
+# Breakpoints x/L added near the tip for a boundary layer whose length is not known, as the speed is not.
+_TOWARD_TIP = (0.7, 0.95, 0.992)
 
 
 def split_layers(scene: Scene, speed: float, target: float) -> Scene:
-    """Add breakpoints where the layers at a speed [rad/s] end; the scene itself where they are not short.
+    """Add breakpoints where the boundary layers at a speed [rad/s] end, if they are short.
 
-    Beyond them a layer's share of an eigenvalue is below the target.
+    Beyond the breakpoints a layer's contribution to an eigenvalue is below the target.
     """
     if not speed:
         return scene
@@ -336,26 +340,34 @@ def split_layers(scene: Scene, speed: float, target: float) -> Scene:
     return _split(scene, places) if places else scene
 
 
-@lru_cache(maxsize=64)
 def _lengths_at_unit_speed(beam: Beam, mount: Mount) -> tuple[float, float]:
-    """Lengths (EI/N)^(1/2) over L at the root and at the tip, at 1 rad/s; inf where nothing pulls."""
-    ends, (n_a, n_b) = np.array([0.0, 1.0]), axial_tension(beam)
-    tension = n_b(ends) - root_motion(mount, MotionSample.steady(1.0)).root_axial * n_a(ends)
+    """Compute decay lengths of boundary layers over the length at root and tip, at 1 rad/s.
+
+    They are (EI/N)^(1/2) with the tension N; inf without tension.
+    """
+    tension = steady_tension(beam, mount)[[0, -1]].tolist()
+    root, tip = (
+        math.sqrt(EI / N) if N > 0 else math.inf
+        for EI, N in zip(_stiffness_of_ends(beam), tension, strict=True)
+    )
+    return root / beam.length, tip / beam.length
+
+
+@lru_cache(maxsize=64)
+def _stiffness_of_ends(beam: Beam) -> list[float]:
+    """Compute the smaller of both bending stiffnesses [N m2] at the root and at the tip."""
     profiles = (beam.bending_stiffness, beam.second_bending_stiffness)
-    stiffness = np.min([each(ends) for each in profiles if each is not None], axis=0)
-    with np.errstate(divide="ignore"):
-        root, tip = np.sqrt(stiffness / np.maximum(tension, 0.0)) / beam.length
-    return float(root), float(tip)
+    return np.min([each(np.array([0.0, 1.0])) for each in profiles if each is not None], axis=0).tolist()
 
 
 def split_tip(scene: Scene) -> Scene:
-    """Add breakpoints that resolve a layer at the tip at any speed, where tension makes one."""
+    """Add breakpoints that resolve a boundary layer at the tip at any speed, if tension makes one."""
     beam = scene.beam
     has_layer = beam.tip is not None and _lengths_at_unit_speed(beam, scene.mount)[1] < np.inf
     return _split(scene, _TOWARD_TIP) if has_layer else scene
 
 
 def _split(scene: Scene, places: Sequence[float]) -> Scene:
-    """The scene with breakpoints of its beam at x/L, too."""
+    """Return the scene with additional breakpoints of its beam at x/L."""
     mass = scene.beam.mass_per_length.split((0.0, *places, 1.0))
     return replace(scene, beam=replace(scene.beam, mass_per_length=mass))

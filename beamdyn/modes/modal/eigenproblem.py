@@ -2,7 +2,7 @@
 
 The inverse problem M v = mu K v is solved: the lowest modes are those of the largest eigenvalues mu, which
 keep all digits whatever the size of the basis.  At one speed that is done by a factorization of the stiffness
-there.  For many, coordinates are used in which the stiffness is diagonal at every speed; they cost an
+there.  For many speeds, coordinates are used in which the stiffness is diagonal at every speed; they cost an
 eigenproblem of their own, which at one speed would be most of the work (`diagonal_stiffness`).
 """
 
@@ -43,7 +43,7 @@ _EPS = np.finfo(float).eps
 
 @dataclass(frozen=True)
 class Eigen:
-    """The k lowest modes at each of S speeds.
+    """Lowest k modes at each of S speeds.
 
     Parameters
     ----------
@@ -75,18 +75,18 @@ class Eigensolver(ABC):
 
     @property
     def conservative(self) -> bool:
-        """Whether the equations have neither damping nor gyroscopic terms: then modes are real."""
+        """Whether the equations have neither damping nor gyroscopic terms, so that modes are real."""
         return self.pencil.conservative
 
     def energies_at_rest(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Products (S,) of vectors (S, n) with themselves by stiffness at rest and by mass."""
+        """Compute products (S,) of vectors (S, n) with themselves by stiffness at rest, and by mass."""
         of_stiffness, of_mass = (
             np.real(v.conj() * (v @ A)).sum(axis=1) for A in (self.pencil.K0, self.pencil.M)
         )
         return of_stiffness, of_mass
 
     def quotient_at_rest(self, v: np.ndarray) -> np.ndarray:
-        """Rayleigh quotients (S,) of vectors (S, n) at rest [rad2/s2]."""
+        """Compute the Rayleigh quotients (S,) of vectors (S, n) at rest [rad2/s2]."""
         stiffness, mass = self.energies_at_rest(v)
         return stiffness / mass
 
@@ -98,7 +98,7 @@ class Eigensolver(ABC):
     @property
     @abstractmethod
     def softening(self) -> float:
-        """Largest loss of stiffness per squared speed, relative to that at rest [s2]; 0 within rounding."""
+        """Largest relative loss of stiffness per squared speed [s2], relative to rest; 0 within rounding."""
 
     @property
     def critical_speed(self) -> float:
@@ -138,27 +138,27 @@ class Eigensolver(ABC):
         Returns
         -------
         ndarray, shape (S, d)
-            nan from the critical speed on.
+            Values of the functions; nan from the critical speed on.
         """
 
 
 class Solver(Eigensolver):
-    """Eigensolver by full matrices, for all modes.
+    """Eigensolver by full matrices, which computes all modes.
 
-    For many speeds it has coordinates of its own, in which K = diag(1 + speed^2 growth), minus `pencil.shift`
+    For many speeds it uses coordinates in which K = diag(1 + speed^2 growth), minus `pencil.shift`
     times the mass.
     """
 
     @cached_property
     def _at_rest(self) -> np.ndarray:
-        """Cholesky factor (n, n) of the stiffness at rest, with the shift."""
+        """Cholesky factor (n, n) of the stiffness at rest, including the shift."""
         K0, M, shift = self.pencil.K0, self.pencil.M, self.pencil.shift
         with explained():
             return np.linalg.cholesky(K0 + shift * M if shift else K0)
 
     @cached_property
     def _diagonal(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Growth (n,), coordinates of the pencil per coordinate of these (n, n), and mass (n, n) in these."""
+        """Growth (n,) of the stiffness, the basis (n, n) of these coordinates, and mass (n, n) in them."""
         L = self._at_rest
         K2, M = (_symmetric(transformed(L, A)) for A in (self.pencil.K2, self.pencil.M))
         growth, Q = np.linalg.eigh(K2)
@@ -166,17 +166,17 @@ class Solver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """Inverse of the largest eigenvalue of the inverse problem."""
+        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
         return float(1 / _largest_values(transformed(self._at_rest, self.pencil.M), 1)[0])
 
     @property
     def softening(self) -> float:
-        """The lowest growth of the stiffness, reversed; on springs, without the growth by the shift."""
+        """Largest relative loss of stiffness per squared speed [s2], from its lowest growth."""
         return self._softening[0]
 
     @property
     def critical_rounding(self) -> float:
-        """Rounding error of the softening, which is relative to the largest growth."""
+        """Relative rounding error of the critical speed, from that of the largest growth."""
         return self._softening[1]
 
     @cached_property
@@ -191,9 +191,9 @@ class Solver(Eigensolver):
         return (lowest, float(lost / lowest)) if lowest > lost else (0.0, np.inf)
 
     def factor(self, speeds: np.ndarray) -> np.ndarray | None:
-        """Cholesky factor L (n, n) of the stiffness of conservative equations at one speed [rad/s].
+        """Factor the stiffness of conservative equations at one speed [rad/s]: Cholesky factor L (n, n).
 
-        None for more speeds, and where a deflection has less than `LEAST_STIFFNESS` of its stiffness at rest.
+        Returns None for more speeds, and where less than `LEAST_STIFFNESS` of the stiffness at rest is left.
         """
         if len(speeds) > 1 or self.pencil.shift or not self.pencil.conservative:
             return None
@@ -202,7 +202,7 @@ class Solver(Eigensolver):
         return None if failed or dpotrf(((1 - LEAST_STIFFNESS) * K0 + spin).T)[1] else upper.T
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Conservative equations for all speeds at once, others speed by speed."""
+        """Compute the `count` lowest modes, of conservative equations at all speeds at once."""
         with explained():
             if not self.pencil.conservative:
                 modes = [self._solve_coupled(speed, count) for speed in speeds]
@@ -221,7 +221,7 @@ class Solver(Eigensolver):
             return Eigen(1j * np.sqrt(squared)[None], v[None], rounding)
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Without vectors where the equations are conservative, and stiff at each speed."""
+        """Compute the eigenvalues at each speed, without vectors where conservative equations allow it."""
         if (L := self.factor(speeds)) is not None:
             mu = above_rounding(_largest_values(transformed(L, self.pencil.M), count))
             return 1j / np.sqrt(mu)[None]
@@ -232,7 +232,11 @@ class Solver(Eigensolver):
         return 1j / np.sqrt(inverse_squares(mass, stiffness, count))
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """One speed is solved by a factorization, others in the coordinates of the solver, each by itself."""
+        """Compute linear functions of the coordinates in static equilibrium under the rotation.
+
+        At one speed it is by a factorization, at several in coordinates in which the stiffness is diagonal:
+        see `Eigensolver.solve_static`.
+        """
         if self.pencil.shift:
             return np.array([springs.solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
         if (L := self.factor(speeds)) is not None:
@@ -246,7 +250,7 @@ class Solver(Eigensolver):
         return np.where(stiffness.min(axis=1, keepdims=True) > 0, values, np.nan)
 
     def _solve_diagonal(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Modes of conservative equations, in coordinates in which the stiffness is diagonal."""
+        """Compute modes of conservative equations in coordinates in which the stiffness is diagonal."""
         growth, basis, mass = self._diagonal
         spin = speeds[:, None] ** 2
         squared, z, rounding = solve_diagonal(mass, 1 + spin * growth, count, self.lowest_at_rest)
@@ -268,7 +272,7 @@ class Solver(Eigensolver):
         return has_massless(self._diagonal[2])
 
     def _solve_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
+        """Compute eigenvalues (k,), vectors (n, k) and rounding (k,) of coupled equations at one speed."""
         pencil, n = self.pencil, self.size
         on_springs = pencil.shift and not pencil.C.any() and not self._has_massless
         if on_springs and (graded := springs.factor_graded(pencil, speed)):
@@ -286,11 +290,11 @@ class Solver(Eigensolver):
             gyroscopic = not pencil.C.any() and stiffness.min() > 0
             solve = solve_gyroscopic if gyroscopic else solve_general
             inverse, y = solve(mass / time**2, damping / time, stiffness)
-        turns = np.empty((n, 0))  # about hinges on which neither stiffness nor damping acts
+        turns = np.empty((n, 0))  # rotations about hinges on which neither stiffness nor damping acts
         if pencil.shift:
             undamped = self._solve_diagonal(np.array([speed]), min(pencil.planes, n))
             turns = springs.find_free_turns(pencil, undamped.eigenvalue[0], undamped.vector[0])
-        if turns.size:  # each turn has 0 twice
+        if turns.size:  # each rotation has the eigenvalue 0 twice
             slowest = np.argsort(np.abs(inverse), kind="stable")[: len(inverse) - 2 * turns.shape[1]]
             inverse, y = inverse[np.sort(slowest)], y[:, np.sort(slowest)]
         s, z = select_lowest(inverse * time, y[:n], count)
@@ -304,7 +308,7 @@ class Solver(Eigensolver):
     def _solve_graded(
         self, speed: float, count: int, basis: np.ndarray, condition: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Modes of gyroscopic equations on springs, in coordinates in which the stiffness is 1."""
+        """Compute modes of gyroscopic equations on springs, in coordinates in which the stiffness is 1."""
         M, C = (basis.T @ A @ basis for A in (self.pencil.M, speed * self.pencil.G))
         time = np.sqrt(np.trace(M) / len(M))
         inverse, y = solve_gyroscopic(M / time**2, C / time, np.ones(len(M)))
@@ -314,9 +318,37 @@ class Solver(Eigensolver):
         return s, basis @ (z / norm), rounding
 
 
+class LoadedSolver(Solver):
+    """Eigensolver of equations whose stiffness a load at the tip may make indefinite and not symmetric."""
+
+    def solve(self, speeds: np.ndarray, count: int) -> Eigen:
+        """Solve the eigenproblem at one speed after the other, by the inverse of the stiffness."""
+        modes = [self._solve_loaded(speed, count) for speed in speeds]
+        return Eigen(*(np.array(values) for values in zip(*modes, strict=True)))
+
+    def _solve_loaded(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Compute eigenvalues (k,), vectors (n, k) and rounding errors (k,) at one speed."""
+        M, K, C = self.pencil.M, *self._at(speed)
+        by_mass = np.linalg.solve(K, M)
+        mu, y = np.linalg.eig(by_mass)
+        time = np.sqrt(np.abs(mu).max())  # unit of time in which the frequencies are of order 1
+        inverse, y = np.concatenate([r := np.sqrt(-mu + 0j) / time, -r]), np.concatenate([y, y], axis=1)
+        if C.any():
+            inverse, y = solve_general(by_mass / time**2, np.linalg.solve(K, C) / time, np.ones(self.size))
+        # Eigenvalues of modes so high that they are rounding errors.
+        lost = np.abs(inverse) < np.sqrt(self.size * _EPS)
+        s, z = select_lowest(inverse[~lost] * time, y[: self.size, ~lost], count)
+        norm = np.sqrt(np.einsum("nk,nm,mk->k", z.conj(), M, z).real)
+        return s + 0.0, z / norm, 8 * _EPS * self.size * np.abs(s) * np.abs(inverse).max() * time
+
+    def _at(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the stiffness, and the damping with the gyroscopic matrix, at a speed."""
+        return self.pencil.K0 + speed**2 * self.pencil.K2, self.pencil.C + speed * self.pencil.G
+
+
 @contextmanager
 def explained() -> Iterator[None]:
-    """Say what a factorization that fails means."""
+    """Explain a factorization that fails within this context, in the error's message."""
     try:
         yield
     except np.linalg.LinAlgError as error:
@@ -346,12 +378,12 @@ def _largest_values(A: np.ndarray, count: int) -> np.ndarray:
 def rounding_of_factored(
     pencil: SteadyPencil, speed: float, squared: np.ndarray, v: np.ndarray
 ) -> np.ndarray:
-    """Relative error (k,) of frequencies of a clamped beam by rounding of its matrices.
+    """Estimate the relative rounding error (k,) of a clamped beam's frequencies from its matrices.
 
     Parameters
     ----------
     pencil : SteadyPencil
-        Equations of which the stiffness was factored at a speed.
+        Equations whose stiffness was factored at a speed.
     speed : float
         The speed [rad/s].
     squared : ndarray, shape (k,)
@@ -362,6 +394,6 @@ def rounding_of_factored(
     size = np.abs(v)
     spin = speed**2 * (size * (np.abs(pencil.K2) @ size)).sum(axis=0)
     by_terms = ((v * (pencil.K0 @ v)).sum(axis=0) + spin) / squared
-    mass = (size * (np.abs(pencil.M) @ size)).sum(axis=0)  # 1 without cancellation
-    growth = max(1.0, len(v) / ROUNDING_SIZE)  # rounding adds up over the functions
+    mass = (size * (np.abs(pencil.M) @ size)).sum(axis=0)  # 1 if nothing cancelled
+    growth = max(1.0, len(v) / ROUNDING_SIZE)  # rounding errors add up over the functions
     return growth * (BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)

@@ -1,4 +1,4 @@
-"""Equilibria at steady speed of a beam that bends by any angle, and its modes about them."""
+"""Equilibria at steady speed of a beam that bends by any angle, and the modes about them."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ from functools import cached_property, partial
 from typing import Literal
 
 import numpy as np
+from scipy.linalg import eigh
 
 from beamdyn.equations.beam_in_space.rotating_beam import BentState, RotatingBeam
+from beamdyn.equations.beam_in_space.tip_forces import LoadedBeam
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import Quantity, root_motion
 from beamdyn.modes.modal.continuation import (
@@ -24,21 +26,27 @@ from beamdyn.modes.modal.continuation import (
     solve_at,
     start_curve,
 )
-from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, Solver
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, LoadedSolver, Solver
 from beamdyn.scene.motion import MotionSample
 
 Branch = Literal["straight", "bent"]
-_SAME = 1e-6  # difference of slope angles below which two equilibria are one [rad]
-_NEAR = 0.01  # difference of slope angles by which that of a coarse discretization may differ [rad]
+_SAME = 1e-6  # difference of slope angles below which two equilibria count as the same one [rad]
+# Largest difference of slope angles between an equilibrium and that of a coarser discretization [rad].
+_NEAR = 0.01
 _PUSH = 0.05  # transverse acceleration over omega^2 L that bends a beam which nothing else does
-_FASTEST = 100.0  # speed over the first angular frequency at rest, to which equilibria are followed
-_SOUGHT = 30.0  # the same, to which a loss of stability is sought: beyond, boundary layers make steps short
-_PATIENT = 8  # iterations that a step may take there: in boundary layers the last ones gain a few digits each
+_FASTEST = 100.0  # highest speed at which equilibria are followed, over the first angular frequency at rest
+# Speed over the first angular frequency at rest, up to which a loss of stability is sought: beyond, boundary
+# layers make steps short.
+_SOUGHT = 30.0
+# Iterations of an easy step while a loss of stability is sought: in boundary layers the last ones gain a few
+# digits each.
+_PATIENT = 8
+_MOST_TURNS = 20 * math.pi  # angle [rad] by which a load at the tip may bend or twist a section
 _COILED = 2 * math.pi  # angle of a section [rad] beyond which no loss of stability is sought
 
 
 class NoEquilibrium(ArithmeticError):
-    """The beam has no equilibrium on the branch at this speed.
+    """Raised when the beam has no equilibrium on the branch at this speed.
 
     Examples
     --------
@@ -49,7 +57,7 @@ class NoEquilibrium(ArithmeticError):
 
 @dataclass(frozen=True)
 class SteadyLoad:
-    """Equilibrium of a beam under rotation, with the squared speed as the parameter.
+    """Equations of equilibrium of a beam under rotation, with the squared speed as the parameter.
 
     Parameters
     ----------
@@ -67,11 +75,12 @@ class SteadyLoad:
 
     @property
     def angles(self) -> np.ndarray:
-        """Slope angles per coordinate."""
+        """Slope angles along the beam per coordinate (n, k), the measure of changes of the coordinates."""
         return self.elastica.angles
 
     @cached_property
-    def _values(self) -> dict[Quantity, float]:
+    def values(self) -> dict[Quantity, float]:
+        """Quantities of the root's motion per squared speed."""
         root = root_motion(self.elastica.linear.mount, MotionSample.steady(1.0))
         quantities = self.elastica.quantities
         values: dict[Quantity, float] = {quantity: float(getattr(root, quantity)) for quantity in quantities}
@@ -81,33 +90,59 @@ class SteadyLoad:
     @property
     def transverse(self) -> float:
         """Transverse acceleration of the root per squared speed [m]."""
-        return self._values.get("root_transverse", 0.0)
+        return self.values.get("root_transverse", 0.0)
+
+    @cached_property
+    def at_rest(self) -> np.ndarray:
+        """Coordinates (n,) in equilibrium at rest: 0 but for a load at the tip, which grows from nothing.
+
+        Raises
+        ------
+        NoEquilibrium
+            If the branch does not reach the whole load.
+        """
+        straight = np.zeros(self.elastica.size)
+        if not self.elastica.at(straight).force_at_rest.any():
+            return straight
+        assert self.elastica.load is not None
+        growing, reached = LoadedBeam(self.elastica.beam, self.elastica.load), 0.0
+        before = start_curve(growing, straight, 0.0, 1.0)
+        with suppress(NotConverged):
+            for after in follow(growing, before):
+                if after.p >= 1:
+                    return find_at(growing, before, after, 1.0)
+                if after.p_rate < 0 or np.abs(after.q @ self.angles).max() > _MOST_TURNS:
+                    break
+                before, reached = after, after.p
+        raise NoEquilibrium(f"the beam was followed to {reached:.3g} of the load at its tip, and not beyond")
 
     @cached_property
     def bends(self) -> bool:
-        """Whether rotation loads the straight beam otherwise than along it."""
-        return bool(self.load(self.elastica.at(np.zeros(self.elastica.size))).any())
+        """Whether rotation, or a load at the tip, loads the straight beam otherwise than along it."""
+        return bool(self.at_rest.any() or self.load(self.elastica.at(self.at_rest)).any())
 
     def load(self, state: BentState) -> np.ndarray:
-        """Inertial force (n,) per squared speed."""
-        return state.inertia(self._values)
+        """Compute the inertial force (n,) per squared speed."""
+        return state.inertia(self.values)
 
     def residual(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Sum of elastic and inertial forces (n,)."""
-        return self.elastica.stiffness @ q + p * self.load(self.elastica.at(q))
+        """Sum elastic and inertial forces, less the load at the tip (n,), at q (n,) and squared speed p."""
+        state = self.elastica.at(q)
+        return state.force_at_rest + p * self.load(state)
 
     def jacobian(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Tangent stiffness (n, n)."""
-        return self.elastica.stiffness + p * self.elastica.at(q).inertia_change(self._values)
+        """Compute the tangent stiffness (n, n) at q and squared speed p."""
+        state = self.elastica.at(q)
+        return state.stiffness_at_rest + p * state.inertia_change(self.values)
 
     def rate(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Derivative of the residual by the squared speed."""
+        """Compute the derivative of the residual by the squared speed, shape (n,)."""
         return self.load(self.elastica.at(q))
 
 
 @dataclass(frozen=True)
 class Pushed:
-    """Equilibrium at a fixed speed, with a transverse acceleration of the root as the parameter.
+    """Equations of equilibrium at a fixed speed, with a transverse acceleration as the parameter.
 
     Parameters
     ----------
@@ -116,7 +151,7 @@ class Pushed:
     squared : float
         Squared speed [rad2/s2].
     scale : float
-        Acceleration that counts as an angle of 1 [m/s2].
+        Acceleration [m/s2] that counts as much as an angle of 1 rad.
     """
 
     load: SteadyLoad
@@ -125,20 +160,20 @@ class Pushed:
 
     @property
     def angles(self) -> np.ndarray:
-        """Slope angles per coordinate."""
+        """Slope angles along the beam per coordinate (n, k), the measure of changes of the coordinates."""
         return self.load.angles
 
     def residual(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Sum of elastic and inertial forces (n,)."""
+        """Compute the sum of elastic and inertial forces (n,) at q and acceleration p."""
         return self.load.residual(q, self.squared) + p * self.rate(q, p)
 
     def jacobian(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Tangent stiffness (n, n)."""
+        """Compute the tangent stiffness (n, n) at q and acceleration p."""
         state = self.load.elastica.at(q)
         return self.load.jacobian(q, self.squared) + p * state.stiffness_of("root_transverse")
 
     def rate(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Derivative of the residual by the acceleration."""
+        """Compute the derivative of the residual by the acceleration, shape (n,)."""
         return self.load.elastica.at(q).inertia_of("root_transverse")
 
 
@@ -154,7 +189,7 @@ def follow_to(
     speeds : ndarray, shape (S,)
         The speeds.
     q : ndarray, shape (n,), optional
-        Coordinates in equilibrium at the speed `start` [rad/s]; by default the beam at rest.
+        Coordinates in equilibrium at the speed `start` [rad/s]; by default those at rest.
 
     Raises
     ------
@@ -167,22 +202,21 @@ def follow_to(
             f"equilibria are sought up to {most:.4g} rad/s, {_FASTEST:g} times the first angular frequency "
             "at rest"
         )
-    q = np.zeros(load.elastica.size) if q is None else q
+    q = load.at_rest if q is None else q
     squares = speeds**2
     found = np.tile(q, (len(speeds), 1))
     for towards in (1.0, -1.0):
         pending = [
             k for k in np.argsort(towards * squares, kind="stable") if towards * (squares[k] - start**2) > 0
         ]
-        if pending and (
-            load.bends or q.any()
-        ):  # otherwise the straight beam is in equilibrium at every speed
+        # Without a load that bends it, the straight beam is in equilibrium at every speed.
+        if pending and (load.bends or q.any()):
             found[pending] = _follow_in_order(load, start_curve(load, q, start**2, towards), squares[pending])
     return found
 
 
 def _follow_in_order(load: SteadyLoad, before: Point, squares: np.ndarray) -> np.ndarray:
-    """Coordinates at squared speeds in the order in which a curve meets them."""
+    """Compute coordinates at squared speeds, in the order in which a curve of equilibria meets them."""
     found, curve, towards = [], follow(load, before), np.sign(before.p_rate)
     while len(found) < len(squares):
         try:
@@ -207,19 +241,28 @@ def _follow_in_order(load: SteadyLoad, before: Point, squares: np.ndarray) -> np
 
 
 def find_loss_of_stability(load: SteadyLoad) -> tuple[float, bool]:
-    """Squared speed [rad2/s2] at which the equilibrium that follows from rest loses its stability.
+    """Find the squared speed [rad2/s2] at which the equilibrium that follows from rest loses stability.
 
     Returns
     -------
     squared : float
-        Where there is none, the largest to which the equilibrium was followed.
+        Squared speed; where no stability is lost, the largest one reached.
     is_lost : bool
-        Whether the stiffness is singular there: the branch turns back, or the beam buckles out of the shape
-        into which the rotation bends it.
+        Whether stability is lost, as the stiffness is singular: the branch turns back, or the beam buckles
+        out of the shape into which the rotation bends it.
     """
-    from scipy.optimize import brentq  # here, because it takes as long to import as all the rest
+    from scipy.optimize import brentq  # imported here, because it takes as long to import as all the rest
 
-    before = start_curve(load, np.zeros(load.elastica.size), 0.0, 1.0)
+    if count_negative(load, load.at_rest, 0.0):
+        return 0.0, True
+    if not load.bends:
+        state = load.elastica.at(load.at_rest)
+        change = state.inertia_change(load.values)  # symmetric, as every load here has a potential
+        softening = max(eigh(-change, state.stiffness_at_rest, eigvals_only=True)[-1], 0.0)
+        if softening * _SOUGHT**2 * load.scale > 1:
+            return float(1 / softening), True
+        return _SOUGHT**2 * load.scale, False
+    before = start_curve(load, load.at_rest, 0.0, 1.0)
     with suppress(NotConverged):
         for after in follow(load, before, easy=_PATIENT):
             if after.p_rate < 0:
@@ -237,21 +280,24 @@ def find_loss_of_stability(load: SteadyLoad) -> tuple[float, bool]:
 def _least_stiffness(
     load: SteadyLoad, before: Point, after: Point, diagonal: np.ndarray, squared: float
 ) -> float:
-    """Lowest eigenvalue of the stiffness at a squared speed between two points of a branch, scaled."""
+    """Compute the lowest scaled eigenvalue of the stiffness at a squared speed between two branch points."""
     q = find_at(load, before, after, squared)
     return float(scaled_eigenvalues(load.jacobian(q, squared), diagonal)[0])
 
 
 def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
-    """Coordinates (n,) of the stable equilibrium on the other side than that of the branch from rest.
+    """Find coordinates (n,) of the stable equilibrium that is bent to the other side than the one from rest.
 
     The root is pushed so that the beam bends to the other side, and then released.
 
     Raises
     ------
     NoEquilibrium
-        If the beam does not stay there at this speed.
+        If the beam does not stay on the other side at this speed, or has a load at the tip.
     """
+    if load.elastica.load is not None:
+        said = "beside a load at the tip no other branch is sought; "
+        raise NoEquilibrium(f"{said}a small force across leads to one if it is there")
     natural, squared = load.transverse, speed**2
     side = 1.0 if natural >= 0 else -1.0
     push = -2 * natural - side * _PUSH * load.elastica.length
@@ -260,7 +306,7 @@ def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
         bent = _release(Pushed(load, squared, scale=abs(push) * squared), q, push * squared)
     except (NotConverged, NoEquilibrium):
         bent = None
-    with suppress(NoEquilibrium):  # the branch from rest may turn back before
+    with suppress(NoEquilibrium):  # the branch from rest may turn back before this speed
         from_rest = follow_to(load, np.array([speed]))[0] if bent is not None else None
         if from_rest is not None and np.abs((bent - from_rest) @ load.angles).max() < _SAME:
             bent = None
@@ -270,7 +316,7 @@ def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
 
 
 def _release(pushed: Pushed, q: np.ndarray, push: float) -> np.ndarray | None:
-    """Follow an equilibrium until the push has ended; None if it is lost before."""
+    """Follow an equilibrium while the push is reduced to 0; None if the equilibrium is lost before."""
     before = start_curve(pushed, q, push, -np.sign(push))
     for after in follow(pushed, before):
         turned = after.p_rate * before.p_rate < 0
@@ -285,20 +331,20 @@ def _release(pushed: Pushed, q: np.ndarray, push: float) -> np.ndarray | None:
 
 
 class DeflectedSolver(Eigensolver):
-    """Eigensolver about the equilibrium at each speed.
+    """Eigensolver for small motions about the equilibrium at each speed.
 
     Parameters
     ----------
     elastica : RotatingBeam
         Equations of motion.
     branch : {"straight", "bent"}
-        Equilibria that are meant: those that follow from rest, or those beside them.
+        Branch of equilibria: the one that follows from rest, or the one next to it.
     guide : DeflectedSolver, optional
-        Solver of another discretization, near whose equilibria these are sought first.
+        Solver of another discretization; equilibria are sought near its own first.
     """
 
     def __init__(self, elastica: RotatingBeam, branch: Branch, guide: DeflectedSolver | None = None) -> None:
-        super().__init__(elastica.about_straight.steady())  # about the straight beam
+        super().__init__(elastica.about_straight.steady())  # equations about the straight beam
         self.elastica, self.guide = elastica, guide
         self.branch: Branch = branch
         self._straight = Solver(self.pencil)
@@ -306,12 +352,12 @@ class DeflectedSolver(Eigensolver):
         self._solved: dict[tuple[float, int], Eigen] = {}
 
     def guiding(self, elastica: RotatingBeam) -> DeflectedSolver:
-        """Solver of another discretization, whose equilibria are sought near these."""
+        """Make another discretization's solver, which seeks equilibria near those of this solver."""
         return DeflectedSolver(elastica, self.branch, guide=self)
 
     @property
     def conservative(self) -> bool:
-        """False: a bent beam in the plane of rotation is gyroscopic."""
+        """False, because a bent beam in the plane of rotation is gyroscopic."""
         return False
 
     @cached_property
@@ -321,18 +367,23 @@ class DeflectedSolver(Eigensolver):
 
     @cached_property
     def load(self) -> SteadyLoad:
-        """Problem of the equilibria."""
+        """Equations of equilibrium under rotation."""
         return SteadyLoad(self.elastica, self.lowest_at_rest)
 
     @property
     def softening(self) -> float:
-        """Largest loss of stiffness of the straight beam per squared speed, as of `Solver`."""
+        """Largest relative loss of the straight beam's stiffness per squared speed [s2]: see `Solver`."""
         return self._straight.softening
 
     @property
     def critical_speed(self) -> float:
-        """Lowest speed at which the straight beam buckles [rad/s]; inf where rotation bends it instead."""
-        return np.inf if self.load.bends else self._straight.critical_speed
+        """Lowest speed at which the straight beam buckles [rad/s]; inf where it bends from rest on."""
+        if self.load.bends:
+            return np.inf
+        if self.elastica.load is None:
+            return self._straight.critical_speed
+        squared, is_lost = find_loss_of_stability(self.load)
+        return math.sqrt(squared) if is_lost else np.inf
 
     @property
     def critical_rounding(self) -> float:
@@ -340,7 +391,7 @@ class DeflectedSolver(Eigensolver):
         return self._straight.critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Compute the `count` lowest modes at each speed [rad/s], once each: as `Solver.solve`.
+        """Compute the `count` lowest modes at each speed [rad/s]; each speed is solved once.
 
         Raises
         ------
@@ -349,33 +400,35 @@ class DeflectedSolver(Eigensolver):
         """
         missing = np.array([v for v in np.unique(speeds) if (v, count) not in self._solved])
         for v, equations in zip(missing.tolist(), self.equations(missing), strict=True):
-            self._solved[v, count] = Solver(equations.steady()).solve(np.array([v]), count)
+            pencil = equations.steady()
+            solver = Solver(pencil) if self.elastica.load is None else LoadedSolver(pencil)
+            self._solved[v, count] = solver.solve(np.array([v]), count)
         each = [self._solved[v, count] for v in speeds.tolist()]
         values = zip(*((e.eigenvalue, e.vector, e.rounding) for e in each), strict=True)
         return Eigen(*map(np.concatenate, values))
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Compute linear functions of the coordinates in equilibrium: as `Solver.solve_static`."""
+        """Compute linear functions of the coordinates in equilibrium: see `Eigensolver.solve_static`."""
         return self.equilibria(speeds) @ outputs.T
 
     def equations(self, speeds: np.ndarray) -> list[Equations]:
-        """Equations linear about the equilibrium at each speed."""
+        """Linearize the equations about the equilibrium at each speed."""
         return [self.elastica.at(q).linearized() for q in self.equilibria(speeds)]
 
     def tips(self, speeds: np.ndarray) -> np.ndarray:
-        """Deflection of the tip across the beam in equilibrium [m], shape (S, 1), in space (S, 2)."""
+        """Compute the tip's deflection across the beam in equilibrium [m], shape (S, 1), in space (S, 2)."""
         moved = self.elastica.tip(self.equilibria(speeds)) - self.elastica.tip(np.zeros(self.size))
         return moved[:, 1:2] if self.elastica.beam.is_planar else moved[:, 1:]
 
     def equilibria(self, speeds: np.ndarray) -> np.ndarray:
-        """Coordinates (S, n) in equilibrium at each speed, each computed once."""
+        """Compute the coordinates (S, n) in equilibrium at each speed; results are cached."""
         missing = np.array([v for v in np.unique(np.abs(speeds)) if v not in self._found])
         if self.guide is not None and len(missing):
             self._found |= self._find_near(self.guide, missing)
             missing = np.array([v for v in missing if v not in self._found])
         if len(missing):
             if not self._found and self.branch == "straight":
-                self._found[0.0] = np.zeros(self.size)
+                self._found[0.0] = self.load.at_rest
             elif not self._found:
                 self._found[float(missing[-1])] = find_bent(self.load, float(missing[-1]))
             known = np.array(list(self._found))
@@ -385,7 +438,7 @@ class DeflectedSolver(Eigensolver):
         return np.array([self._found[abs(v)] for v in speeds])
 
     def _find_near(self, guide: DeflectedSolver, speeds: np.ndarray) -> dict[float, np.ndarray]:
-        """Equilibria near those of another discretization, and as stable, at speeds where there are any."""
+        """Find equilibria near another discretization's, of the same stability, at speeds that have them."""
         found: dict[float, np.ndarray] = {}
         for v, of_guide in zip(speeds.tolist(), guide.equilibria(speeds), strict=True):
             near = self.elastica.nearest(guide.elastica, of_guide)

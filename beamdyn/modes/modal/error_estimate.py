@@ -16,22 +16,31 @@ from beamdyn.modes.modal.over_speeds import eigenvalues_over_speeds, solve_over_
 from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
-UNRESOLVED = 0.3  # relative error above which the comparison of two models estimates nothing
-# Ratios of the distances of meshes: the least taken, of an order above 2; where it is not known; the largest.
+UNRESOLVED = 0.3  # relative error above which the comparison of two models gives no estimate
+# Ratios of the difference of two successive meshes to that of the two before: the smallest used, for an order
+# of convergence above 2; the one assumed where it is not known; the largest.
 LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
-_HALVED = 0.7  # size over that of the finer mesh, above which it is no halving, and says no order
-_OF_ENTRIES = 3 * np.finfo(float).eps  # three deviations of the rounding of the stiffness's entries
-_LEAST_OF_BEFORE = 64.0  # the coarser distance over the least error: the finer one may be small by chance
-_SHARED = 0.75  # largest ratio that a higher mode takes from a lower one, which meets the same steep change
-_OF_NOISE = 4.0  # distance over the rounding of two meshes up to which it may be that
-# Parts of a mode's distance, and of the largest, that are its error, and the largest relative distance above
+_HALVED = 0.7  # ratio of sizes of two meshes above which it is no halving, and gives no order of convergence
+_OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the rounding of stiffness entries
+# Ratio of the difference of the two coarser meshes to the smallest stated error, as the difference of the two
+# finer ones may be small by chance.
+_LEAST_OF_BEFORE = 64.0
+# Largest ratio of differences that a higher mode takes over from a lower one: both meet the same steep
+# change.
+_SHARED = 0.75
+# Ratio of the difference of two meshes to their rounding errors, up to which it may be rounding alone.
+_OF_NOISE = 4.0
+# Fractions of a mode's distance, and of the largest, that count as its error; largest relative distance above
 # which slow convergence may make it larger; functions of several segments converge at several rates.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
-_BY_ONE = 1.0, 0.01, 0.0  # one function more may change a mode less than the next does: always as if slow
-# Functions across of plates up to which the margin is measured: beyond, algebraic convergence slows down.
+# One more function may change a mode less than the next does: always treated as slow.
+_BY_ONE = 1.0, 0.01, 0.0
+# Number of functions across plates up to which the margin is measured: convergence slows down beyond.
 _ACROSS_MEASURED, _OTHERS_OF_PLATES = 12, 0.01
-_ABOVE = 0.99  # share of the lowest square at rest: so much may a scale of errors be too low
-_FEW = 1e-9  # relative distance of two bases above which they may have too few functions of one field
+# Fraction of the lowest squared frequency at rest above which a square is a scale of errors that is not too
+# low.
+_ABOVE = 0.99
+_FEW = 1e-9  # relative difference of two bases above which they may have too few functions of one field
 
 
 Parts: TypeAlias = tuple[float, float, float]
@@ -85,7 +94,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     InvalidValue
         If the model has fewer functions than modes.
     """
-    if model.solver.size < modes:  # some moments may depend on others
+    if model.solver.size < modes:  # some moments may be linear combinations of others
         bound = f"{model.discretization} has {model.solver.size} functions for this beam"
         raise InvalidValue("modes", modes, bound, "ask for fewer")
     scene, mount = model.scene, model.scene.mount
@@ -95,8 +104,9 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     s = fine.eigenvalue[:, :compared]
     squared, distance = s**2, s**2 - coarse**2
     order = model.discretization.order
-    if order is not None:  # Richardson extrapolation: removes the leading term of the error
-        within_rounding = (fine.eigenvalue[:, :compared] == 0) | (coarse == 0)  # of one: no distance
+    if order is not None:  # Richardson extrapolation removes the leading term of the error
+        # If one value is within rounding of 0, there is no distance.
+        within_rounding = (fine.eigenvalue[:, :compared] == 0) | (coarse == 0)
         squared = squared + np.where(within_rounding, 0.0, distance / (2**order - 1))
         extrapolated = np.concatenate([_root(squared, s), fine.eigenvalue[:, compared:]], axis=1)
         fine = Eigen(extrapolated, fine.vector, fine.rounding)
@@ -109,9 +119,9 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         else:
             truncation = _basis_error(model, fine, squared, distance)
     error = truncation + ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
-    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # False for nan, too
-    # But for rotation, nothing holds a root without a spring, or on the axis: a frequency within rounding of
-    # 0 is 0 then.
+    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # this is False for nan, too
+    # Only rotation holds a root without a spring, or on the axis: a frequency within rounding of
+    # 0 is then taken as 0.
     free = 0.0 in mount.root_stiffnesses[: scene.physics.planes]
     neutral = (s == 0) & (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
     resolved |= neutral
@@ -125,7 +135,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
 def _mesh_error(
     model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray, before: np.ndarray
 ) -> np.ndarray:
-    """Relative truncation error (S, k) of squares extrapolated over meshes, by their last distances."""
+    """Estimate the relative truncation error (S, k) of extrapolated squares by distances of meshes."""
     compared = squared.shape[1]
     noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
     K, v = np.abs(model.solver.pencil.K0) ** 2, np.abs(fine.vector[:, :, :compared]) ** 2
@@ -134,7 +144,8 @@ def _mesh_error(
     least = LEAST_RATIO if len(model.scene.modelled_beam.breakpoints) == 2 else _UNKNOWN
     left = extrapolation_error(distance, before, noise, least)
     truncation = (left + noise) / (2 * np.abs(squared))
-    # Elements resolve lower modes better, but for coincidences; a small square has a larger error.
+    # Elements usually resolve lower modes better, so that no mode has less error than one below it.  A square
+    # below the lowest at rest has a large relative error by its size alone, and counts by its ratio to that.
     size = np.abs(squared) / model.solver.lowest_at_rest
     known = (size > 0) & np.isfinite(truncation)
     of_lower = np.where(known, truncation * np.minimum(size, 1.0), 0.0)
@@ -142,7 +153,7 @@ def _mesh_error(
 
 
 def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.ndarray | float:
-    """Relative truncation error (S, k) by the functions across the width, which are those of every mesh."""
+    """Estimate the relative truncation error (S, k) by the functions across the width, as on every mesh."""
     if not model.scene.models_width:
         return 0.0
     kept = np.ones(model.equations.size, dtype=bool)
@@ -154,8 +165,8 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
 
 
 def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray) -> np.ndarray:
-    """Relative truncation error (S, k) of squares of eigenvalues, by their distance from a smaller basis."""
-    # A first mode's quotient at rest bounds the lowest square there from above.
+    """Estimate the relative truncation error (S, k) of squared eigenvalues from a smaller basis."""
+    # The first mode's Rayleigh quotient at rest bounds the lowest square there from above.
     quotient = model.solver.quotient_at_rest(fine.vector[:, :, 0])
     are_above = np.abs(squared).min() >= _ABOVE * (quotient.min() + model.equations.shift)
     lowest = np.asarray(0.0 if are_above else model.solver.lowest_at_rest)
@@ -168,7 +179,7 @@ def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.nd
 def extrapolation_error(
     distance: np.ndarray, before: np.ndarray, noise: np.ndarray, least: float = LEAST_RATIO
 ) -> np.ndarray:
-    """Estimate the error of a number that extrapolation leaves, by its distances over three meshes.
+    """Estimate the error that remains after extrapolation, from distances over three meshes.
 
     Each mesh has twice the elements of the next.  Where elements resolve the mode, a distance is a sixteenth
     of the one before; where they are longer than a layer, or cross a steep change, it falls less.
@@ -178,14 +189,14 @@ def extrapolation_error(
     distance, before : ndarray, shape (..., k)
         Difference of the numbers of the two finest meshes, and of the second and the third; nan if not known.
     noise : ndarray, shape (..., k)
-        Rounding error of these differences.
+        Rounding error of the distances.
     least : float
-        Least ratio of the two that is taken; larger where segments converge each at a rate of its own.
+        Smallest ratio of the two that is used; larger where segments converge at different rates.
 
     Returns
     -------
     ndarray, shape (..., k)
-        inf where the differences do not fall.
+        Estimated error; inf where the differences do not fall.
     """
     size = np.abs(distance)
     ratio = np.maximum(np.nan_to_num(size / (np.abs(before) + noise), nan=_UNKNOWN), least)
@@ -197,12 +208,12 @@ def extrapolation_error(
 
 
 def is_halved(mesh: Eigensolver, finer: Eigensolver) -> bool:
-    """Whether a mesh has about half the functions of a finer one, but for short segments."""
+    """Whether a mesh has about half the functions of a finer one, short segments aside."""
     return mesh.size <= _HALVED * finer.size
 
 
 def _coarsest_squares(model: Model, speeds: np.ndarray, count: int) -> np.ndarray:
-    """Squared eigenvalues (S, count) of a mesh of a quarter of the elements; nan where it has none."""
+    """Compute squared eigenvalues (S, count) of a mesh of a quarter of the elements; nan if it has none."""
     coarsest = model.coarser.coarser
     if not is_halved(coarsest.solver, model.coarser.solver):
         return np.full((len(speeds), count), np.nan)
@@ -219,18 +230,18 @@ def error_of_assumed_modes(
     is_slender: bool = True,
     parts: Parts = REGULAR,
 ) -> np.ndarray:
-    """Errors that `solve_with_error` states of assumed modes that stand on no hinge.
+    """Estimate errors of assumed modes without a hinge, as `solve_with_error` does.
 
     Parameters
     ----------
     squared : ndarray, shape (S, k)
         Squares of the eigenvalues.
     distance : ndarray, shape (S, k)
-        Their distances from those of the coarser basis.
+        Distances of the squares from those of the coarser basis.
     rounding : ndarray, shape (S, k)
         Relative error of the eigenvalues by rounding.
     lowest_at_rest : ndarray, shape (S,)
-        Lowest squared frequency at rest of each.
+        Lowest squared frequency at rest of each problem.
     is_slender : bool
         Whether the beams are slender, clamped, and bend in one plane.
     parts : tuple of float
@@ -239,7 +250,7 @@ def error_of_assumed_modes(
     Returns
     -------
     ndarray, shape (S, k)
-        inf where unresolved.
+        Estimated relative error; inf where unresolved.
     """
     margin = SLOW_BASES.factor if is_slender else BASES_OF_FIELDS.factor
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -253,7 +264,7 @@ def error_of_assumed_modes(
 
 
 def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
-    """Parts of a mode's own distance between two bases, and of the largest, that are its error; a limit."""
+    """Choose the parts of a mode's own distance, and of the largest, that count as error, and a limit."""
     if not discretization.converges_regularly:
         return _IRREGULAR
     if scene.models_width:
@@ -263,7 +274,7 @@ def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
 
 
 def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Eigenvalues of given squares that lie near s.
+    """Find the eigenvalues of given squares that lie near s.
 
     The squares are smooth in speed and size, and real if the equations are conservative; the eigenvalues
     themselves turn from imaginary to real where a square passes zero.
@@ -273,7 +284,7 @@ def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
 
 
 def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarray) -> np.ndarray:
-    """Whether a higher mode that is not resolved may in truth be lower than this one: shape (S, k)."""
+    """Whether an unresolved higher mode may in truth be lower than each mode: shape (S, k)."""
     reach = np.where(resolved, np.inf, -np.real(squared) - np.abs(distance))
     lowest = np.minimum.accumulate(reach[:, ::-1], axis=1)[:, ::-1]
     return -np.real(squared) > lowest
@@ -282,7 +293,7 @@ def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarr
 def _ritz_error(
     distance: np.ndarray, squared: np.ndarray, lowest: np.ndarray, of_few: float, parts: Parts
 ) -> np.ndarray:
-    """Relative truncation error of Ritz eigenvalues, by the distance of their squares from a smaller basis's.
+    """Estimate the relative truncation error of Ritz eigenvalues from the squares of a smaller basis.
 
     Squares and distances have shape (S, k), as has the error; the lowest squared frequency at rest has shape
     () or (S,).

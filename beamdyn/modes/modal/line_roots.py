@@ -1,4 +1,4 @@
-"""Speeds at which a line of the excitation meets a natural frequency: roots of their distance."""
+"""Speeds at which an excitation line meets a natural frequency, as roots of their distance."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 ROUNDING = 4 * np.finfo(float).eps
-_COINCIDENT = 1e-8  # largest distance of a line from a frequency over the speeds, over it: rounding
+_COINCIDENT = 1e-8  # largest relative distance of a line from a frequency over all speeds that is rounding
 
 
 def find_roots(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Iterator[tuple[float, float]]:
@@ -21,7 +21,7 @@ def find_roots(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Ite
     x : ndarray, shape (S,)
         Nodes, ascending.
     y : ndarray, shape (S,)
-        Its values there.
+        Values of the function at the nodes.
 
     Yields
     ------
@@ -41,12 +41,12 @@ def find_roots(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Ite
 
 
 def coincides(distance: np.ndarray, frequency: np.ndarray) -> bool:
-    """Whether a line equals a frequency (S,) at every speed, by their distance (S,): a hinged beam's."""
+    """Whether a line equals a frequency (S,) at every speed, judged by their distance (S,), as at a hinge."""
     return bool(np.abs(distance).max() <= _COINCIDENT * frequency.max())
 
 
 def bracket(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Iterator[tuple[float, float]]:
-    """Bracket the roots of a function f with values y at x, also pairs of roots between two nodes."""
+    """Bracket the roots of f, with values y at x, including pairs of roots between two nodes."""
     for k in range(len(x) - 1):
         if y[k] * y[k + 1] < 0 or (y[k + 1] == 0 and y[k] != 0):
             yield float(x[k]), float(x[k + 1])

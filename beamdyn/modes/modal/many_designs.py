@@ -1,4 +1,4 @@
-"""Modes of many designs of one beam, in one basis, by batched eigenproblems.
+"""Modes of many designs of one beam in one basis, by batched eigenproblems.
 
 The designs differ in their matrices and in speed.  Nothing is gyroscopic in them, and if they are damped,
 then by one ratio of all modes at rest.  Modes of undamped designs are real; the errors are those that
@@ -33,12 +33,12 @@ from beamdyn.modes.modal.error_estimate import REGULAR, Parts, error_of_assumed_
 from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
 
 _EPS = float(np.finfo(float).eps)
-_MOST_SPEEDS = 1000  # speeds of each design at once, which bounds the memory
+_MOST_SPEEDS = 1000  # largest number of speeds of each design solved at once, which bounds the memory
 
 
 @dataclass(frozen=True)
 class PencilStack:
-    """Matrices of N designs: M q'' + (K0 + speed^2 K2) q = 0.
+    """Matrices of the equations of N designs: M q'' + (K0 + speed^2 K2) q = 0.
 
     Parameters
     ----------
@@ -60,16 +60,16 @@ class PencilStack:
 
 @dataclass(frozen=True)
 class ManyModes:
-    """The k lowest modes of N designs at S speeds each.
+    """Lowest k modes of N designs at S speeds each.
 
     Parameters
     ----------
     eigenvalue : ndarray of complex, shape (N, S, k)
-        s in exp(s t) [1/s]: imaginary, or positive where the beam diverges; complex where it is damped.
+        Eigenvalue s of exp(s t) [1/s]: imaginary, or positive where the beam diverges; complex if damped.
     error, rounding : ndarray, shape (N, S, k)
         Estimated relative error of the frequency, inf where unresolved; and the part of rounding in it.
     static : ndarray, shape (N, S)
-        Size of the displacement under the static load; nan from the critical speed on.
+        Magnitude of the static displacement; nan from the critical speed on.
     """
 
     eigenvalue: np.ndarray
@@ -78,14 +78,14 @@ class ManyModes:
     static: np.ndarray
 
     def meet(self, target: float) -> np.ndarray:
-        """Which designs (N,) have all errors below a target or at the level of rounding."""
+        """Tell which designs (N,) have all errors below a target or at the level of rounding."""
         return np.all(self.error <= np.maximum(target, 3 * self.rounding), axis=(1, 2))
 
 
 class StackedSolver:
-    """Eigensolver of a stack, in coordinates in which the stiffness of each is diagonal at every speed.
+    """Eigensolver of many designs, in coordinates in which each stiffness is diagonal at every speed.
 
-    It does for each design what `beamdyn.modes.modal.eigenproblem.Solver` does for one.
+    The method is that of `beamdyn.modes.modal.eigenproblem.Solver`, which solves one design.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ class StackedSolver:
         return 1 / np.linalg.eigvalsh(self.mass)[:, -1]
 
     def solve(self, speeds: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Squared frequencies (N S, k) at the speeds (N, S) of the designs, and their rounding errors."""
+        """Compute squared frequencies (N S, k) at speeds (N, S) of the designs, and rounding errors."""
         design, spin = _rows(speeds)
         terms = 1 + spin * np.abs(self.growth)[design]
         stiffness = 1 + spin * self.growth[design]
@@ -123,7 +123,7 @@ class StackedSolver:
         return squared, np.where(squared == 0, np.inf, rounding)
 
     def squares(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Squared frequencies (N S, k) alone."""
+        """Compute squared frequencies (N S, k) at speeds (N, S), without rounding errors."""
         design, spin = _rows(speeds)
         stiffness = 1 + spin * self.growth[design]
         stiff = stiffness.min(axis=1) >= LEAST_STIFFNESS
@@ -137,12 +137,13 @@ class StackedSolver:
         return squared
 
     def damped(self, speeds: np.ndarray, ratio: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Eigenvalues (N S, k) and their rounding errors, with a damping ratio (N,) of the modes at rest."""
+        """Compute eigenvalues (N S, k) and rounding errors for damping ratios (N,) of the modes at rest."""
         design, spin = _rows(speeds)
-        time = np.sqrt(1 / self.lowest_at_rest)[design, None, None]  # a unit in which frequencies are some 1
+        # Unit of time in which frequencies are of order 1.
+        time = np.sqrt(1 / self.lowest_at_rest)[design, None, None]
         stiffness = (1 + spin * self.growth[design])[:, :, None]
         n = stiffness.shape[1]
-        # Square roots of the mass: damping at a ratio of 1/2, as the stiffness at rest is 1.
+        # Square roots of the mass give damping at a ratio of 1/2, as the stiffness at rest is 1.
         value, vector = np.linalg.eigh(self.mass)
         root = (vector * np.sqrt(np.maximum(value, 0.0))[:, None, :]) @ np.swapaxes(vector, 1, 2)
         B = np.zeros((len(design), 2 * n, 2 * n))
@@ -156,10 +157,10 @@ class StackedSolver:
         return s, 8 * _EPS * (np.abs(s) * np.abs(inverse).max(axis=1)[:, None] + terms[:, None])
 
     def meeting(self, multiples: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Inverse squared speeds (N, L, k) at which frequencies are multiples (L,) of them, and rounding.
+        """Compute inverse squared speeds (N, L, k) where frequencies are multiples (L,) of the speed.
 
         At the multiple 0 the stiffness is singular.  Modes ascend; a value that is not positive
-        says that the mode meets the line at no speed.  The rounding error is that of the value.
+        says that the mode meets the line at no speed.  The second result is the values' rounding error.
         """
         n = self.growth.shape[1]
         matrices = multiples[:, None, None] ** 2 * self.mass[:, None]
@@ -170,7 +171,7 @@ class StackedSolver:
         return inverse[..., : -count - 1 : -1], rounding
 
     def static(self, speeds: np.ndarray, load: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Size (N, S) of the static values of outputs (d, n) under loads (N, n) per squared speed."""
+        """Compute magnitudes (N, S) of static outputs (d, n) under loads (N, n) per squared speed."""
         of_load = np.einsum("nik,ni->nk", self.basis, load)
         spin = speeds[:, :, None] ** 2
         stiffness = 1 + spin * self.growth[:, None, :]
@@ -182,7 +183,7 @@ class StackedSolver:
 
 @dataclass(frozen=True)
 class Estimate:
-    """How the errors of a basis are estimated.
+    """Parameters of the error estimate of a basis.
 
     Parameters
     ----------
@@ -191,7 +192,7 @@ class Estimate:
     parts : tuple of float
         How the basis converges: see `parts_of_distances`.
     rounding : float
-        Rounding errors over those of a slender beam, clamped, in one plane.
+        Ratio of rounding errors to those of a slender clamped beam in one plane.
     """
 
     is_slender: bool = True
@@ -222,7 +223,7 @@ def solve_many(
     load : ndarray, shape (N, n)
         Static load per squared speed.
     outputs : ndarray, shape (d, n)
-        Components of the static displacement that is wanted, such as those of the tip.
+        Components of the wanted static displacement, such as those of the tip.
     ratio : ndarray, shape (N,), optional
         Damping ratio of the modes at rest; undamped if not given.
     estimate : Estimate
@@ -247,7 +248,7 @@ def _solve_at(
     ratio: np.ndarray | None,
     estimate: Estimate,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Eigenvalues, their errors and the part of rounding in these, (N, S, k), at speeds (N, S)."""
+    """Compute eigenvalues, their errors and rounding errors, (N, S, k) each, at speeds (N, S)."""
     if ratio is None:
         squared, rounding = fine.solve(speeds, count)
         squared, distance = -squared, coarser.squares(speeds, count) - squared
@@ -273,7 +274,7 @@ def speeds_of_meeting(
     top: np.ndarray,
     estimate: Estimate = Estimate(),
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Speeds at which modes meet lines, or at which the stiffness is singular, for the multiple 0.
+    """Find the speeds at which modes meet lines, or (multiple 0) at which the stiffness is singular.
 
     Parameters
     ----------
@@ -284,12 +285,12 @@ def speeds_of_meeting(
     count : int
         Number k of modes.
     top : ndarray, shape (N,)
-        Speeds [rad/s] up to which is sought; inf without an end.
+        Speed [rad/s] up to which the search goes; inf without a limit.
 
     Returns
     -------
     speed : ndarray, shape (N, L, k)
-        Speeds [rad/s]; inf where a mode meets the line at none up to the top.
+        Speeds [rad/s]; inf where a mode does not meet the line up to the top.
     error, rounding : ndarray, shape (N, L, k)
         Estimated relative error of the speed, inf where there is none or it is unresolved; and the part of
         rounding in it.
@@ -300,7 +301,7 @@ def speeds_of_meeting(
     squared = 1 / np.where(exists, inverse, 1.0)
     of_coarser = 1 / np.where(
         coarser > 0, coarser, np.where(exists, inverse / 2, 1.0)
-    )  # unresolved where that meets none
+    )  # unresolved where the coarser basis meets none
     distance = np.where(exists, of_coarser - squared, 0.0)
     relative = estimate.rounding * rounding * squared / 2
     of_rows, off, sure = (values.reshape(-1, count) for values in (-squared, distance, relative))
@@ -310,5 +311,5 @@ def speeds_of_meeting(
 
 
 def _rows(speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Design (N S,) and squared speed (N S, 1) of each problem."""
+    """List the design index (N S,) and the squared speed (N S, 1) of each problem."""
     return np.repeat(np.arange(len(speeds)), speeds.shape[1]), speeds.reshape(-1, 1) ** 2

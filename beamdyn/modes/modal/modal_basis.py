@@ -17,10 +17,10 @@ from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.scene.motion import Motion
 
-FEWEST_MODES = 2  # size of the first basis where no number is given
-SPEED_SAMPLES = 2001  # times of a motion at which its slowest and fastest speed are sought
-_MOST_MODES = 60  # number of modes above which the steps that the fastest need are too small
-_MASSLESS = 1e-14  # pivot of the mass, over the largest, that rounding makes of 0
+FEWEST_MODES = 2  # number of modes of the first basis where no number is given
+SPEED_SAMPLES = 2001  # number of times at which a motion's slowest and fastest speed are sought
+_MOST_MODES = 60  # largest number of modes: with more, the fastest modes need too small steps
+_MASSLESS = 1e-14  # ratio of a mass pivot to the largest that is 0 within rounding
 _DEPENDENT = 1e-10  # relative singular value below which shapes are linearly dependent
 
 
@@ -48,23 +48,23 @@ class ModalBasis:
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether the modes are those at rest."""
+        """Whether all modes of the basis are modes at rest."""
         return self.speeds == (0.0,)
 
     def refined(self) -> ModalBasis | None:
-        """Enlarge the basis by half as many modes, at least two; None if that is too many."""
+        """Enlarge the basis by half as many modes, at least two; None if that exceeds the limit."""
         assert self.modes is not None
         modes = self.modes + max(2, self.modes // 2)
         return replace(self, modes=modes) if modes <= _MOST_MODES else None
 
     def with_one_more(self) -> ModalBasis | None:
-        """Enlarge the basis by one mode; None if that is too many."""
+        """Enlarge the basis by one mode; None if that exceeds the limit."""
         assert self.modes is not None
         return replace(self, modes=self.modes + 1) if self.modes < _MOST_MODES else None
 
 
 def given_basis(modes: int | str) -> ModalBasis | None:
-    """Basis of a number of modes at rest; None for "auto", which leaves the number to the tolerance."""
+    """Build a basis of a number of modes at rest; None for "auto", which leaves it to the tolerance."""
     auto = isinstance(modes, str) and modes == "auto"
     return None if auto else ModalBasis(count("modes", modes, remedy='or "auto"'))
 
@@ -90,7 +90,7 @@ def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
 
 
 def _with_residual(equations: Equations, reduced: Equations, speed: float) -> Equations:
-    """Add to the capacitance what the modes left out bend by a voltage, at a speed [rad/s]."""
+    """Add the residual flexibility of the modes left out, at a speed [rad/s], to the capacitance."""
     circuit, kept = equations.circuit, reduced.circuit
     assert circuit is not None and kept is not None
     stiffness = [p.K0 + speed**2 * p.K2 for p in (each.steady() for each in (equations, reduced))]
@@ -106,7 +106,7 @@ def _with_residual(equations: Equations, reduced: Equations, speed: float) -> Eq
 
 
 def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.ndarray:
-    """Compute mass-normalised shapes that span the lowest modes of a conservative pencil at some speeds.
+    """Compute mass-normalised shapes that span the lowest conservative modes at given speeds.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.
 
 
 def _orthonormal(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
-    """Combine shapes in columns to as many as are independent, orthonormal in the mass."""
+    """Combine shapes in columns to linearly independent ones, orthonormal in the mass."""
     with suppress(np.linalg.LinAlgError):
         L = np.linalg.cholesky(M)
         pivots = np.diag(L) ** 2

@@ -1,4 +1,4 @@
-"""A discretized scene, with its equations and eigenproblem, and what steady rotation alone does to it."""
+"""A scene with its discretization, equations and eigensolver, and its static response to steady rotation."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 from collections.abc import Iterator
 
 from beamdyn.common.results.statements import OUTSIDE, Statement
-from beamdyn.equations.mass import axial_tension
-from beamdyn.scene.mount import RIGHT_ANGLE, exact_cos_sin
+from beamdyn.equations.mass import PLACES, steady_tension
+from beamdyn.scene.mount import RIGHT_ANGLE
 from beamdyn.scene.validity import list_speeds, warn_of_static_deflection, warn_of_strain
 
 
 @dataclass(frozen=True)
 class Model(FieldsOnly):
-    """A discretized scene.
+    """A scene with its discretization; equations and eigensolver are built when asked for.
 
     Parameters
     ----------
@@ -45,20 +45,20 @@ class Model(FieldsOnly):
     discretization: Discretization
 
     def of(self, scene: Scene) -> Model:
-        """Model this beam and discretization with the physics, motion and damping of another scene."""
+        """Model this beam and discretization with physics, motion and damping of another scene."""
         return Model(replace(scene, beam=self.scene.beam), self.discretization)
 
     @cached_property
     def equations(self) -> Equations:
-        """Equations of motion, linear about the straight beam; with matrices of sections about its axis."""
+        """Equations of motion, linear about the straight beam or, with section matrices, about its axis."""
         if self.scene.beam.matrices is not None:
             return self.bent.about_straight
         return self._of_fields
 
     @cached_property
     def _of_fields(self) -> Equations:
-        """Equations of motion by the fields of a straight beam."""
-        check_axis(self.scene.beam, self.scene.physics)  # of an analysis that does not choose the physics
+        """Equations of motion built from the fields of the straight beam."""
+        check_axis(self.scene.beam, self.scene.physics)  # refuses analyses that do not choose the physics
         beam = self.scene.modelled_beam
         scene = replace(self.scene, beam=beam) if self.scene.bends_in_space else self.scene
         return assemble_over(scene, self.discretization.spaces(beam))
@@ -70,22 +70,22 @@ class Model(FieldsOnly):
 
     @cached_property
     def _deflected(self) -> DeflectedSolver:
-        """Solver of equations for deflections of any size."""
-        from beamdyn.modes.modal.equilibrium import DeflectedSolver  # few scenes need it
+        """Eigensolver about equilibria of any deflection."""
+        from beamdyn.modes.modal.equilibrium import DeflectedSolver  # imported here, as few scenes need it
 
         return DeflectedSolver(self.bent, self.scene.physics.branch)
 
     @cached_property
     def bent(self) -> RotatingBeam:
-        """Equations of motion for deflections of any size, of a scene that has them."""
-        # Few scenes need it.
+        """Equations of motion for deflections of any size, of a scene with large deflection."""
+        # Imported here, as few scenes need it.
         from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 
         return assemble_beam_in_space(self.scene, self.discretization, self._of_fields)
 
     @cached_property
     def coarse_solver(self) -> Eigensolver:
-        """Solver of the model compared with: where functions of this one span its own, over these."""
+        """Eigensolver of the coarser model that error estimates compare with."""
         if self.scene.physics.large_deflection:
             return self._deflected.guiding(self.compared.bent)
         if self.equations.coarse is None:
@@ -94,9 +94,9 @@ class Model(FieldsOnly):
 
     @property
     def exceeds_coarser(self) -> bool:
-        """Whether each field has functions beyond those of the coarser model, which else says nothing of it.
+        """Whether each field has functions beyond the coarser model's, as the error estimate needs.
 
-        Where the coarser model has other functions, it is enough that they are fewer in all.
+        Where the coarser model has different functions, it is enough that it has fewer in total.
         """
         coarse = self.equations.coarse
         if coarse is None:
@@ -106,23 +106,23 @@ class Model(FieldsOnly):
         return all(added[block].any() for block in self.equations.blocks.values())
 
     def equations_at(self, speed: float) -> Equations:
-        """Equations of small motions at a steady speed [rad/s], about the equilibrium there."""
+        """Build the equations of small motions at a steady speed [rad/s], about the equilibrium there."""
         if not self.scene.physics.large_deflection:
             return self.equations
         return self._deflected.equations(np.array([speed]))[0]
 
     def static_tips(self, speeds: np.ndarray) -> np.ndarray:
-        """Static deflections of the tip at steady speeds [rad/s] in each direction [m], shape (S, planes)."""
+        """Compute static tip deflections [m] at steady speeds [rad/s] in each direction: (S, planes)."""
         if not self.scene.physics.large_deflection:
             return self.solver.solve_static(speeds, self.equations.tips)
         return self._deflected.tips(speeds)
 
     def over_strip(self, along: int, across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Places of a mesh over a strip: x [m] (n,), eta from 1 to -1 (k,), and y = -eta b/2 [m] (n, k).
+        """Compute mesh points over a strip: x [m] (n,), eta from 1 to -1 (k,), and y = -eta b/2 [m] (n, k).
 
-        None where the sections keep their shape, or their width is not known.
+        Returns None where the sections keep their shape, or their width is not known.
         """
-        section = self.scene.beam.section
+        section = self.scene.beam.strip
         if section is None or not self.scene.models_width:
             return None
         xi, eta = np.linspace(0, 1, along), np.linspace(1, -1, across)
@@ -131,21 +131,21 @@ class Model(FieldsOnly):
     def modal_equations(self, basis: ModalBasis | int) -> Equations:
         """Transform the equations to the coordinates of a modal basis, or of a number of modes at rest.
 
-        A harvester's circuit is added by its flux.
+        A harvester's circuit is added, with the flux as its coordinate.
         """
         basis = ModalBasis(basis) if isinstance(basis, int) else basis
         return reduce_to_modes(self.equations, basis).with_flux()
 
     @cached_property
     def coarser(self) -> Model:
-        """The coarser model, by whose results the error of this one is estimated."""
+        """The coarser model, whose results serve to estimate the error of this model."""
         return Model(self.scene, self.discretization.coarser())
 
     @property
     def lacks_one(self) -> bool:
-        """Whether the model compared with has one function less in each field.
+        """Whether the model that errors are estimated from has just one function less in each field.
 
-        Strains of a bent beam without breakpoints converge fast, and each function more costs much: further
+        So it is for bent beams without breakpoints: strains converge fast, functions are costly, and further
         ones would only show how far the smaller model is from this one.
         """
         is_whole = isinstance(self.discretization, Ritz) and len(self.scene.modelled_beam.breakpoints) == 2
@@ -153,7 +153,7 @@ class Model(FieldsOnly):
 
     @cached_property
     def compared(self) -> Model:
-        """The model by whose eigenvalues and equilibria the error of those of this one is estimated."""
+        """The model from whose eigenvalues and equilibria the error of this model is estimated."""
         if self.lacks_one and isinstance(self.discretization, Ritz):
             return Model(
                 self.scene, replace(self.discretization, functions=self.discretization.functions - 1)
@@ -162,14 +162,14 @@ class Model(FieldsOnly):
 
 
 def kinetic_energy(equations: Equations, vectors: np.ndarray) -> np.ndarray:
-    """Parts of the coordinates in v^T M v of modes (S, n, k), twice their kinetic energy: (S, n, k)."""
+    """Compute the part of each coordinate in the kinetic energy of modes (S, n, k): (S, n, k)."""
     return np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
 
 
 def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
-    """Share of the two directions in the kinetic energy of deflection of modes (S, n, k): (S, k, 2).
+    """Compute the shares of two directions in the deflection's kinetic energy of modes (S, n, k): (S, k, 2).
 
-    The energy of other fields, such as the stretch, is not counted: the two add up to 1, or to 0 without any.
+    The energy of other fields, such as the stretch, is not counted: shares add up to 1, or to 0 without any.
     """
     if equations.planes == 1:
         return np.stack([np.ones(vectors[:, 0].shape), np.zeros(vectors[:, 0].shape)], axis=2)
@@ -194,24 +194,20 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
     Returns
     -------
     deflection : ndarray, shape (S,)
-        Static tip deflection [m], its magnitude in two planes; nan from the critical speed on.
+        Static tip deflection [m], in two planes its magnitude; nan from the critical speed on.
     strain : ndarray, shape (S,)
         Largest static axial strain; nan if the axial stiffness is not given.
     """
-    beam, mount = model.scene.beam, model.scene.mount
-    tips = model.static_tips(speeds)
+    beam, tips = model.scene.beam, model.static_tips(speeds)
     deflection = tips[:, 0] if tips.shape[1] == 1 else np.linalg.norm(tips, axis=1)
     if beam.axial_stiffness is None:
         return deflection, np.full(len(speeds), np.nan)
-    n_a, n_b = axial_tension(beam)
-    xi = np.linspace(0, 1, 101)
-    cosine, _ = exact_cos_sin(mount.precone)
-    force = cosine**2 * n_b(xi) - cosine * np.cos(mount.setting_angle) * mount.radius * n_a(xi)
-    return deflection, np.abs(force / beam.axial_stiffness(xi)).max() * speeds**2
+    strain = steady_tension(beam, model.scene.mount) / beam.axial_stiffness(PLACES)
+    return deflection, np.abs(strain).max() * speeds**2
 
 
 def warn_of_rotation(model: Model, speed: float) -> Iterator[Statement]:
-    """Yield a warning if the rotation stretches or bends a beam by more than linear theory allows.
+    """Yield a warning if rotation stretches or bends the beam beyond linear theory.
 
     Parameters
     ----------
@@ -228,7 +224,7 @@ def warn_of_rotation(model: Model, speed: float) -> Iterator[Statement]:
 
 
 def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[Statement]:
-    """Yield a warning where the straight beam is unstable, which the rotation would have bent before."""
+    """Yield a warning at speeds where the straight beam is unstable, as rotation would bend it before."""
     lost = np.isnan(deflection)
     if lost.any() and bends(model):
         end = f" the straight beam is unstable; the rotation bends it before: the answer is {OUTSIDE}"
@@ -236,7 +232,7 @@ def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -
 
 
 def bends(model: Model) -> bool:
-    """Whether a steady rotation loads the straight beam transversely, but for a misalignment of 1e-8 rad."""
+    """Whether steady rotation loads the straight beam transversely, misalignments of 1e-8 rad aside."""
     equations, scene = model.equations, model.scene
     load = np.abs(equations.steady().f2[equations.places(equations.deflecting)]).max(initial=0.0)
     along = max(np.abs(equations.P(d)).max() for d in range(scene.physics.planes))

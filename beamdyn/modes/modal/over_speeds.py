@@ -1,4 +1,4 @@
-"""Modes over many speeds, by interpolation between those at a few.
+"""Modes over many speeds, interpolated between those at a few.
 
 Without damping squared frequencies are smooth functions of the speed, and so are the modes, but for sharp
 veerings; without gyroscopic terms, of the squared speed.  They are interpolated in Chebyshev points of an
@@ -16,14 +16,16 @@ from numpy.polynomial import chebyshev
 from beamdyn.common.numerics import assign
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
 
-_FEW = 160  # speeds that are solved each
-_INTERVALS = 8, 16, 32  # between the points, in turn: each time twice as many
-_HIGHEST = 3  # the last third of the coefficients: where it is small, the series falls faster than that
-_MISFIT = 1e-12  # misfit of interpolated squared frequencies beside their rounding; the stated error has it
-_MISFIT_OF_MODES = 1e-7  # misfit of interpolated modes over their largest coordinate: they are only compared
-_LEBESGUE = 3.0  # growth of rounding errors at the points by interpolation: constant of 17 to 33 points
+_FEW = 160  # largest number of speeds that are solved individually
+_INTERVALS = 8, 16, 32  # numbers of intervals between the points, doubled in turn
+# Part of a series' coefficients, the last third, whose size tells whether the series converges fast enough.
+_HIGHEST = 3
+# Misfit of interpolated squared frequencies in addition to rounding, included in the stated error.
+_MISFIT = 1e-12
+_MISFIT_OF_MODES = 1e-7  # misfit of interpolated modes over their largest coordinate: modes are only compared
+_LEBESGUE = 3.0  # growth of rounding errors by interpolation: Lebesgue constant of 17 to 33 points
 
-Solve = Callable[[np.ndarray], Eigen]  # modes at given speeds
+Solve = Callable[[np.ndarray], Eigen]  # a function that computes modes at given speeds [rad/s]
 
 
 def solve_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eigen:
@@ -46,12 +48,13 @@ def eigenvalues_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int)
 
 
 def _solve_over(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
-    """Modes of an undamped beam: gyroscopic ones have the conjugate vectors in the other sense of rotation.
+    """Solve modes at speeds of either sign; reversed gyroscopic modes have conjugate vectors.
 
-    Of a mode that grows the other sense has the one that decays, which was not found: such speeds are solved
-    each.
+    For a growing mode, the reversed rotation has the decaying one, which was not found: such speeds are
+    solved individually.
     """
-    sizes, place = np.unique(np.abs(speeds), return_inverse=True)  # either sense has the same frequencies
+    # Both senses of rotation have the same frequencies.
+    sizes, place = np.unique(np.abs(speeds), return_inverse=True)
     found, backwards = _solve_ascending(solver, sizes, solve), speeds < 0
     if len(sizes) < len(speeds) or backwards.any():
         found = Eigen(found.eigenvalue[place], found.vector[place], found.rounding[place])
@@ -68,7 +71,7 @@ def _solve_over(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
 
 
 def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
-    """Modes at ascending speeds of 0 or more, by ever more Chebyshev points: each time half are known.
+    """Compute modes at ascending speeds from 0, by more and more Chebyshev points, half of which are known.
 
     Without gyroscopic terms modes are smooth functions of the squared speed, else of the speed.
     """
@@ -95,13 +98,13 @@ def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> E
 
 
 def _nodes(intervals: int) -> np.ndarray:
-    """Chebyshev points of [-1, 1], with its ends, ascending."""
+    """Compute the Chebyshev points of [-1, 1], including its ends, ascending."""
     return -np.cos(np.pi * np.arange(intervals + 1) / intervals)
 
 
 def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray, power: int) -> Eigen | None:
-    """The modes at ascending speeds by those at Chebyshev points; None where these are too few."""
-    if (np.real(eigen.eigenvalue) * np.imag(eigen.eigenvalue)).any():  # flutter
+    """Interpolate modes at ascending speeds from Chebyshev points; None where these are too few."""
+    if (np.real(eigen.eigenvalue) * np.imag(eigen.eigenvalue)).any():  # flutter is not interpolated
         return None
     points, count = eigen.eigenvalue.shape
     (low, high), t = speeds[[0, -1]] ** power, _nodes(points - 1)
@@ -109,7 +112,7 @@ def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray, power: i
     at_nodes = np.concatenate([squared, vector.reshape(points, -1)], axis=1)
     series = np.linalg.solve(chebyshev.chebvander(t, points - 1), at_nodes)
     misfit = np.abs(series[-(points // _HIGHEST) :]).sum(axis=0)
-    # Relative misfits: 0 of what is 0 at all speeds; inf of what is 0 at one of them and misses others.
+    # Relative misfits: 0 for values that are 0 at all speeds; inf for a value 0 at only one of them.
     size, of_squares = np.abs(squared).min(axis=0), np.where(misfit[:count] > 0, np.inf, 0.0)
     np.divide(misfit[:count], size, out=of_squares, where=size > 0)
     of_modes = misfit[count:].max(initial=0.0) <= _MISFIT_OF_MODES * np.abs(vector).max(initial=0.0)
@@ -164,7 +167,7 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     mac /= squares[:-1, :, None] * squares[1:, None, :]
     S, _, k = vectors.shape
     order, confidence = np.tile(np.arange(k), (S, 1)), np.ones((S, k))
-    successor = mac.argmax(axis=2)  # successor of each mode, with the largest sum of MACs
+    successor = mac.argmax(axis=2)  # successor of each mode, which has the largest sum of MACs
     unique = (np.sort(successor, axis=1) == np.arange(k)).all(axis=1)
     for s in np.flatnonzero(~unique):
         successor[s] = assign(-mac[s])

@@ -6,12 +6,12 @@ import numpy as np
 import scipy.linalg
 
 _EPS = np.finfo(float).eps
-_REAL = 1e-8  # relative growth rate of a mode below which it counts as stable: rounding of a double root
-_MASSLESS = 16 * _EPS  # eigenvalue of a mass matrix, over the largest, that is 0 within rounding
+_REAL = 1e-8  # relative growth rate below which a mode counts as stable: rounding of a double root
+_MASSLESS = 16 * _EPS  # relative eigenvalue of a mass matrix that is 0 within rounding
 
 
 def solve_gyroscopic(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve as `solve_general` for skew-symmetric C and positive d, by a Hermitian eigenproblem."""
+    """Solve M q'' + C q' + diag(d) q = 0 for skew-symmetric C and positive d: see `solve_general`."""
     n, scale = len(d), 1 / np.sqrt(d)
     mu, U = np.linalg.eigh(scale[:, None] * M * scale)
     root = np.sqrt(np.maximum(mu, 0))
@@ -31,9 +31,9 @@ def solve_general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarr
 
 
 def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + K q = 0 for any K: 1/s (m,) and vectors (2 n, m) with q first.
+    """Solve M q'' + C q' + K q = 0 for any K: 1/s (m,) and vectors (2 n, m), which begin with q.
 
-    Of the 2 n eigenvalues those are missing that rounding cannot tell from infinite ones.
+    Eigenvalues that rounding cannot tell from infinite ones are left out of the 2 n.
     """
     n, zero = len(M), np.zeros_like(M)
     A, B = np.block([[zero, np.eye(n)], [-K, -C]]), scipy.linalg.block_diag(np.eye(n), M)
@@ -45,7 +45,7 @@ def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.n
 
 
 def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Select the lowest modes from 1/s: Im s > 0, real s > 0, and of each real pair s < 0 the slower."""
+    """Select the lowest modes from 1/s: Im s > 0, real s > 0, and of two real s < 0 the slower."""
     inverse = np.where(np.abs(np.real(inverse)) < _REAL * np.abs(inverse), 1j * np.imag(inverse), inverse)
     inverse = np.where(inverse == 0, _EPS * np.abs(inverse).max(), inverse)
     s = 1 / inverse
@@ -64,15 +64,15 @@ def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.nd
 
 
 def has_massless(mass: np.ndarray) -> bool:
-    """Whether some combination of coordinates has no mass within rounding, for a mass (n, n)."""
+    """Whether some combination of coordinates has no mass within rounding, for a mass matrix (n, n)."""
     values = np.linalg.eigvalsh(mass)
     return bool(values[0] < _MASSLESS * values[-1])
 
 
 def condense(mass: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
-    """Coordinates (n, r) in which the mass is regular: those without mass follow in equilibrium.
+    """Compute a basis (n, r) in which the mass is regular; massless coordinates follow in equilibrium.
 
-    Neither damping nor gyroscopic terms may act on what has no mass.
+    Neither damping nor gyroscopic terms may act on massless coordinates.
     """
     values, V = np.linalg.eigh(mass)
     massless = values < _MASSLESS * values[-1]

@@ -1,7 +1,7 @@
-"""Equations of a beam whose root turns on springs: their stiffness at rest may be singular, or nearly so.
+"""Eigenproblems of a beam on root springs, whose stiffness at rest may be singular, or nearly so.
 
-The eigensolver then works with the stiffness plus a multiple of the mass, its shift, which it takes off the
-squared frequencies.  Here is what cannot be done so.
+The eigensolver then adds a multiple of the mass, the shift, to the stiffness, and subtracts it from the
+squared frequencies.  This module treats the cases in which that loses digits.
 """
 
 from __future__ import annotations
@@ -13,19 +13,20 @@ from beamdyn.common.numerics import solve_lower
 from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
-_LOW = 0.1  # squared frequency relative to the shift, below which its removal would lose digits
-_GRADED = 1e-6  # lowest eigenvalue of a stiffness of unit diagonal, above which it is well-conditioned
-_GRADED_AT_REST = 1e-12  # the same, above which it has digits left
-_UNDAMPED = 1e-6  # damping of a turn over the frequency of a clamped beam: a root of rounding
-_SMALLEST_TRIAL = 1e-12  # squared speed at which the search ends, over that at which rotation matters
+_LOW = 0.1  # ratio of squared frequency to shift below which subtraction would lose digits
+_GRADED = 1e-6  # lowest eigenvalue of a well-conditioned stiffness of unit diagonal
+_GRADED_AT_REST = 1e-12  # lowest eigenvalue of a stiffness at rest of unit diagonal that has digits left
+_UNDAMPED = 1e-6  # ratio of a rotation's damping to the clamped beam's frequency that is a root of rounding
+# Relative squared speed at which the search ends, over that at which rotation matters.
+_SMALLEST_TRIAL = 1e-12
 
 
 def remove_shift(
     pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, v: np.ndarray, rounding: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Subtract the shift from squared frequencies; of low ones take the Rayleigh quotient.
+    """Subtract the shift from squared frequencies; for low ones use the Rayleigh quotient.
 
-    The quotient has the error of the vector squared, and no cancellation.
+    The error of the quotient is that of the vector squared, and nothing cancels.
 
     Parameters
     ----------
@@ -69,9 +70,9 @@ def remove_shift(
 
 
 def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Part modes of frequency 0 by the stiffness that rotation adds to them, the softest first.
+    """Separate modes of frequency 0 by the stiffness that rotation adds to them, the softest first.
 
-    At rest any two combinations of two such turns are modes, of which rounding would choose.
+    At rest, all combinations of two such rotations are modes, among which rounding would choose.
 
     Parameters
     ----------
@@ -80,7 +81,7 @@ def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) ->
     squared : ndarray, shape (S, k)
         Squared frequencies.
     v : ndarray, shape (S, n, k)
-        Mass-normalised modes; so is the result.
+        Mass-normalised modes, as the result's are.
     """
     parted = v.copy()
     for s in np.flatnonzero((squared == 0).sum(axis=1) > 1):
@@ -90,18 +91,18 @@ def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) ->
 
 
 def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Select the modes (n, r) without stiffness on which damping does not act either.
+    """Select the modes (n, r) on which neither stiffness nor damping acts.
 
-    They have the eigenvalue 0 twice, which rounding of general equations would part by its square root.
+    The eigenvalue 0 is double, and rounding of general equations would split it by its square root.
 
     Parameters
     ----------
     pencil : SteadyPencil
         Equations with damping or gyroscopic terms, which do no work on a mode.
     eigenvalue : ndarray, shape (k,)
-        Eigenvalues of the lowest modes without these [1/s].
+        Eigenvalues of the lowest modes without damping and gyroscopic terms [1/s].
     v : ndarray, shape (n, k)
-        Their mass-normalised vectors.
+        Mass-normalised vectors of the lowest modes.
     """
     damping = np.abs(np.einsum("nk,nk->k", v, pencil.C @ v))
     return v[:, (eigenvalue == 0) & (damping < _UNDAMPED * np.sqrt(pencil.shift))]
@@ -110,7 +111,7 @@ def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray)
 def insert_free_turns(
     turns: np.ndarray, s: np.ndarray, v: np.ndarray, rounding: np.ndarray, count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Insert turns (n, r) of eigenvalue 0 into the lowest modes, after those that diverge."""
+    """Insert rotations (n, r) of eigenvalue 0 into the lowest modes, after those that diverge."""
     growing = int(((np.imag(s) == 0) & (np.real(s) > 0)).sum())
     zeros, unknown = np.zeros(turns.shape[1]), np.full(turns.shape[1], np.inf)
     return (
@@ -121,7 +122,7 @@ def insert_free_turns(
 
 
 def softening_of_graded(pencil: SteadyPencil) -> tuple[float, float] | None:
-    """Find what `softening_on_springs` does, from a stiffness that is graded, but not singular.
+    """Compute softening as `softening_on_springs` does, from a graded stiffness that is not singular.
 
     The springs' entries may be far smaller than others and still have all their digits, as in a Ritz basis,
     whose other functions do not turn the root.
@@ -149,10 +150,10 @@ def softening_of_graded(pencil: SteadyPencil) -> tuple[float, float] | None:
 
 
 def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> tuple[float, float]:
-    """Find 1/speed^2 at which the stiffness I - shift mass + speed^2 diag(growth) becomes singular.
+    """Compute 1/speed^2 at which the stiffness I - shift mass + speed^2 diag(growth) is singular.
 
-    Its lowest eigenvalue is a concave function of the squared speed: once positive, it vanishes at most
-    once.  If a free rotation about the root is softened from rest on, the softening is infinite.
+    The stiffness's lowest eigenvalue is a concave function of the squared speed: once positive, it vanishes
+    at most once.  If a free rotation about the root is softened from rest on, the softening is infinite.
 
     Parameters
     ----------
@@ -189,7 +190,7 @@ def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> 
 
 
 def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float] | None:
-    """Coordinates in which the stiffness at a speed is 1, without the shift, which would cost digits.
+    """Compute coordinates in which the stiffness at a speed is 1, without the shift, which costs digits.
 
     Returns
     -------
@@ -211,7 +212,7 @@ def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float
 
 
 def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
-    """Coordinates (n,) in static equilibrium at a speed; nan where the stiffness is not positive definite."""
+    """Solve static equilibrium (n,) at a speed; nan where the stiffness is not positive definite."""
     K = pencil.K0 + speed**2 * pencil.K2
     try:
         factor = scipy.linalg.cho_factor(K)

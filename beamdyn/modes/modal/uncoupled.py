@@ -1,7 +1,8 @@
-"""Eigensolvers by the form of the equations: parts without coupling, such as two planes, and large ones.
+"""Choice of the eigensolver by the equations: for uncoupled parts, such as two planes, and for large parts.
 
-A few modes of many coordinates are wanted: they are found by Lanczos iteration on the inverse problem, with
-one factorization of the stiffness at each speed, in place of all eigenvalues of full matrices.
+A few modes of many coordinates are wanted: they are found by Lanczos iteration on the inverse problem (by
+Arnoldi iteration with damping or Coriolis forces), with factorizations of the stiffness at each speed, in
+place of all eigenvalues of full matrices.
 """
 
 from __future__ import annotations
@@ -22,56 +23,59 @@ from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
 from beamdyn.modes.modal.springs import solve_definite
 
 _EPS = np.finfo(float).eps
-_MORE = 2  # modes sought beyond those asked for, so that real eigenvalues leave enough of them
-_RESTARTS = 50  # restarts of the iteration, which converges after a few, if at all
+_MORE = 2  # modes sought beyond those requested, so that real eigenvalues leave enough of them
+_RESTARTS = 50  # largest number of restarts of the iteration, which converges after a few, if at all
 
 
 class LargeSolver(Eigensolver):
-    """Eigensolver for the lowest few of many modes.
+    """Eigensolver for the lowest few modes of many coordinates, by Lanczos iteration.
 
-    Where the stiffness is not safely positive definite, or the iteration does not converge, it works as
-    `Solver` does.
+    Where the stiffness is not safely positive definite, or the iteration does not converge, it uses
+    `Solver`.
     """
 
     @cached_property
     def _at_rest(self) -> np.ndarray:
-        """Cholesky factor (n, n) of the stiffness at rest, with the shift."""
+        """Cholesky factor (n, n) of the stiffness at rest, including the shift."""
         with explained():
             return np.linalg.cholesky(self.pencil.K0 + self.pencil.shift * self.pencil.M)
 
     @cached_property
     def dense(self) -> Solver:
-        """Solver by full matrices."""
+        """Eigensolver by full matrices, used where the iteration fails."""
         return Solver(self.pencil)
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """Inverse of the largest eigenvalue, which the iteration finds."""
+        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
         with suppress(ArpackNoConvergence):
             return float(1 / self._largest(self._at_rest, 1)[0][0])
         return self.dense.lowest_at_rest
 
     @property
     def softening(self) -> float:
-        """The softening by full matrices."""
+        """Largest relative loss of stiffness per squared speed [s2], from full matrices."""
         return self.dense.softening
 
     @property
     def critical_rounding(self) -> float:
-        """The rounding error by full matrices."""
+        """Relative rounding error of the critical speed, from full matrices."""
         return self.dense.critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Speed by speed."""
+        """Compute the `count` lowest modes at each speed [rad/s], one speed after another."""
         each = [self._solve_at(speed, count) for speed in speeds]
         return Eigen(*(np.array(values) for values in zip(*each, strict=True)))
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Speed by speed, by a factorization of the stiffness."""
+        """Compute linear functions of the coordinates in static equilibrium under the rotation.
+
+        The stiffness is factorized at each speed: see `Eigensolver.solve_static`.
+        """
         return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
 
     def _solve_at(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
+        """Compute eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
         with suppress(ArpackNoConvergence):
             found = None if self.pencil.shift else self._lowest(speed, count)
             if found is not None:
@@ -82,7 +86,7 @@ class LargeSolver(Eigensolver):
     # Conservative equations --------------------------------------------------------------------------
 
     def _lowest(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Lowest modes without damping and gyroscopic terms; None if the stiffness is not safely positive."""
+        """Compute the lowest undamped modes without gyroscopic terms; None if the stiffness is unsafe."""
         try:
             L = np.linalg.cholesky(self.pencil.K0 + speed**2 * self.pencil.K2) if speed else self._at_rest
         except np.linalg.LinAlgError:
@@ -97,7 +101,10 @@ class LargeSolver(Eigensolver):
         return 1j / np.sqrt(mu), v, rounding
 
     def _largest(self, L: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Largest eigenvalues (k,) of L^-1 M L^-T, descending, and their vectors (n, k)."""
+        """Compute the largest eigenvalues (k,) of the mass matrix in the stiffness' Cholesky coordinates.
+
+        The matrix is L^-1 M L^-T; eigenvalues descend, and the vectors have the shape (n, k).
+        """
 
         def product(x: np.ndarray) -> np.ndarray:
             half = solve_lower_transposed(L, x.reshape(len(L), -1))
@@ -112,7 +119,7 @@ class LargeSolver(Eigensolver):
     # Gyroscopic and damped equations -----------------------------------------------------------------
 
     def _lowest_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Lowest modes of M q'' + C q' + K q = 0, by the largest 1/s."""
+        """Compute the lowest modes of damped or gyroscopic equations from the largest inverse eigenvalues."""
         n, M, C = self.size, self.pencil.M, self.pencil.C + speed * self.pencil.G
         factor = cho_factor(self.pencil.K0 + speed**2 * self.pencil.K2)
         time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
@@ -136,13 +143,13 @@ def _operator(product: Callable[[np.ndarray], np.ndarray], size: int) -> LinearO
     return LinearOperator((size, size), matvec=product, dtype=float)  # pyright: ignore[reportCallIssue]
 
 
-LARGE = 256  # number of coordinates of a part above which its lowest modes alone are computed
+LARGE = 256  # number of coordinates of a part above which only its lowest modes are computed
 
 
 def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Eigensolver:
-    """Eigensolver of equations at steady speed; each uncoupled part of them is solved apart.
+    """Choose an eigensolver of equations at steady speed, which solves uncoupled parts separately.
 
-    Where some coordinates, ascending, are given, the others are 0.
+    If coordinates (ascending) are given, the others are held at 0.
     """
     if len(equations.connected) == 1:
         pencil = equations.steady()
@@ -151,19 +158,19 @@ def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Ei
 
 
 def solver_of_pencil(pencil: SteadyPencil) -> Eigensolver:
-    """Eigensolver of equations at steady speed that are solved together."""
+    """Choose an eigensolver of equations at steady speed that are solved together."""
     return Solver(pencil) if len(pencil.M) <= LARGE else LargeSolver(pencil)
 
 
 class UncoupledSolver(Eigensolver):
-    """Eigensolver that solves parts of a pencil apart, such as two planes of a straight beam.
+    """Eigensolver that solves uncoupled parts separately, such as two planes of a straight beam.
 
     Parameters
     ----------
     equations : Equations
-        Equations that fall into parts.
+        Equations that consist of uncoupled parts.
     coordinates : ndarray of int, optional
-        Coordinates that are kept, ascending; the others are 0.
+        Coordinates that are kept, ascending; the others are held at 0.
     """
 
     def __init__(self, equations: Equations, coordinates: np.ndarray | None = None) -> None:
@@ -183,17 +190,17 @@ class UncoupledSolver(Eigensolver):
 
     @cached_property
     def pencil(self) -> SteadyPencil:
-        """All equations at steady speed."""
+        """Equations at steady speed of all parts together."""
         pencil = self._equations.steady()
         return pencil if self._coordinates is None else pencil.part(self._coordinates)
 
     @property
     def conservative(self) -> bool:
-        """Whether all parts are."""
+        """Whether no part has damping or gyroscopic terms."""
         return all(solver.conservative for solver in self.solvers)
 
     def quotient_at_rest(self, v: np.ndarray) -> np.ndarray:
-        """As of any solver, without a matrix of all parts."""
+        """Compute the Rayleigh quotients (S,) of vectors (S, n) at rest, part by part."""
         each = [
             solver.energies_at_rest(v[:, part]) for part, solver in zip(self.parts, self.solvers, strict=True)
         ]
@@ -202,21 +209,21 @@ class UncoupledSolver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """The lowest of all parts."""
+        """Lowest squared angular frequency at rest of all parts [rad2/s2], plus `pencil.shift`."""
         return min(solver.lowest_at_rest for solver in self.solvers)
 
     @property
     def softening(self) -> float:
-        """The largest of all parts."""
+        """Largest relative loss of stiffness per squared speed of all parts [s2]."""
         return max(solver.softening for solver in self.solvers)
 
     @property
     def critical_rounding(self) -> float:
-        """Rounding error of the softest part."""
+        """Relative rounding error of the critical speed, which is that of the softest part."""
         return max(self.solvers, key=lambda solver: solver.softening).critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """The lowest of the modes of all parts."""
+        """Compute the `count` lowest modes of all parts at each speed [rad/s]."""
         found = [solver.solve(speeds, min(count, solver.size)) for solver in self.solvers]
         vectors = []
         for part, eigen in zip(self.parts, found, strict=True):
@@ -235,18 +242,21 @@ class UncoupledSolver(Eigensolver):
         )
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """The lowest of those of all parts."""
+        """Compute the `count` lowest eigenvalues of all parts at each speed [rad/s]."""
         each = [solver.eigenvalues(speeds, min(count, solver.size)) for solver in self.solvers]
         together = np.concatenate(each, axis=1)
         return np.take_along_axis(together, _order(together)[:, :count], axis=1)
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """The sums of what the parts contribute."""
+        """Compute linear functions of the coordinates in static equilibrium under the rotation.
+
+        They are summed over all parts: see `Eigensolver.solve_static`.
+        """
         each = zip(self.parts, self.solvers, strict=True)
         return np.sum([solver.solve_static(speeds, outputs[:, part]) for part, solver in each], axis=0)
 
 
 def _order(eigenvalue: np.ndarray) -> np.ndarray:
-    """Order (S, k) of eigenvalues by squared frequency, that of a growing mode being negative."""
+    """Order eigenvalues (S, k) by squared frequency, which is negative for a growing mode."""
     sign = np.where((np.imag(eigenvalue) == 0) & (np.real(eigenvalue) > 0), -1.0, 1.0)
     return np.argsort(sign * np.abs(eigenvalue) ** 2, axis=1, kind="stable")

@@ -1,1 +1,1 @@
-"""What the effects that a model leaves out would change in its answer."""
+"""Model error: changes of an answer by the effects that its model leaves out."""

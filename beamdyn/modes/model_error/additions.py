@@ -1,10 +1,11 @@
-"""Scenes with an effect that a scene leaves out, as far as the beam has the data for it."""
+"""Scenes with one more effect than a given scene, where the beam has the data for it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -15,28 +16,28 @@ from beamdyn.scene.rectangle import shear_stiffness_of_rectangle
 from beamdyn.scene.scene import Scene
 
 ASSUMED_POISSONS_RATIO = 0.3
-# Where a section lacks Poisson's ratio: the largest of a uniform material, as the change grows from 0 with
-# it; or a usual one, by which a frequency of torsion is known to 13 %.
+# Assumed Poisson's ratio of a section without one: the largest of uniform materials, as the change rises with
+# the ratio; or a usual one, by which a frequency of torsion is known to 13 %.
 _ASSUMED_OF_SECTIONS = {
     effects.CAMBER: (0.5, "with Poisson's ratio 0.5, not given; 0 % with 0"),
     effects.TORSION: (ASSUMED_POISSONS_RATIO, f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"),
 }
 MOST_CAMBER = "as if no section cambered, which is the most"
-_RECTANGLE = 1e-9  # relative; of a radius of gyration that is that of a rectangle
+_RECTANGLE = 1e-9  # relative tolerance of a radius of gyration that equals that of a rectangle
 
 
 @dataclass(frozen=True)
 class Addition:
-    """A scene with one effect more.
+    """A scene to which one effect was added.
 
     Parameters
     ----------
     effect : Effect
         The effect.
     scene : Scene
-        The scene that includes it, or what bounds its change.
+        The scene that includes the effect, or one that bounds its change.
     assumed : str
-        What was assumed about the beam to include it; empty if nothing.
+        What was assumed about the beam to include the effect; empty if nothing.
     """
 
     effect: effects.Effect
@@ -45,14 +46,14 @@ class Addition:
 
     @property
     def name(self) -> str:
-        """Name of the effect."""
+        """Name of the added effect."""
         return self.effect.name
 
 
 def _assume_shear(beam: Beam) -> Beam | None:
-    """The beam with the shear stiffness of usual materials; None unless its sections are seen as rectangles.
+    """Return the beam with a usual material's shear stiffness; None unless its sections look rectangular.
 
-    The shear stiffness of a rectangle lies within 28 % of that assumed, for Poisson's ratios from 0 to 0.5.
+    For Poisson's ratios from 0 to 0.5, a rectangle's shear stiffness lies within 28 % of the assumed one.
     """
     if beam.shear_stiffness is not None or beam.axial_stiffness is None or beam.outer_fibre is None:
         return None
@@ -65,13 +66,15 @@ def _assume_shear(beam: Beam) -> Beam | None:
 
 
 def _assume(scene: Scene, effect: effects.Effect) -> Iterator[tuple[Scene, str]]:
-    """Yield the scene, and one with what is assumed about its beam where an effect lacks data, with what."""
+    """Yield the scene and, where an effect lacks data, scenes with assumptions, each with its wording."""
     yield scene, ""
-    section = scene.beam.section
+    section, electrodes = scene.beam.strip, scene.beam.electrodes
     if effect in _ASSUMED_OF_SECTIONS and section is not None and section.poissons_ratio is None:
         ratio, said = _ASSUMED_OF_SECTIONS[effect]
-        beam = scene.beam.with_section(replace(section, poissons_ratio=ratio))
-        yield replace(scene, beam=beam), said
+        if electrodes is None:
+            yield replace(scene, beam=scene.beam.with_section(replace(section, poissons_ratio=ratio))), said
+        else:
+            yield replace(scene, beam=replace(scene.beam, electrodes=electrodes.with_ratio(ratio))), said
     if scene.physics.shear or effect is effects.SHEAR:
         beam = _assume_shear(scene.beam)
         if beam is not None:
@@ -79,21 +82,21 @@ def _assume(scene: Scene, effect: effects.Effect) -> Iterator[tuple[Scene, str]]
 
 
 def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[str, ...]]:
-    """List the effects that a scene leaves out, but for large deflection, by what can be said of them.
+    """List the effects that a scene leaves out, except large deflection, by whether they can be added.
 
     Returns
     -------
     additions : list of Addition
-        Those that can be added.
+        Effects that can be added.
     not_known : dict of str to str
-        Those that cannot, and what to give.
+        Effects that cannot be added, and what input they need.
     not_modelled : tuple of str
-        Those that no model has.
+        Effects that no model has.
     """
     left_out = [
         effect for effect in effects.effects_left_out(scene) if effect is not effects.LARGE_DEFLECTION
     ]
-    if effects.TWIST in left_out:  # it needs the second plane: the two are one effect
+    if effects.TWIST in left_out:  # twist needs the second plane: the two are one effect
         left_out.remove(effects.SECOND_PLANE)
     additions, not_known = [], {}
     for effect in (effect for effect in left_out if effect.switch and effect is not effects.TORSION):
@@ -110,14 +113,14 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
 
 
 def add_effect(scene: Scene, effect: effects.Effect) -> Addition:
-    """Add an effect that a scene leaves out, with an assumption about the beam if that does.
+    """Add an effect that a scene leaves out, with an assumption about the beam if data are missing.
 
-    Where camber is not modelled, of a twisted beam and of a width that jumps, it is bounded.
+    Camber, where no model has it (twisted beams, widths that jump), is replaced by a bound.
 
     Raises
     ------
     InvalidValue
-        If the beam lacks the data, or the effect cannot be combined with others.
+        If the beam lacks data that cannot be assumed, or the effect cannot be combined with others.
     """
     *assumptions, last = _assume(scene, effect)
     for given, assumed in assumptions:
@@ -126,23 +129,26 @@ def add_effect(scene: Scene, effect: effects.Effect) -> Addition:
     try:
         return Addition(effect, effects.add_effects(last[0], [effect]), last[1])
     except InvalidValue:
-        if effect is not effects.CAMBER or scene.beam.section is None or scene.physics.large_deflection:
+        if effect is not effects.CAMBER or scene.beam.strip is None or scene.physics.large_deflection:
             raise
     return Addition(effects.CAMBER, without_camber(last[0]), ", ".join(filter(None, [last[1], MOST_CAMBER])))
 
 
 def without_camber(scene: Scene) -> Scene:
-    """The scene with rectangular sections that nowhere camber: stiffer than with what a clamp hinders."""
+    """Return the scene with rectangular sections that cannot camber: an upper bound of the stiffness."""
     beam = scene.beam
-    section, second = beam.section, beam.second_bending_stiffness
+    section, second, electrodes = beam.strip, beam.second_bending_stiffness, beam.electrodes
     assert section is not None and second is not None, "a rectangular section has both stiffnesses"
     flat = beam.bending_stiffness * section.camber_stiffening
     across = second * section.stiffening_across(beam.length)
-    return replace(scene, beam=replace(beam, bending_stiffness=flat, second_bending_stiffness=across))
+    held: dict[str, Any] = {"bending_stiffness": flat, "second_bending_stiffness": across}
+    if electrodes is not None:
+        held["electrodes"] = electrodes.held_flat
+    return replace(scene, beam=replace(beam, **held))
 
 
 def can_add(scene: Scene, effect: effects.Effect) -> bool:
-    """Whether an effect that a scene leaves out can be added."""
+    """Whether an effect that a scene leaves out can be added with the data of its beam."""
     with suppress(InvalidValue):
         return bool(add_effect(scene, effect))
     return False

@@ -1,4 +1,4 @@
-"""Choice of the physics: the effects without which an answer would change by more than a tolerance.
+"""Choice of the physics: which effects an answer needs so that it meets a tolerance.
 
 The sizes of the effects are estimated about the plain beam.  The largest is added, and the rest estimated
 again about the beam with it, until the sizes of those left out, summed at each value of the answer, are at
@@ -38,29 +38,29 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import refuse_bending_in_space
 
 NOTHING_BARRED: Mapping[str, str] = MappingProxyType({})
-PHYSICS_TOLERANCE = 1e-3  # relative change by what the physics leaves out, unless a tolerance is given
-_SMALL = 0.1  # share of the tolerance below which no effect is added
-_SOLVED = 0.1  # share of the tolerance to which the modes are solved that the effects change
-_MODES = 3  # modes of which a motion consists
-_SHORT = 0.2  # time [s] below which the shorter of two runs counts
-_ROUGH = 2.0  # change of a frequency over the squared ratio of static deflection and length, at most
+PHYSICS_TOLERANCE = 1e-3  # relative change by effects left out that is allowed unless a tolerance is given
+_SMALL = 0.1  # fraction of the tolerance below which no effect is added
+_SOLVED = 0.1  # fraction of the tolerance to which the modes that the effects change are solved
+_MODES = 3  # number of modes by which a motion is judged
+_SHORT = 0.2  # computing time [s] below which an answer is computed twice, and the shorter time counts
+_ROUGH = 2.0  # largest change of a frequency over the squared ratio of static deflection and length
 _BENDING = LARGE_DEFLECTION.name
 _NOTHING = "no mode vibrates and is stable"
 
 
 @dataclass(frozen=True)
 class EffectSizes:
-    """Sizes of the effects that a scene leaves out, for one answer.
+    """Sizes of the effects that a scene leaves out, in one answer.
 
     Parameters
     ----------
     sizes : dict of str to float
-        Largest relative change by each effect; inf where it turns modes into others, nan where it is not
+        Largest relative change by each effect; inf where it changes which modes there are, nan if it is not
         known.
     reasons : dict of str to str
         Why an effect cannot be added, or its size is not known.
     strained : float
-        Relative change by the strain that rotation causes, which no model here follows, to its order.
+        Order of the relative change by the strain due to rotation, which no model here includes.
     """
 
     sizes: dict[str, float]
@@ -69,10 +69,10 @@ class EffectSizes:
 
 
 Judge = Callable[[Scene], EffectSizes]
-Solve = Callable[[Scene], int]  # solves the answer, and counts its coordinates
+Solve = Callable[[Scene], int]  # solves the answer, and returns the number of its coordinates
 
 
-# Choices for answers ------------------------------------------------------------------------------
+# Choices for different answers -----------------------------------------------------------------------
 
 
 def choose_physics(
@@ -88,7 +88,7 @@ def choose_physics(
     Parameters
     ----------
     scene : Scene
-        The scene; one with given physics is returned as it is.
+        The scene; if its physics is not "auto", it is returned as it is.
     speeds : sequence of float
         Speeds [rad/s]; the effects are judged at the slowest, the fastest and the middle one.
     modes : int
@@ -96,9 +96,9 @@ def choose_physics(
     tolerance : float, optional
         Relative change of a frequency that may be left out; 1e-3 if not given.
     barred : mapping of str to str
-        Names of effects that the analysis cannot do with, and why.
+        Names of effects that the analysis cannot include, and why.
     in_space : bool
-        Whether the analysis has large deflection in space, too.
+        Whether the analysis can include large deflection in space.
 
     Returns
     -------
@@ -120,10 +120,10 @@ def choose_physics(
         found, bent, rough = solve(candidate), candidate.physics.large_deflection, math.nan
         s = found.eigen.eigenvalue[:, :modes]
         effects, counts = left_out_of_modes(found.model, some, s), vibrate(s)
-        if bent:  # then others are judged on the straight beam, where it is stable
+        if bent:  # other effects are then judged on the straight beam, where it is stable
             counts &= vibrate(without_large_deflection(found.model).solver.eigenvalues(some, modes))
-        elif bends(found.model):  # a generous size of large deflection is known by the static one
-            # Where the straight beam is unstable, though rotation bends it before, nothing of it is right.
+        elif bends(found.model):  # the static deflection gives a generous size of large deflection
+            # Where the straight beam is unstable, though rotation bends it before, its results are wrong.
             ratio = np.linalg.norm(found.model.static_tips(some), axis=1) / candidate.beam.length
             rough = math.inf if np.isnan(ratio).any() else float(_ROUGH * np.max(ratio) ** 2)
         sizes = _sizes_in_modes(candidate, effects, counts, rough)
@@ -149,7 +149,7 @@ def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, toler
 
 
 def plain_physics(scene: Scene) -> Scene:
-    """The scene as the plain beam where its physics is "auto", for an analysis of the plain beam alone.
+    """Return the scene with the plain beam's physics where it is "auto", for analyses of the plain beam.
 
     A curved axis bends in both directions and twists under any load, as far as the beam has the data: it is
     a beam in space from the start.
@@ -158,7 +158,7 @@ def plain_physics(scene: Scene) -> Scene:
 
 
 def _plain_of(beam: Beam) -> Physics:
-    """The least physics that has the axis of a beam."""
+    """Choose the least physics that can describe the axis of a beam: plain unless it is curved."""
     if beam.matrices is not None:
         return Physics(2, shear=True, rotary_inertia=True, stretch=True, torsion=True, large_deflection=True)
     if not beam.is_curved:
@@ -170,9 +170,9 @@ def _plain_of(beam: Beam) -> Physics:
 
 
 def _change_by_strain(found: EstimatedModes, speeds: np.ndarray) -> float:
-    """Change of the first frequency by strain: the stiffness changes by about the strain of rotation.
+    """Estimate the change of the first frequency by strain, as a stiffness change of the strain's size.
 
-    Where rotation softens the beam, the change of what is left of its stiffness is as much larger.
+    Where rotation softens the beam, the change relative to the remaining stiffness is larger accordingly.
     """
     _, strain = static_load(found.model, speeds)
     first = np.abs(found.eigen.eigenvalue[:, 0])
@@ -182,11 +182,12 @@ def _change_by_strain(found: EstimatedModes, speeds: np.ndarray) -> float:
 
 
 def _sizes_in_modes(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
-    """Sizes of effects in the values that count; that of large deflection is a rough one where unknown.
+    """Find the sizes of effects: their largest relative changes of the values marked in `counts`.
 
-    An effect that turns modes into others can be added: that its size is not known is no reason against it.
+    If its size is unknown, large deflection has the size `rough`. An effect that changes which modes there
+    are can be added, although its size is not known.
     """
-    sizes = {}  # inf if one of the values that count is not known, nan if none counts
+    sizes = {}  # inf if a value that counts is unknown, nan if none counts
     for name, change in effects.changes.items():
         counted = np.abs(change[np.broadcast_to(counts, change.shape)])
         sizes[name] = float(np.nan_to_num(counted, nan=np.inf).max()) if counted.size else math.nan
@@ -204,7 +205,7 @@ def _sizes_in_modes(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, r
 
 
 def warn_of_peak(scene: Scene, deflection: float) -> Iterator[Statement]:
-    """Yield a warning if large deflection, left out of chosen physics, matters at a deflection found [m]."""
+    """Yield a warning if large deflection, which a choice left out, matters at a deflection [m]."""
     choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
     if choice is not None and not choice.physics.large_deflection and size > choice.tolerance:
         yield Statement(
@@ -218,9 +219,9 @@ def warn_of_peak(scene: Scene, deflection: float) -> Iterator[Statement]:
 
 
 def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
-    """Add large deflection to chosen physics if it matters at a deflection that was found [m].
+    """Add large deflection to chosen physics if it matters at a computed deflection [m].
 
-    It takes the place of the effects that it excludes, if these are worth less.  None if it is not added.
+    Large deflection replaces the effects that it excludes, if they change less.  None if it is not added.
     """
     choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
     if choice is None or choice.physics.large_deflection or size <= choice.tolerance:
@@ -231,7 +232,7 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
     try:
         bent = add_effects(replace(scene, physics=Physics()), [NAMED[name] for name in kept])
         refuse_bending_in_space(bent)
-    except InvalidValue:  # an oblique direction
+    except InvalidValue:  # the direction is oblique
         return None
     if lost >= size:
         return None
@@ -248,32 +249,32 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
 
 
 def warn_of_plain(scene: Scene) -> Iterator[Statement]:
-    """Yield a warning if the physics was to be chosen by an analysis that knows the plain beam alone."""
+    """Yield a warning if the physics is "auto" in an analysis that can only use the plain beam."""
     if scene.chooses_physics:
         plain = "curved beam in space" if plain_physics(scene).physics.large_deflection else "plain beam"
         said = f"physics = auto: nothing is added here, the answer is that of the {plain}"
         yield Statement(said, kind=INPUT, quantity="physics")
 
 
-# The choice ---------------------------------------------------------------------------------------
+# The choice by any answer ----------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class _Candidate:
-    """A scene with some effects, and what is known of the others.
+    """A scene with some effects included, and what is known of the other effects.
 
     Parameters
     ----------
     scene : Scene
         The scene with the effects.
     included : dict of str to float
-        The effects and their sizes, as when they were added.
+        The included effects and their sizes when they were added.
     left_out : dict of str to float
         Sizes of the other effects.
     reasons : dict of str to str
         Why an effect cannot be added, or its size is not known.
     strained : float
-        Relative change by the strain that rotation causes.
+        Order of the relative change by the strain due to rotation.
     """
 
     scene: Scene
@@ -284,39 +285,39 @@ class _Candidate:
 
     @property
     def beyond_models(self) -> float:
-        """Relative change that no model here has: what effects that are included miss, and the strain."""
+        """Relative error that no model here covers: errors of included effects, and the strain."""
         missed = (NAMED[name].uncertainty * min(size, 1.0) for name, size in self.included.items())
         return sum(missed, self.strained)
 
     @property
     def model_error(self) -> float:
-        """Sum of the known sizes of the effects left out."""
+        """Sum of the known sizes of the effects left out, a relative change."""
         return sum(size for size in self.left_out.values() if not math.isnan(size))
 
     def addable(self) -> dict[str, float]:
-        """Sizes of the effects that can be added."""
+        """Return the sizes of the effects that can be added, by name."""
         known = {name: size for name, size in self.left_out.items() if not math.isnan(size)}
         return {name: size for name, size in known.items() if name not in self.reasons}
 
     def without(self, name: str, reason: str) -> _Candidate:
-        """Give a reason why an effect cannot be added."""
+        """Return the candidate with a reason why an effect cannot be added."""
         return replace(self, reasons={name: reason} | self.reasons)
 
     def add(self, name: str, judge: Judge) -> _Candidate:
-        """The scene with one more effect, about which the others are judged again.
+        """Return the candidate with one more effect, about which the others are judged again.
 
         Raises
         ------
         InvalidValue
-            If the beam lacks data for it in combination.
+            If the beam lacks data for the combined effects.
         ArithmeticError
-            If it leaves no answer.
+            If there is no answer with the effect.
         """
         scene = add_effects(self.scene, [NAMED[name]])
         judged, included = judge(scene), self.included | {name: self.left_out[name]}
         left_out = {}
         for other in (name for name in self.left_out if name not in included):
-            size = judged.sizes.get(other, math.nan)  # an effect that is not known any more keeps its size
+            size = judged.sizes.get(other, math.nan)  # an effect of unknown size keeps its former size
             rough = other == _BENDING and other in judged.reasons
             left_out[other] = self.left_out[other] if rough or math.isnan(size) else size
         return _Candidate(scene, included, left_out, judged.reasons | self.reasons, judged.strained)
@@ -330,22 +331,22 @@ def choose_by(
     speeds: np.ndarray,
     barred: Mapping[str, str] = NOTHING_BARRED,
 ) -> Scene:
-    """Choose the physics by any answer.
+    """Choose the physics by any answer of an analysis.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     judge : callable
-        Sizes of what a scene leaves out.
+        Function that returns the sizes of the effects that a scene leaves out.
     solve : callable
-        Solves the answer for a scene, and counts the coordinates: it is timed.
+        Function that solves the answer for a scene and returns its number of coordinates; it is timed.
     tolerance : float
         Relative change that may be left out.
     speeds : ndarray
         Speeds [rad/s] at which the effects are judged.
     barred : mapping of str to str
-        Names of effects that the analysis cannot do with, and why.
+        Names of effects that the analysis cannot include, and why.
 
     Returns
     -------
@@ -361,12 +362,13 @@ def choose_by(
     needed = start.addable().get(_BENDING, 0.0) > _SMALL * tolerance
     if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
-            bent = start.add(_BENDING, judge)  # with the effects that it is combined with
+            # Large deflection with the effects that it can be combined with.
+            bent = start.add(_BENDING, judge)
             bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends_in_space})
             refused = [bent.reasons[name] for name in best.included if name in bent.reasons]
             if bent.model_error < best.model_error:
                 best = bent
-            elif refused:  # what is in the other set keeps it out
+            elif refused:  # an effect of the other set keeps it out
                 best = best.without(_BENDING, refused[0])
         except (InvalidValue, ArithmeticError) as error:
             best = best.without(_BENDING, reason_of(error))
@@ -374,7 +376,7 @@ def choose_by(
 
 
 def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str]) -> _Candidate:
-    """Add effects, but for the barred, until those that can be added are worth half the tolerance."""
+    """Add effects, except barred ones, until the sizes of all that can be added sum to half the tolerance."""
 
     def sizes(found: _Candidate) -> dict[str, float]:
         return {name: size for name, size in found.addable().items() if name not in barred}
@@ -397,14 +399,14 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
 def _describe(
     best: _Candidate, plain: Scene, solve: Solve, tolerance: float, speeds: np.ndarray
 ) -> PhysicsChoice:
-    """Describe the choice in numbers: each effect by its size, and what it costs."""
+    """Describe the choice in numbers: the size of each effect, and its cost."""
     without, costs = _cost(plain, solve) if best.included else np.ones(2), {}
     for name in best.included:
         costs[name] = _cost(add_effects(plain, [NAMED[name]]), solve) / without
     together = _cost(best.scene, solve) / without if len(costs) > 1 else [*costs.values(), np.ones(2)][0]
 
     def by_size(effect: JudgedEffect) -> tuple[bool, float]:
-        """The largest first, those of unknown size last."""
+        """Sort the largest effects first, and effects of unknown size last."""
         return math.isnan(effect.size), -effect.size
 
     included = [JudgedEffect(n, size, True, "", *costs[n].tolist()) for n, size in best.included.items()]
@@ -423,7 +425,7 @@ def _describe(
 
 
 def _why(name: str, best: _Candidate, tolerance: float) -> str:
-    """Why an effect is left out: empty if its size decides, or it can be added."""
+    """Say why an effect is left out; empty if its size decides, or it can be added."""
     if best.left_out[name] <= _SMALL * tolerance:
         return ""
     if name in best.reasons:
@@ -435,11 +437,11 @@ def _why(name: str, best: _Candidate, tolerance: float) -> str:
 
 
 def _cost(scene: Scene, solve: Solve) -> np.ndarray:
-    """Time [s] and number of coordinates of the answer for a scene."""
+    """Measure time [s] and number of coordinates of the answer for a scene."""
     start = perf_counter()
     size = solve(scene)
     time = perf_counter() - start
-    if time < _SHORT:  # what else the machine did counts
+    if time < _SHORT:  # other work of the machine would distort short times
         solve(scene)
         time = min(time, perf_counter() - start - time)
     return np.array([time, size])

@@ -1,7 +1,7 @@
-"""What the effects that a model leaves out would change: in frequencies, critical speeds, or any answer.
+"""Changes by the effects that a model leaves out: in frequencies, critical speeds, or any answer.
 
-In frequencies and critical speeds most effects are estimated from the reference modes; large deflection, and
-what changes in any other answer, is solved.
+In frequencies and critical speeds most effects are estimated from the reference modes.  Large deflection, and
+changes of all other answers, are found by solving again.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
-# Why large deflection cannot be added, by the field of the refusal where there is one.
+# Reasons why large deflection cannot be added, by the field named in the refusal.
 _TWO_PLANES = "in two planes it is not judged: modes may cross"
 _OF_BENDING = "it is solved of modes of bending"
 _HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
@@ -43,7 +43,8 @@ _NOT_FOUND = "the equilibrium was not found"
 _LOST = "it turns a mode into others"
 _UNSTABLE = "it is judged on the straight beam, which is unstable"
 _STRAIGHT = "as of the straight beam"
-_AMONG = 4  # modes with the effect for each one without, among which that is sought
+LOADED = "it is judged on the straight beam, which has no load at its tip"
+_AMONG = 4  # number of modes with the effect, for each mode without it, among which its partner is sought
 _REAL = 1e-8  # growth rate relative to the frequency, that is rounding
 _ROUNDING = 1e-13  # relative difference of two solutions of equations that an effect does not change
 
@@ -72,6 +73,8 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         with it.
     """
     modes = eigenvalue.shape[1]
+    if model.scene.tip_load.acts:
+        return nothing_known(model.scene, LOADED, eigenvalue.shape)
     base = reference_modes.BaseEquations.of(without_large_deflection(model), modes)
     references, reversals = [base.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)], {}
 
@@ -104,28 +107,28 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
 
 
 def vibrate(s: np.ndarray) -> np.ndarray:
-    """Whether modes have a frequency, and do not grow but by rounding."""
+    """Whether modes have a frequency, and a growth rate that is 0 within rounding."""
     return (np.imag(s) > 0) & (np.real(s) <= _REAL * np.abs(s))
 
 
 def _diverge(s: np.ndarray) -> np.ndarray:
-    """Whether modes grow without vibrating."""
+    """Whether modes grow without oscillating."""
     return (np.imag(s) == 0) & (np.real(s) > 0)
 
 
 def _shifted(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Eigenvalues (m,) by equations with an effect of the modes s (m,), v (n, m) that vibrate or diverge."""
+    """Shift eigenvalues s (m,) of modes v (n, m) that vibrate or diverge to equations with an effect."""
     known = vibrate(s) | _diverge(s)
     shifted = np.full(len(s), np.nan, dtype=complex)
     shifted[known] = reference_modes.shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
     lost = known & np.isnan(shifted)
-    if lost.any():  # a step of inverse iteration may lead to a neighbour
+    if lost.any():  # a step of inverse iteration may lead to a neighbouring mode
         shifted[lost] = reference_modes.match_modes(equations, speed, v[:, lost], _AMONG * len(s))
-    return np.where(np.imag(shifted) < 0, shifted.conj(), shifted)  # of a pair the one that is listed
+    return np.where(np.imag(shifted) < 0, shifted.conj(), shifted)  # the listed one of a conjugate pair
 
 
 def _say_reversal(s: np.ndarray, shifted: np.ndarray) -> str:
-    """Whether an effect makes a mode diverge that vibrates, or vibrate that diverges; empty if neither."""
+    """Say whether an effect makes a vibrating mode diverge, or a diverging one vibrate; else empty."""
     if (vibrate(s) & _diverge(shifted)).any():
         return "with it a mode diverges that vibrates here"
     return "with it a mode vibrates that diverges here" if (_diverge(s) & vibrate(shifted)).any() else ""
@@ -134,11 +137,11 @@ def _say_reversal(s: np.ndarray, shifted: np.ndarray) -> str:
 def _large_deflection_change(
     model: Model, speeds: np.ndarray, eigenvalue: np.ndarray, of_bending: np.ndarray
 ) -> tuple[np.ndarray, str]:
-    """Find what large deflection changes in frequencies (S, m), nan if it is not known, and why it is not.
+    """Find changes of frequencies (S, m) by large deflection, nan if unknown, and why they are unknown.
 
-    What it cannot be combined with is left out of both beams that are compared: the change is then to first
-    order, and that of modes which are not of bending (S, m) is not known.  Modes of a beam in one plane keep
-    their order.  At rest, and where the straight beam is in equilibrium, it changes nothing.
+    Effects that it cannot be combined with are left out of both beams compared: the change is then to first
+    order, and unknown for modes that are not bending modes (S, m).  Modes of a beam in one plane keep
+    their order.  At rest, and where the straight beam is in equilibrium, nothing changes.
     """
     if not bends(model):
         unstable = (np.real(eigenvalue) > 0).any(axis=1, keepdims=True) & (speeds != 0)[:, None]
@@ -151,8 +154,8 @@ def _large_deflection_change(
         straight, bent = (Model(scene, model.discretization) for scene in _comparable(model.scene))
     except InvalidValue as refusal:
         return unknown, _REFUSED.get(refusal.field, _HINGED)
-    # The solver finds the equilibria at all speeds along one branch, and keeps them; where the branch does
-    # not reach all speeds, none is kept, and each is sought by itself.
+    # The solver finds the equilibria at all speeds along one branch, and caches them.  If the branch does
+    # not reach all speeds, none is cached, and each is sought separately.
     with suppress(ArithmeticError, np.linalg.LinAlgError):
         bent.solver.solve_static(speeds, np.empty((0, bent.solver.size)))
     change, reasons = unknown, dict.fromkeys([] if of_bending.all() else [_OF_BENDING])
@@ -165,7 +168,7 @@ def _large_deflection_change(
 def _bent_change_at(
     straight: Model, bent: Model, speed: float, eigenvalue: np.ndarray
 ) -> tuple[np.ndarray, str]:
-    """Relative changes (m,) at one speed, and why they are not known."""
+    """Compute relative changes (m,) by large deflection at one speed, and why some are unknown."""
     if not speed:
         return np.zeros(len(eigenvalue)), ""
     count, speeds = (
@@ -185,7 +188,7 @@ def _bent_change_at(
 
 
 def _comparable(scene: Scene) -> tuple[Scene, Scene]:
-    """The scene without and with large deflection, both without what that cannot be combined with."""
+    """Return the scene without and with large deflection, both without effects that exclude it."""
     kept = Physics(rotary_inertia=scene.physics.rotary_inertia)
     straight = replace(scene, physics=kept)
     return straight, replace(straight, physics=replace(kept, large_deflection=True))
@@ -215,28 +218,29 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
         near = base.suited_to(added.scene, 1)
         pencil, equations = near.equations.steady(), near.extend(added.scene)
         v = reference_modes.buckling_mode(pencil, critical)
-        known = reference_modes.shift_critical_speed(pencil, critical, v)  # shift in the spaces of the effect
+        # Shift by the effect in its own function spaces.
+        known = reference_modes.shift_critical_speed(pencil, critical, v)
         shifted = reference_modes.shift_critical_speed(equations.steady(), known, near.embed(equations, v))
         return np.array(shifted / known - 1)
 
     bent, reason = None, ""
     if not model.scene.physics.large_deflection:
-        does = bends(model)  # if not, the straight beam is an equilibrium until it buckles
+        does = bends(model)  # without a load, the straight beam is an equilibrium until it buckles
         bent, reason = np.array(np.nan if does else 0.0), _NO_CRITICAL_SPEED if does else ""
     return _gather(model.scene, base.scene, change, bent, reason)
 
 
-def nothing_known(scene: Scene, reason: str = "") -> LeftOutEffects:
-    """The effects that a scene leaves out, where there is no value that they could change, and why."""
+def nothing_known(scene: Scene, reason: str = "", shape: tuple[int, ...] = ()) -> LeftOutEffects:
+    """Return the effects that a scene leaves out, if no changes of values (of a shape) are known, and why."""
     additions, not_known, not_modelled = list_effects(_straightened(scene))
     names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION.name]
-    unchanged = {name: np.array(np.nan) for name in (*names, *(added.name for added in additions))}
+    unchanged = {name: np.full(shape, np.nan) for name in (*names, *(added.name for added in additions))}
     not_known = dict.fromkeys(unchanged if reason else (), reason) | not_known
-    return LeftOutEffects(unchanged, not_known, {}, not_modelled, _reasons(scene))
+    return LeftOutEffects(unchanged, not_known, {}, not_modelled, _reasons(scene), shape)
 
 
 def without_large_deflection(model: Model) -> Model:
-    """The model of the straight beam, for which the other effects are estimated."""
+    """Return the model of the straight beam, for which all other effects are estimated."""
     if not model.scene.physics.large_deflection:
         return model
     return Model(_straightened(model.scene), model.discretization)
@@ -247,7 +251,7 @@ def _straightened(scene: Scene) -> Scene:
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
-    """Reasons: what the model assumes in place of each effect, and how to include it."""
+    """Say for each effect left out what the model assumes in its place, and how to include it."""
     return {effect.name: effect.reason for effect in list_left_out(scene)}
 
 
@@ -259,7 +263,7 @@ def _gather(
     reason: str,
     shape: tuple[int, ...] = (),
 ) -> LeftOutEffects:
-    """All effects that a scene leaves out on values of a shape: by the equations of each; and by bending."""
+    """Gather changes of values by all effects left out: by each one's equations, and by large deflection."""
     additions, not_known, not_modelled = list_effects(straight)
     changes = {} if bent is None else {LARGE_DEFLECTION.name: bent}
     not_known |= {LARGE_DEFLECTION.name: reason} if reason else {}
@@ -274,20 +278,21 @@ def _gather(
 
 
 class SolvedValues(NamedTuple):
-    """Values that an effect may change, nan where there is none; why there is none; what they rest on."""
+    """Values of an answer, nan where there is none, with the reason for that, and what they assume."""
 
     values: np.ndarray
     reason: str = ""
     assumed: str = ""
 
 
-Solve: TypeAlias = Callable[[Scene, str], SolvedValues]  # of a scene with the effect of a name, or with ""
+# Solves a scene with the effect of a name, or "" for none.
+Solve: TypeAlias = Callable[[Scene, str], SolvedValues]
 
 
 def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
-    """Find what each effect that a scene leaves out changes in values, by solving with it.
+    """Find the changes of values by each effect that a scene leaves out, by solving with the effect.
 
-    Effects that large deflection is not combined with are judged on the straight beam where the scene has it.
+    Effects that exclude large deflection are judged on the straight beam, if the scene has large deflection.
 
     Parameters
     ----------
@@ -302,6 +307,8 @@ def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
         Relative changes, of the shape of the values.
     """
     base = _straightened(scene)
+    if scene.tip_load.acts:
+        return nothing_known(scene, LOADED, np.shape(solve(base, "").values))
     additions, not_known, not_modelled = list_effects(base)
     without, found, notes = solve(base, ""), {}, {}
     if not scene.physics.large_deflection:
@@ -321,7 +328,7 @@ def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
 
 
 def _relative_change(without: SolvedValues, within: SolvedValues) -> SolvedValues:
-    """Relative change of values, nan where it is not known."""
+    """Compute the relative change between two solutions' values, nan where it is not known."""
     with np.errstate(divide="ignore", invalid="ignore"):
         change = np.where(within.values == without.values, 0.0, within.values / without.values - 1)
     change = np.where(np.abs(change) < _ROUNDING, 0.0, change)
@@ -331,13 +338,13 @@ def _relative_change(without: SolvedValues, within: SolvedValues) -> SolvedValue
 
 
 def _bent_values(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedValues:
-    """Relative change of values by large deflection."""
+    """Find the relative change of values by large deflection, solving with it."""
     unknown = np.full(np.shape(without.values), np.nan)
     if scene.physics.planes == 2:
         return SolvedValues(unknown, _TWO_PLANES)
     try:
         straight, bent = _comparable(scene)
-        within = solve(bent, LARGE_DEFLECTION.name)  # an analysis may have it in one plane alone
+        within = solve(bent, LARGE_DEFLECTION.name)  # an analysis may model it in one plane only
     except InvalidValue as error:
         return SolvedValues(unknown, _REFUSED.get(error.field, str(error)))
     without = without if straight.physics == scene.physics else solve(straight, "")

@@ -1,4 +1,4 @@
-"""The effects that a model leaves out, each with the change that it would make in an answer, and in words."""
+"""Effects that a model leaves out, with the change that each would make in an answer, also in words."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ from beamdyn.common.words import Words
 from beamdyn.scene.physics import OfChosenPhysics
 from beamdyn.scene.validity import list_speeds
 
-LARGE_MODEL_ERROR = 0.01  # relative change by what is left out, above which a warning says so
-_NEGLIGIBLE = 1e-9  # relative change that is not told from rounding
-_LARGE = 1000.0  # frequency [Hz] from which it is said in whole numbers
-_MANY_TIMES, _COUNTLESS = 10.0, 1e4  # relative changes above which percent, and all digits, say little
+LARGE_MODEL_ERROR = 0.01  # relative change by effects left out above which a warning is given
+_NEGLIGIBLE = 1e-9  # relative change that cannot be told from rounding
+_LARGE = 1000.0  # frequency [Hz] from which on frequencies are printed as whole numbers
+_MANY_TIMES, _COUNTLESS = 10.0, 1e4  # relative changes above which percent, and then any digits, tell little
 
 
 @dataclass(frozen=True)
 class UnlistedMode:
-    """A mode of the body that a model does not have.
+    """A mode of the body that a model does not have, as it leaves out an effect.
 
     Parameters
     ----------
     kind : str
-        Its kind: torsion, or the direction of bending.
+        Kind of the mode: torsion, or the direction of bending.
     number : int
-        Its number among those of its kind, from 1.
+        Number of the mode among those of its kind, from 1.
     effect : str
-        Name of the effect with which a model has it.
+        Name of the effect that adds the mode to a model.
     frequency : ndarray
-        Its frequency [Hz] at each speed; nan where it lies above the modes listed.
+        Frequency [Hz] at each speed; nan where it lies above the modes listed.
     assumed : str
-        What the frequency rests on; empty if on nothing that was not given.
+        What was assumed to find the frequency; empty if nothing.
     """
 
     kind: str
@@ -53,20 +53,20 @@ class UnlistedMode:
         set_fields(self, frequency=np.asarray(self.frequency, dtype=float))
 
     def span(self) -> str:
-        """Its frequency to three digits; over several speeds from the least to the largest."""
+        """Word the frequency to three digits; over several speeds as a range from lowest to highest."""
         known = self.frequency[np.isfinite(self.frequency)]
         both = (f"{at:.3g}" if at < _LARGE else f"{at:.0f}" for at in (known.min(), known.max()))
         return " to ".join(dict.fromkeys(both))
 
 
 def spans_by_kind(modes: Sequence[UnlistedMode]) -> dict[str, str]:
-    """Frequencies of modes by their kind: "79.9, 499 Hz"."""
+    """Group the frequencies of modes by kind, as text: "79.9, 499 Hz"."""
     kinds = dict.fromkeys(mode.kind for mode in modes)
     return {kind: f"{', '.join(mode.span() for mode in modes if mode.kind == kind)} Hz" for kind in kinds}
 
 
 def say_unlisted(modes: Sequence[UnlistedMode]) -> str:
-    """Name modes by kind: "torsion 656 Hz, flap 79.9, 499 Hz"."""
+    """Word modes by kind: "torsion 656 Hz, flap 79.9, 499 Hz"."""
     assumed = {mode.kind: f" ({mode.assumed})" for mode in modes if mode.assumed}
     return ", ".join(f"{kind} {span}{assumed.get(kind, '')}" for kind, span in spans_by_kind(modes).items())
 
@@ -81,21 +81,21 @@ class LeftOutEffects:
         Relative change of each value of the answer by adding the effect of that name; nan where that is not
         known.
     not_known : dict of str to str
-        Effects whose change is not known, for some value at least, and why, or what to give.
+        Effects whose change is not known for at least one value, with the reason or the missing input.
     assumed : dict of str to str
-        Effects whose change rests on an assumption, and on which.
+        Effects whose change rests on an assumption, with the assumption.
     not_modelled : tuple of str
         Effects that no model here has.
     reasons : dict of str to str
         What the model assumes in place of each effect, and how to include it.
     shape : tuple of int
-        Shape of the values, which each change has.
+        Shape of the values of the answer, and of each change.
     unlisted : tuple of UnlistedMode
         Modes of the body that the model does not have, below the highest that it lists.
     reversals : dict of str to str
-        Effects by which a mode that vibrates diverges, or the other way round, and which of the two.
+        Effects that make a vibrating mode diverge, or a diverging one vibrate, and which of the two.
     counted : str
-        What the last axis of the values counts.
+        What the last axis of the values counts, such as "mode".
     """
 
     changes: dict[str, np.ndarray]
@@ -110,41 +110,41 @@ class LeftOutEffects:
 
     @property
     def total(self) -> np.ndarray:
-        """Size of the sum of all changes; nan where one of them is not known."""
+        """Magnitude of the sum of all changes; nan where one of the changes is not known."""
         return np.abs(sum(self.changes.values(), np.zeros(self.shape)))
 
     @property
     def total_of_known(self) -> np.ndarray:
-        """Size of the sum of the changes that are known."""
+        """Magnitude of the sum of the known changes."""
         return np.abs(sum(map(np.nan_to_num, self.changes.values()), np.zeros(self.shape)))
 
     @property
     def lack_data(self) -> bool:
-        """Whether the beam lacks the data of an effect, which is not in the sum then."""
+        """Whether the beam lacks data for an effect, whose change is then missing from the sum."""
         return bool(self.not_known.keys() - self.changes.keys())
 
     def at(self, index: Any) -> LeftOutEffects:
-        """Select the changes of some of the values."""
+        """Select the changes of some values by their indices."""
         changes = {name: np.asarray(change[index]) for name, change in self.changes.items()}
         first = (
             index[0] if isinstance(index, tuple) else index
-        )  # of the speeds, where modes are the last axis
+        )  # an index selects speeds where modes are the last axis
         unlisted = tuple(replace(mode, frequency=mode.frequency[first]) for mode in self.unlisted)
         return replace(self, changes=changes, shape=np.zeros(self.shape)[index].shape, unlisted=unlisted)
 
-    # In words -----------------------------------------------------------------------------------------
+    # Changes in words ------------------------------------------------------------------------------
 
     def sentence(self, what: str | None = None, where: str = "", speeds: np.ndarray | None = None) -> Words:
-        """One line: the largest change by each effect, what is not known, and what is not modelled.
+        """Summarize in one line: largest change by each effect, what is unknown, what is not modelled.
 
         Parameters
         ----------
         what : str, optional
             What the last axis of the values counts, in place of `counted`; "" where there is one value.
         where : str
-            Where the values hold, said first: "at 100 rad/s".
+            Where the values hold, such as "at 100 rad/s", which begins the line.
         speeds : ndarray, optional
-            Speeds [rad/s] of the first axis: what holds elsewhere than `where` is said with its own.
+            Speeds [rad/s] of the first axis, named with changes that are largest elsewhere than `where`.
         """
         what = self.counted if what is None else what
         parts: list[str] = [
@@ -166,7 +166,7 @@ class LeftOutEffects:
         return Words(*begin, ": ", joined("; ", parts))
 
     def where_unknown(self, name: str, speeds: np.ndarray | None) -> str:
-        """The speeds at which a change is not known; empty if these are not given, or it is known at all."""
+        """Word the speeds at which a change is unknown; empty if the speeds or the change are not given."""
         change = self.changes.get(name)
         if speeds is None or change is None or not len(speeds):
             return ""
@@ -174,7 +174,7 @@ class LeftOutEffects:
         return Words("at ", list_speeds(speeds, unknown)) if unknown.any() else ""
 
     def _say_changes(self, what: str, where: str, speeds: np.ndarray | None) -> Iterator[str]:
-        """The largest change by each effect, with the number of its value and the speed."""
+        """Yield the largest change by each effect, with the number of its value and the speed."""
         known = {name: change for name, change in self.changes.items() if np.isfinite(change).any()}
         for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
             change, notes = known[name], []
@@ -196,16 +196,16 @@ class LeftOutEffects:
         where: str = "",
         where_unknown: Callable[[str], str] = lambda name: "",
     ) -> Iterator[Statement]:
-        """Yield warnings of changes past a tolerance, or 1 %, of unknown ones, and of verdicts they reverse.
+        """Yield warnings of changes past a tolerance or 1 %, of unknown ones, and of reversed verdicts.
 
         Parameters
         ----------
         tolerance : float, optional
-            The tolerance.
+            Largest accepted relative change; 1 % if not given.
         where : str
-            Where the largest change is, as for `sentence`.
+            Where the largest change is: see `sentence`.
         where_unknown : callable
-            Where the change by an effect of a name is not known; empty if that is where the largest is.
+            Function of an effect's name that words where its change is unknown; empty if as `where`.
         """
         for name, how in self.reversals.items():
             begin = (where_unknown(name), " ") if where_unknown(name) else ()
@@ -238,13 +238,13 @@ class LeftOutEffects:
 
 
 def _largest(change: np.ndarray) -> float:
-    """The value of the largest size."""
+    """Return the finite value of the largest magnitude, with its sign."""
     known = change[np.isfinite(change)]
     return float(known[np.abs(known).argmax()])
 
 
 def say_change(change: float) -> str:
-    """A relative change in percent, to two digits, with its sign."""
+    """Word a relative change in percent, to two digits, with its sign."""
     if abs(change) < _NEGLIGIBLE:
         return "0 %" if change == 0 else "below 1e-7 %"
     if abs(change) < _MANY_TIMES:
@@ -253,34 +253,34 @@ def say_change(change: float) -> str:
 
 
 def say_size(size: float) -> str:
-    """A relative size in percent, to two digits; in words where it is not known."""
+    """Word a relative size in percent, to two digits, or in words where it is not known."""
     return "not known" if np.isnan(size) else say_change(size).removeprefix("+")
 
 
-# Results that carry it ----------------------------------------------------------------------------
+# Results that state a model error -----------------------------------------------------------------
 
 
 class NotJudged(LeftOutEffects):
-    """Stands for what the effects left out would change where that takes long and was not asked for."""
+    """Placeholder for changes by effects left out that take long to compute and were not requested."""
 
     def sentence(self, what: str | None = None, where: str = "", speeds: np.ndarray | None = None) -> Words:
-        """Say how it is asked for."""
+        """Say how the model error is requested."""
         return Words(
             "What the model leaves out is not computed yet: ask for model_error, which takes some solutions."
         )
 
 
 class StatesModelError(OfChosenPhysics):
-    """Base of results that say what the effects left out of their model would change; see `OfChosenPhysics`.
+    """Base class of results that state the changes by effects left out of the model; see `OfChosenPhysics`.
 
     A subclass has the cached property `left_out_effects`, which is computed when asked for.
 
     Attributes
     ----------
     judged_by_solving : bool
-        Whether the model error takes longer than the answer.
+        Whether the model error takes longer to compute than the answer.
     judged_value, counted : str
-        The values of which it is the error, and what each of several is, where a line says so below a table.
+        Words for the values that have the model error, and for each one of several, used below a table.
     """
 
     kept = ("left_out_effects",)
@@ -290,7 +290,7 @@ class StatesModelError(OfChosenPhysics):
     counted: ClassVar[str] = ""
 
     def without_waiting(self) -> Any:
-        """Leave out model errors that take long and were not asked for: the result can be shown at once."""
+        """Return a result that can be shown at once: slow model errors not computed yet are left out."""
         if not self.judged_by_solving or "left_out_effects" in vars(self):
             return self
         shape = np.shape(getattr(self, "left_out_speeds", 0.0))
@@ -300,28 +300,28 @@ class StatesModelError(OfChosenPhysics):
 
     @property
     def left_out(self) -> Mapping[str, np.ndarray]:
-        """Relative change by adding each effect that the model leaves out, by the effect's name.
+        """Relative change of the values by adding each effect left out of the model, by effect name.
 
-        Effects that lack data, or that no model here has, are named by `left_out_effects`.
+        Effects that lack data, or that no model here has, are only in `left_out_effects`.
         """
         return MappingProxyType(self.left_out_effects.changes)
 
     @property
     def model_error(self) -> np.ndarray:
-        """Size of the sum of all changes in `left_out`; nan where one of them is not known."""
+        """Magnitude of the sum of all changes in `left_out`; nan where one of the changes is not known."""
         return self.left_out_effects.total
 
     def model_warnings(self, tolerance: float | None = None) -> list[Statement]:
-        """Warnings of a model error past a tolerance, or 1 %, and of one that is not known."""
+        """List warnings of a model error past a tolerance or 1 %, and of an unknown one."""
         speeds = getattr(self, "left_out_speeds", None)
         effects = self.left_out_effects
         where = "" if speeds is None else where_worst(effects, speeds)
         return [*effects.warnings(tolerance, where, lambda name: effects.where_unknown(name, speeds))]
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with its model error and what is left out.
+        """Convert the result to numbers, lists and strings, with model error and effects left out.
 
-        Its warnings include those of the model error past 1 %.
+        The warnings include those of a model error past 1 %.
         """
         effects, values = self.left_out_effects, super().to_dict()
         values["warnings"] = [*values.get("warnings", ()), *self.model_warnings()]
@@ -332,7 +332,7 @@ class StatesModelError(OfChosenPhysics):
 
 
 def where_worst(effects: LeftOutEffects, speeds: np.ndarray) -> str:
-    """Where a model error over speeds (k,) is largest, "at 100 rad/s"; at which where it is not known."""
+    """Word the speed with the largest model error, "at 100 rad/s", or all speeds (k,) if it is unknown."""
     total = effects.total
     if not np.isfinite(total).any():
         return Words("at ", list_speeds(speeds, np.ones(len(speeds), bool))) if len(speeds) else ""

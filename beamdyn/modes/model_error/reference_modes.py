@@ -1,4 +1,4 @@
-"""Reference modes of a model, and the change of their eigenvalues by an effect that the model leaves out.
+"""Reference modes of a model, and changes of their eigenvalues by an effect that the model leaves out.
 
 The modes are sought over function spaces in which every effect can be added.  The equations with the effect,
 at the eigenvalue s and mode v of those without it, give a step of inverse iteration, z = D(s)^-1 D'(s) v with
@@ -27,19 +27,22 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
-_MOST = 160  # coordinates of a model: an estimate of a change needs no more
-_APART = 1e-8  # relative distance from the eigenvalue: the equations are singular there without the effect
-_AT_CLAMP = 3  # functions along each segment beyond as many as modes, where what a clamp hinders is resolved
-_ACROSS = 4  # functions across the width, which leave 1 % of what the clamp changes, and 0.1 % of torsion
-_STEPS = 8  # steps of inverse iteration: one will do unless the effect is large or modes are close
-_CONVERGED, _ROUNDING = 0.01, 1e-9  # step relative to the change, and to the eigenvalue, that ends it
-KEPT = 0.5  # squared product by mass with the mode found, below which it is another mode
-EXTRA_MODES = 2  # higher ones with which the wanted may exchange their order
+_MOST = 160  # largest number of coordinates of a model: an estimate of a change needs no more
+_APART = 1e-8  # relative distance from the eigenvalue, at which the equations without the effect are singular
+_AT_CLAMP = 3  # functions along each segment, beyond the number of modes, that resolve what a clamp hinders
+# Number of functions across the width: 1 % of what the clamp changes is missing, 0.1 % of torsion.
+_ACROSS = 4
+_STEPS = 8  # largest number of inverse iterations: one suffices unless the effect is large or modes are close
+# The iteration ends at a step of this size relative to the change, or relative to the eigenvalue.
+_CONVERGED, _ROUNDING = 0.01, 1e-9
+KEPT = 0.5  # squared product, by the mass, of two modes of norm 1, below which they count as different modes
+# Number of higher modes computed in addition, with which the wanted modes may exchange their order.
+EXTRA_MODES = 2
 
 
 @dataclass(frozen=True)
 class BaseEquations:
-    """The equations of a scene, without the effects, over spaces that suit those with each effect.
+    """Equations of a scene without further effects, in function spaces in which each effect can be added.
 
     Parameters
     ----------
@@ -57,21 +60,21 @@ class BaseEquations:
 
     @classmethod
     def of(cls, model: Model, modes: int) -> BaseEquations:
-        """Equations over the spaces of a model, or of a coarser one that suffices for so many modes."""
+        """Build equations over the spaces of a model, or of a coarser one that suffices for `modes` modes."""
         discretization, segments = model.discretization, len(model.scene.beam.breakpoints) - 1
         while model.equations.modes > _MOST and discretization.coarser() != discretization:
             if not discretization.coarser().fits(max(2, -(-modes // segments))):
                 break
             discretization = discretization.coarser()
             model = Model(model.scene, discretization)
-        has_width = model.scene.models_width  # then the other effects need no breakpoints but its own
+        has_width = model.scene.models_width  # the other effects then need no further breakpoints
         spaces = discretization.spaces(model.scene.modelled_beam if has_width else model.scene.beam)
         if spaces.shares_functions(discretization.spaces(model.scene.modelled_beam)):
             return cls(model.scene, spaces, model.equations)
         return cls(model.scene, spaces, assemble_over(model.scene, spaces))
 
     def suited_to(self, extended: Scene, modes: int) -> BaseEquations:
-        """The equations over spaces that resolve, for so many modes, what a scene with an effect adds.
+        """Return equations over spaces that resolve an effect of the extended scene, for `modes` modes.
 
         A clamp hinders camber near the root, where the scene with camber has breakpoints.
         """
@@ -81,11 +84,11 @@ class BaseEquations:
         return BaseEquations(self.scene, spaces, assemble_over(self.scene, spaces))
 
     def extend(self, scene: Scene) -> Equations:
-        """The equations of the scene with an effect, over the same spaces."""
+        """Assemble the equations of the scene with an effect, over the same spaces."""
         return assemble_over(scene, self.spaces)
 
     def embed(self, equations: Equations, vectors: np.ndarray) -> np.ndarray:
-        """Coordinates (N, ...) of extended equations for vectors (n, ...) of these: 0 in further fields."""
+        """Embed vectors (n, ...) in the coordinates (N, ...) of extended equations; further fields are 0."""
         embedded = np.zeros((equations.size, *vectors.shape[1:]), dtype=vectors.dtype)
         for name, place in self.equations.blocks.items():
             embedded[equations.blocks[name]] = vectors[place]
@@ -96,7 +99,7 @@ class BaseEquations:
         return solver_of(self.equations)
 
     def modes(self, speed: float, eigenvalue: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Eigenvalues (m,) and modes (n, m) of these equations, each the nearest to one that is given."""
+        """Find eigenvalues (m,) and modes (n, m) of these equations, each nearest to a given eigenvalue."""
         count = min(len(eigenvalue) + EXTRA_MODES, self._solver.size)
         found = self._solver.solve(np.array([speed]), count)
         order = assign(np.abs(eigenvalue[:, None] - found.eigenvalue[0][None, :]))
@@ -104,13 +107,13 @@ class BaseEquations:
 
 
 def clamp_spaces(scene: Scene, modes: int) -> Spaces:
-    """Function spaces that resolve so many modes of a scene with camber or torsion, to one in a thousand."""
+    """Build function spaces that resolve `modes` modes of a scene with camber or torsion to 0.1 %."""
     functions = min(MOST_FUNCTIONS, _AT_CLAMP + max(modes, 2))
     return replace(Ritz(functions).spaces(scene.modelled_beam), across=_ACROSS)
 
 
 def match_modes(equations: Equations, speed: float, vectors: np.ndarray, count: int) -> np.ndarray:
-    """Find the modes of equations that are mostly the given ones, by solving.
+    """Find the modes of equations that consist mostly of the given modes, by solving an eigenproblem.
 
     Parameters
     ----------
@@ -126,7 +129,7 @@ def match_modes(equations: Equations, speed: float, vectors: np.ndarray, count: 
     Returns
     -------
     ndarray of complex, shape (m,)
-        Eigenvalues [1/s]; nan where no mode has more than half of the given one.
+        Eigenvalues [1/s]; nan where no mode contains more than half of the given one.
     """
     M, solver = equations.steady().M, solver_of(equations)
     found = solver.solve(np.array([speed]), min(count, solver.size))
@@ -138,7 +141,7 @@ def match_modes(equations: Equations, speed: float, vectors: np.ndarray, count: 
 
 
 def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Estimate the eigenvalues of a pencil next to some of simpler equations.
+    """Estimate the eigenvalues of a pencil next to the eigenvalues of simpler equations.
 
     Parameters
     ----------
@@ -149,7 +152,7 @@ def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.n
     s : ndarray of complex, shape (m,)
         Eigenvalues without the effect [1/s], not 0.
     v : ndarray, shape (n, m)
-        Their modes, 0 in the coordinates that the effect adds.
+        Modes of these eigenvalues, 0 in the coordinates that the effect adds.
 
     Returns
     -------
@@ -166,10 +169,10 @@ def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.n
 
 
 def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarray) -> complex:
-    """The eigenvalue next to s, of mode x without the effect."""
+    """Find the eigenvalue next to s, starting from the mode x without the effect."""
     y, z, at = x.conj(), x, s
     for _ in range(_STEPS):
-        # One step of inverse iteration of the left and the right vector; not finite where D is singular.
+        # One step of inverse iteration of left and right vectors; not finite where D is singular.
         near = at * (1 + _APART)
         derivative = 2 * near * M + C
         factors, pivots, _ = zgetrf(near * near * M + near * C + K, overwrite_a=True)
@@ -186,13 +189,13 @@ def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarra
 
 
 def _scale(M: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Factors (n,) that make the diagonal of the stiffness 1, or of the mass where there is no stiffness."""
+    """Compute factors (n,) that scale the diagonal of the stiffness, or else of the mass, to 1."""
     size = np.where(np.diag(K) > 0, np.abs(np.diag(K)), np.abs(np.diag(M)))
     return 1 / np.sqrt(np.where(size > 0, size, 1.0))
 
 
 def _root_near(s: complex, a: complex, b: complex, c: complex) -> complex:
-    """The root of a r^2 + b r + c nearest to s; nan if there is none."""
+    """Find the root of a r^2 + b r + c nearest to s; nan if there is none."""
     if not (cmath.isfinite(a) and cmath.isfinite(b) and cmath.isfinite(c)) or a == 0:
         return complex(np.nan)
     root = cmath.sqrt(b * b - 4 * a * c)
@@ -200,7 +203,7 @@ def _root_near(s: complex, a: complex, b: complex, c: complex) -> complex:
 
 
 def shift_critical_speed(pencil: SteadyPencil, critical: float, v: np.ndarray) -> float:
-    """Estimate the speed at which the stiffness is singular, next to that of simpler equations.
+    """Estimate the critical speed of equations with an effect, next to that of simpler equations.
 
     Parameters
     ----------
@@ -209,7 +212,7 @@ def shift_critical_speed(pencil: SteadyPencil, critical: float, v: np.ndarray) -
     critical : float
         Critical speed without the effect [rad/s].
     v : ndarray, shape (n,)
-        Its buckling mode, 0 in the coordinates that the effect adds.
+        Buckling mode without the effect, 0 in the coordinates that the effect adds.
 
     Returns
     -------
@@ -228,7 +231,7 @@ def shift_critical_speed(pencil: SteadyPencil, critical: float, v: np.ndarray) -
 
 
 def buckling_mode(pencil: SteadyPencil, critical: float) -> np.ndarray:
-    """Mode (n,) on which the stiffness vanishes at the critical speed [rad/s]."""
+    """Find the mode (n,) on which the stiffness vanishes at the critical speed [rad/s]."""
     scale = _scale(pencil.M, pencil.K0)
     K = scale[:, None] * (pencil.K0 + critical**2 * pencil.K2) * scale
     values, vectors = np.linalg.eigh(K)

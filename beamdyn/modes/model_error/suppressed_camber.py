@@ -1,4 +1,4 @@
-"""Suppressed camber: a strip that is bent far cannot camber freely, and is nearly as stiff as one held flat.
+"""Suppressed camber: a strongly bent strip cannot camber freely, and is nearly as stiff as one held flat.
 
 A strip of width b and thickness t under the curvature kappa cambers freely while b^2 kappa/t (Searle's
 parameter) is small.  From about 1 on its camber is suppressed more and more, half of it at 10, as it would
@@ -28,12 +28,15 @@ from beamdyn.modes.model_error.additions import ASSUMED_POISSONS_RATIO
 from beamdyn.scene.scene import Scene
 
 _CAMBER_DECLINES = 1.0  # Searle's parameter from which camber is suppressed
-_WIDEST = 50.0  # theta beyond which its functions have their limits
+_WIDEST = 50.0  # argument theta beyond which the functions of a curved strip have reached their limits
 _STATIONS = 101
 
 
 def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
-    """Stiffness d^2 U/dkappa^2 over E I of a strip under a curvature, by theta > 0 and Poisson's ratio."""
+    """Compute the tangent bending stiffness of a curved strip over E I.
+
+    The argument `theta`, above 0, is this module's measure of width and curvature, `nu` Poisson's ratio.
+    """
     wide = np.minimum(theta, _WIDEST)
     total, rate = np.sinh(wide) + np.sin(wide), np.cosh(wide) + np.cos(wide)
     h, e = (np.cosh(wide) - np.cos(wide)) / total, rate / total
@@ -48,8 +51,8 @@ def warn_of_suppressed_camber(
 ) -> Iterator[Statement]:
     """Yield a warning if large deflection bends a strip so far that its camber is suppressed.
 
-    `bending` gives the curvature (k, m) [1/m] in the direction of bending at k speeds or times and x/L (m,);
-    `say_when` says which time or speed it is.
+    `bending` returns curvatures (k, m) [1/m] in the direction of bending at k speeds or times and x/L (m,);
+    `say_when` words the time or speed of an index.
     """
     section = scene.beam.section
     if section is None or section.poissons_ratio == 0:
@@ -72,13 +75,5 @@ def warn_of_suppressed_camber(
         f": past 1 its camber is suppressed in part: it is up to {percent(stiffer)} stiffer, its frequencies "
         f"up to {percent(np.sqrt(1 + stiffer) - 1)} higher{assumed}; no model here has that"
     )
-    quantity = "Searle's parameter b^2 kappa/t"
-    yield Statement(
-        say_when(int(at)),
-        where,
-        worth,
-        kind=MODEL_ERROR,
-        quantity=quantity,
-        value=searle[at, place],
-        limit=_CAMBER_DECLINES,
-    )
+    size = {"quantity": "Searle's parameter b^2 kappa/t", "value": searle[at, place]}
+    yield Statement(say_when(int(at)), where, worth, kind=MODEL_ERROR, limit=_CAMBER_DECLINES, **size)

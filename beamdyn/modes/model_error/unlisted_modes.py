@@ -1,4 +1,4 @@
-"""Modes of the body below the highest that a model lists, of kinds that the model does not have.
+"""Modes of kinds that a model lacks, as the body has them below the model's highest listed mode.
 
 A beam that bends in one plane, and neither twists nor cambers nor stretches, has no modes of the other
 direction, of torsion, of camber and of stretch.  They are found where the beam has the data; those of the
@@ -35,15 +35,17 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, UnlistedM
 from beamdyn.modes.model_error.reference_modes import clamp_spaces
 from beamdyn.scene.scene import Scene
 
-# Effects that add modes, with the fields in which these move most: by how their names begin.
+# Effects that add modes, and beginnings of the names of fields in which these modes move most.
 _ADDED = {SECOND_PLANE: "second", TORSION: "torsion", CAMBER: "camber", STRETCH: "stretch"}
 _REFINING = (SHEAR, ROTARY_INERTIA)
-_MARGIN = 1.03  # of the highest frequency listed: what the frequencies of these modes are known to
-_EXTRA = 2  # modes beyond as many as are listed
+# Factor of the highest listed frequency up to which further modes are named: their frequencies are known to 3
+# %.
+_MARGIN = 1.03
+_EXTRA = 2  # modes computed beyond the number listed
 
 
 def left_out_with_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> LeftOutEffects:
-    """What a model leaves out at some speeds: changes of its frequencies, and modes that it does not have.
+    """List the changes of frequencies by effects left out at some speeds, and modes that a model lacks.
 
     The parameters are those of `left_out_of_modes`.
     """
@@ -52,9 +54,9 @@ def left_out_with_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray
 
 
 def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> Iterator[UnlistedMode]:
-    """Yield the modes that a model does not have, below the highest that it lists at some speed.
+    """Yield the modes that a model lacks below the highest that it lists at some speed.
 
-    A margin of 3 % above it is what the frequencies of these modes are known to.  The eigenvalues (S, m)
+    A margin of 3 % above the highest allows for the accuracy of these modes.  The eigenvalues (S, m)
     are those listed at the speeds (S,) [rad/s].
     """
     highest = _MARGIN * np.abs(eigenvalue).max(axis=1, initial=0.0)
@@ -74,7 +76,7 @@ def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> I
 
 
 def _add(scene: Scene, effect: Effect) -> Addition | None:
-    """The scene with an effect; with camber torsion too, which says what is assumed.  None if it has none."""
+    """Add an effect to a scene, and torsion together with camber; None if the effect cannot be added."""
     try:
         added = add_effect(scene, TORSION if effect is CAMBER and not TORSION.is_in(scene) else effect)
         extended = add_effects(added.scene, [effect])
@@ -84,7 +86,7 @@ def _add(scene: Scene, effect: Effect) -> Addition | None:
 
 
 def _refined(scene: Scene) -> Scene:
-    """The scene with shear and rotary inertia, as far as its beam has the data."""
+    """Return the scene with shear and rotary inertia, as far as its beam has the data."""
     for effect in _REFINING:
         if not effect.is_in(scene) and can_add(scene, effect):
             scene = add_effect(scene, effect).scene
@@ -92,16 +94,16 @@ def _refined(scene: Scene) -> Scene:
 
 
 def _spaces(scene: Scene, model: Model, modes: int) -> Spaces:
-    """Function spaces for modes of a scene with what a model lacks."""
+    """Build function spaces for modes of a scene with an effect that a model lacks."""
     if scene.models_width:
         return clamp_spaces(scene, modes)
     return model.discretization.spaces(scene.beam)
 
 
 def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, count: int) -> np.ndarray:
-    """Angular frequencies (S, k) of modes that move most in fields whose names begin so, ascending.
+    """Compute angular frequencies (S, k), ascending, of modes that move most in fields of given names.
 
-    Gyroscopic coupling with other fields is left out: it changes them little.
+    Gyroscopic coupling with other fields is left out, as it changes these modes little.
     """
     own = {name for name in equations.blocks if name.startswith(fields)}
     names = [name for together in equations.coupled if own.intersection(together) for name in together]
@@ -117,5 +119,5 @@ def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, coun
 
 
 def _kind(effect: Effect, scene: Scene) -> str:
-    """Name of the modes that an effect adds."""
+    """Name the kind of the modes that an effect adds."""
     return words_of_directions(scene)[1] if effect is SECOND_PLANE else effect.switch

@@ -7,16 +7,17 @@ import pickle
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import MOST, real_array
 from beamdyn.common.results.one_line import OneLine
 from beamdyn.common.words import Words
-from beamdyn.scene.names_elsewhere import REPEATING
+from beamdyn.scene.names_elsewhere import REPEATING, ROLLING_WHEEL
 
-_ROUNDING = 1e-12  # relative to the end of a motion: times beyond it by less differ by rounding only
+# Distance from the end of a motion, over its end time, up to which a later time counts as the end.
+_ROUNDING = 1e-12
 
 Kinematics = tuple[np.ndarray, np.ndarray, np.ndarray]  # angle, speed, acceleration
 
@@ -46,7 +47,7 @@ class MotionSample:
 
     @classmethod
     def steady(cls, speed: np.ndarray | float) -> MotionSample:
-        """Sample rotations at constant speed [rad/s] about a fixed centre, at angle 0, one entry a speed."""
+        """Sample rotations at constant speeds [rad/s] about a fixed centre, at angle 0."""
         speed = np.asarray(speed, dtype=float)
         zero = np.zeros(speed.shape)
         return cls(zero, speed, zero, np.zeros((*speed.shape, 3)))
@@ -75,7 +76,7 @@ class Line:
 
 
 class Motion(OneLine, ABC):
-    """Base class of motions; its defaults are those of a smooth, unlimited motion without a road.
+    """Base class of motions of the carrier; the defaults suit a smooth motion without end or road.
 
     In order to add a motion, write a subclass in a module of its own:
 
@@ -97,6 +98,8 @@ class Motion(OneLine, ABC):
     >>> isinstance(bd.SteadyRotation(50.0), bd.Motion)
     True
     """
+
+    no_steady_state: ClassVar[str] = ""  # why there is none, and what to do; empty where there is one
 
     @abstractmethod
     def at(self, t: np.ndarray) -> MotionSample:
@@ -123,17 +126,17 @@ class Motion(OneLine, ABC):
 
     @property
     def end(self) -> float:
-        """Time up to which the motion is defined [s], inf if for ever."""
+        """Time up to which the motion is defined [s]; inf if it has no end."""
         return math.inf
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """Excitation lines of the translation at steady speed; that of gravity is not included."""
+        """Excitation lines of the translation at steady speed, without the line of gravity."""
         return ()
 
     @property
     def road_multiple(self) -> float | None:
-        """Phase of the road per angle of rotation: waves of the road per turn; None without a road."""
+        """Number of waves of the road per turn of the wheel; None without a road."""
         return None
 
     @property
@@ -150,21 +153,21 @@ class Motion(OneLine, ABC):
 
     @property
     def picklable(self) -> bool:
-        """Whether the motion can be pickled, as stores and other processes require."""
+        """Whether the motion can be pickled, which stores and other processes require."""
         try:
             pickle.dumps(self)
-        except Exception:  # its type depends on the user's functions
+        except Exception:  # the type of the exception depends on the user's functions
             return False
         return True
 
     def road_acceleration(self, speed: float) -> float:
-        """Largest acceleration of the wheel by the road at a steady speed [m/s2]; 0 without a road."""
+        """Compute the wheel's largest acceleration by the road at steady speed [m/s2]; 0 without road."""
         return 0.0
 
     def steady_acceleration(
         self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
     ) -> np.ndarray:
-        """Acceleration of the carrier's centre at steady speed, at phases of the rotation and of the road.
+        """Compute the acceleration of the carrier's centre at steady speed, at phases of rotation and road.
 
         Parameters
         ----------
@@ -178,12 +181,19 @@ class Motion(OneLine, ABC):
         -------
         ndarray, shape (..., 3)
             Components along n1, n2, n3 [m/s2]; the leading shape is that of the broadcast arguments.
+
+        Raises
+        ------
+        ValueError
+            If the motion has no known steady state.
         """
+        if why := self.no_steady_state:
+            raise ValueError(Words(f"a {type(self).__name__} {why}, or use ", ROLLING_WHEEL))
         return np.zeros((*np.broadcast_shapes(*map(np.shape, (speed, rotation, road))), 3))
 
 
 def check_times(t: np.ndarray, end: float) -> np.ndarray:
-    """Convert times [s] to an array; raise a ValueError if a motion of finite end is not defined at one."""
+    """Convert times [s] to an array; refuse times beyond the end of a motion by a ValueError."""
     t = np.asarray(t, dtype=float)
     if end == math.inf or not t.size:
         return t
@@ -199,16 +209,16 @@ def check_times(t: np.ndarray, end: float) -> np.ndarray:
 
 
 def as_breakpoints(times: Sequence[float]) -> tuple[float, ...]:
-    """Convert breakpoints [s] to ascending order without repeats."""
+    """Sort breakpoints [s] in ascending order, without repeats."""
     return tuple(np.unique(real_array("breakpoints", times)).tolist())
 
 
-# Checks of consistency ----------------------------------------------------------------------------
+# Checks of consistency of a motion's functions ------------------------------------------------------
 
 
-_SAMPLES = 1000  # times at which functions are compared with their derivatives
+_SAMPLES = 1000  # number of times at which functions are compared with their derivatives
 _STEP = 1e-7  # step of the finite differences, relative to the interval
-_ZOOMS = 3  # refinements of a step with a misfit before it is reported as a jump
+_ZOOMS = 3  # number of refinements of a step whose values do not fit, before the step is reported as a jump
 _MISFIT = 1e-6  # allowed misfit, relative to the largest derivative
 
 
@@ -257,7 +267,7 @@ def check_consistent(motion: Motion, t_end: float) -> None:
 
 
 def _choose_times(t_end: float, breakpoints: Sequence[float], h: float) -> np.ndarray:
-    """Choose times over the whole interval and on both sides of each breakpoint, none within 2 h of one."""
+    """Choose times over the whole interval and beside each breakpoint, none within 2 h of a breakpoint."""
     # Irregular, so that no periodic function is sampled at its zeros only.
     k = np.arange(_SAMPLES)
     t = 2 * h + (t_end - 4 * h) * (k + k * math.e % 1) / _SAMPLES
@@ -294,14 +304,14 @@ def _check_derivative(
 
 
 def _check_continuous(motion: Motion, name: str, unit: str, derivative_name: str, t: np.ndarray) -> None:
-    """Check that a function has no jump, which finite differences between the times do not see."""
+    """Check that a function has no jump between the times at which finite differences are taken."""
     misfit = 0.0
     for _ in range(_ZOOMS):
         sample = motion.at(t)
         excess, misfit, k = _find_worst_step(t, getattr(sample, name), getattr(sample, derivative_name))
         if excess <= 0:
             return
-        t = np.linspace(t[k], t[k + 1], _SAMPLES)  # a steep rise turns out continuous when resolved
+        t = np.linspace(t[k], t[k + 1], _SAMPLES)  # a steep rise turns out continuous when it is resolved
     raise ValueError(
         f"{derivative_name} is not the derivative of {name} at t = {t[0]:.6g} s, where {name} jumps by "
         f"{misfit:.3g} {unit}; let {name} continue"

@@ -1,20 +1,19 @@
-"""Motions that pulsate: a speed that fluctuates about its mean, and a carrier that is shaken as it turns."""
+"""Pulsating motions: a speed that fluctuates about its mean, and a shaken carrier that turns."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import moderate, real, set_fields, size
+from beamdyn.common.inputs.checks import moderate, set_fields, size
 from beamdyn.common.inputs.described import Described
-from beamdyn.common.words import Words
-from beamdyn.scene.motion.base import Kinematics, Motion, MotionSample
-from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
-from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
+from beamdyn.scene.motion.base import Kinematics, MotionSample
+from beamdyn.scene.motion.rotations import Rotation, TurningMotion
 
+_NEVER_STEADY = "pulsates, and has no steady state; simulate it, ask for its stability"
 _AXES = ("along_n1", "along_n2", "along_n3")
 
 
@@ -47,6 +46,8 @@ class PulsatingRotation(Rotation):
     fluctuation: Annotated[float, Described("", "e", "amplitude of the speed, over its mean")]
     frequency: Annotated[float, Described("Hz", "f", "frequency of the fluctuation", above=0)]
 
+    no_steady_state: ClassVar[str] = _NEVER_STEADY
+
     def __post_init__(self) -> None:
         set_fields(self, speed=moderate("speed", self.speed, "rad/s"))
         set_fields(self, fluctuation=moderate("fluctuation", self.fluctuation))
@@ -54,16 +55,16 @@ class PulsatingRotation(Rotation):
 
     @property
     def final_speed(self) -> float:
-        """Mean speed [rad/s]."""
+        """Mean speed of the rotation [rad/s]."""
         return self.speed
 
     @property
     def rates(self) -> tuple[float, ...]:
-        """Mean speed, and rate of the fluctuation [rad/s]: see `Motion.rates`."""
+        """Mean speed, and angular frequency of the fluctuation [rad/s]: see `Motion.rates`."""
         return self.speed, 2 * math.pi * self.frequency
 
     def kinematics(self, t: np.ndarray) -> Kinematics:
-        """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
+        """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         rate, swing = 2 * math.pi * self.frequency, self.speed * self.fluctuation
         cos, sin = np.cos(rate * t), np.sin(rate * t)
         return self.speed * t + swing / rate * sin, self.speed + swing * cos, -swing * rate * sin
@@ -72,15 +73,9 @@ class PulsatingRotation(Rotation):
         """Copy the rotation with another mean speed [rad/s] and the same relative fluctuation."""
         return replace(self, speed=speed)
 
-    def steady_acceleration(
-        self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
-    ) -> np.ndarray:
-        """Raise a ValueError: the speed is not steady."""
-        raise _never_steady(self)
-
 
 @dataclass(frozen=True)
-class ShakenCarrier(Motion):
+class ShakenCarrier(TurningMotion):
     """A carrier that turns while its centre is shaken: accelerations a cos(2 pi f t) along fixed directions.
 
     Without rotation and at setting angle 0, the beam lies along n1: along it the shaking pulsates the axial
@@ -113,43 +108,17 @@ class ShakenCarrier(Motion):
     along_n3: Annotated[float, Described("m/s2", "a_3", "amplitude of the acceleration along n3")] = 0.0
     rotation: Annotated[float | Rotation, Described(key="rotation")] = 0.0
 
+    no_steady_state: ClassVar[str] = _NEVER_STEADY
+
     def __post_init__(self) -> None:
         set_fields(self, frequency=size("frequency", self.frequency, "Hz"))
         for name in _AXES:
             set_fields(self, **{name: moderate(name, getattr(self, name), "m/s2")})
-        if not isinstance(self.rotation, Rotation):
-            remedy = "or a rotation, such as SteadyRotation(speed)"
-            set_fields(self, rotation=SteadyRotation(real("rotation", self.rotation, "rad/s", remedy)))
-
-    @property
-    def turning(self) -> Rotation:
-        """Rotation of the carrier."""
-        assert isinstance(self.rotation, Rotation)
-        return self.rotation
-
-    @property
-    def final_speed(self) -> float:
-        """Speed at the end of the rotation [rad/s]."""
-        return self.turning.final_speed
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Times at which the rotation or one of its derivatives jumps [s]."""
-        return self.turning.breakpoints
-
-    @property
-    def steady_start(self) -> float:
-        """Time from which the speed is constant [s], inf if never."""
-        return self.turning.steady_start
-
-    @property
-    def end(self) -> float:
-        """Time up to which the rotation is defined [s], inf if for ever."""
-        return self.turning.end
+        self.keep_rotation()
 
     @property
     def rates(self) -> tuple[float, ...]:
-        """Rates of the rotation, and that of the shaking [rad/s]: see `Motion.rates`."""
+        """Rates of the rotation, and angular frequency of the shaking [rad/s]: see `Motion.rates`."""
         return *self.turning.rates, 2 * math.pi * self.frequency
 
     def at(self, t: np.ndarray) -> MotionSample:
@@ -158,20 +127,3 @@ class ShakenCarrier(Motion):
         for axis, name in enumerate(_AXES):
             sample.carrier_acceleration[..., axis] = getattr(self, name) * cos
         return sample
-
-    def with_speed(self, speed: float) -> ShakenCarrier:
-        """Copy the motion with another final speed [rad/s] and the same shaking."""
-        return replace(self, rotation=self.turning.with_speed(speed))
-
-    def steady_acceleration(
-        self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
-    ) -> np.ndarray:
-        """Raise a ValueError: the shaking has a frequency of its own beside that of the rotation."""
-        raise _never_steady(self)
-
-
-def _never_steady(motion: Motion) -> ValueError:
-    said = (
-        f"a {type(motion).__name__} pulsates, and has no steady state; simulate it, ask for its stability, "
-    )
-    return ValueError(Words(said, "or use ", ROLLING_WHEEL))

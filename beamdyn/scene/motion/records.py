@@ -1,35 +1,33 @@
-"""Motions given by records: the acceleration of the carrier's centre, sampled evenly in time."""
+"""Motions given by records of the acceleration of the carrier's centre, sampled at even intervals."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, get_args
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import MOST, InvalidValue, one_of, real, real_array, refuse, set_fields
+from beamdyn.common.inputs.checks import MOST, InvalidValue, one_of, real_array, refuse, set_fields
 from beamdyn.common.inputs.described import Described
-from beamdyn.common.words import Words
-from beamdyn.scene.motion.base import Motion, MotionSample, check_times
-from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
-from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
+from beamdyn.scene.motion.base import MotionSample, check_times
+from beamdyn.scene.motion.rotations import Rotation, TurningMotion
 
 if TYPE_CHECKING:  # scipy.interpolate is slow to import
     from scipy.interpolate import CubicSpline
 
-_GAP = 1.5  # gap over the usual interval, beyond which samples are missing
+_GAP = 1.5  # ratio of a gap to the usual interval beyond which samples are missing
 _AXES = ("along_n1", "along_n2", "along_n3")
 
 BetweenSamples = Literal["linear", "cubic"]
 
 
 @dataclass(frozen=True)
-class SampledTranslation(Motion):
-    """A carrier whose centre has a recorded acceleration, as it turns.
+class SampledTranslation(TurningMotion):
+    """Motion of a rotating carrier whose centre has a recorded acceleration.
 
-    An accelerometer that stands still shows gravity: subtract it from the record, and give it as that of the
+    An accelerometer at rest shows gravity: subtract gravity from the record, and give it as gravity of the
     scene if the beam is to feel it.
 
     Parameters
@@ -66,6 +64,8 @@ class SampledTranslation(Motion):
         BetweenSamples, Described(meaning="straight lines between samples, or a cubic spline")
     ] = "linear"
 
+    no_steady_state: ClassVar[str] = "has no steady state; simulate it"
+
     def __post_init__(self) -> None:
         one_of("interpolation", self.interpolation, get_args(BetweenSamples))
         times = check_record_times("times", self.times)
@@ -75,39 +75,20 @@ class SampledTranslation(Motion):
         if not any(getattr(self, name) for name in _AXES):
             bound, remedy = "no direction has an acceleration", "give one at least, such as along_n2"
             raise InvalidValue(", ".join(_AXES), (), bound, remedy)
-        if not isinstance(self.rotation, Rotation):
-            remedy = "or a rotation, such as SpinUp(speed, duration)"
-            speed = real("rotation", self.rotation, "rad/s", remedy)
-            set_fields(self, rotation=SteadyRotation(speed))
+        self.keep_rotation()
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         given = (getattr(self, name) for name in ("times", *_AXES, "rotation", "interpolation"))
         return type(self), tuple(given)  # the cached splines are not pickled
 
     @property
-    def turning(self) -> Rotation:
-        """Rotation of the carrier."""
-        assert isinstance(self.rotation, Rotation)
-        return self.rotation
-
-    @property
-    def final_speed(self) -> float:
-        """Speed at the end of the motion [rad/s]."""
-        return self.turning.final_speed
-
-    @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Inner times of the record, and those of the rotation [s]."""
+        """Inner times of the record and breakpoints of the rotation [s]."""
         return tuple(np.union1d(self.times[1:-1], self.turning.breakpoints).tolist())
 
     @property
-    def steady_start(self) -> float:
-        """Time from which the speed is constant [s], inf if never."""
-        return self.turning.steady_start
-
-    @property
     def end(self) -> float:
-        """Last time of the record, or that of the rotation if it is earlier [s]."""
+        """Last time of the record, or end of the rotation if that is earlier [s]."""
         return min(self.times[-1], self.turning.end)
 
     def at(self, t: np.ndarray) -> MotionSample:
@@ -122,27 +103,16 @@ class SampledTranslation(Motion):
 
     @cached_property
     def _splines(self) -> dict[str, CubicSpline]:
-        """Splines by axis; none where lines are drawn between samples."""
+        """Cubic splines through the record, by axis; empty for linear interpolation."""
         if self.interpolation == "linear":
             return {}
         from scipy.interpolate import CubicSpline
 
         return {name: CubicSpline(self.times, given) for name in _AXES if (given := getattr(self, name))}
 
-    def with_speed(self, speed: float) -> SampledTranslation:
-        """Copy the motion with another final speed [rad/s] and the same record."""
-        return replace(self, rotation=self.turning.with_speed(speed))
-
-    def steady_acceleration(
-        self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
-    ) -> np.ndarray:
-        """Raise a ValueError: a record has no steady state."""
-        said = "a SampledTranslation has no steady state; simulate it, or use "
-        raise ValueError(Words(said, ROLLING_WHEEL))
-
 
 def check_record_times(name: str, given: Sequence[float] | np.ndarray) -> np.ndarray:
-    """Times of a record as an array.
+    """Check the times of a record, and return them as an array.
 
     Raises
     ------
@@ -164,7 +134,7 @@ def check_record_times(name: str, given: Sequence[float] | np.ndarray) -> np.nda
 
 
 def _check_samples(name: str, given: Sequence[float], count: int) -> tuple[float, ...]:
-    """Accelerations as numbers, as many as times; none if none are given."""
+    """Check recorded accelerations: one for each time, or none at all."""
     samples = real_array(name, given)
     if len(samples) not in (0, count):
         bound = f"{len(samples)} accelerations at {count} times"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Annotated
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import function, kind, moderate, positive, real, refuse, set_fields, size
+from beamdyn.common.inputs.checks import function, kind, moderate, positive, refuse, set_fields, size
 from beamdyn.common.inputs.described import Described
 from beamdyn.scene.motion.base import (
     Line,
@@ -19,9 +19,9 @@ from beamdyn.scene.motion.base import (
     check_consistent,
     check_times,
 )
-from beamdyn.scene.motion.rotations import Rotation, SteadyRotation
+from beamdyn.scene.motion.rotations import Rotation, TurningMotion
 
-_MOST_WAVES = 1e12  # waves of the road per turn; with more, the phase of the road has few right digits
+_MOST_WAVES = 1e12  # waves of the road per turn; with more, the phase of the road has few correct digits
 
 
 @dataclass(frozen=True)
@@ -79,13 +79,13 @@ class RoadWave:
 
     @property
     def wavenumber(self) -> float:
-        """Phase per distance travelled [rad/m]."""
+        """Wavenumber of the road: phase per distance travelled [rad/m]."""
         return 2 * math.pi / self.wavelength
 
     def acceleration(
         self, phase: np.ndarray, velocity: np.ndarray, acceleration: np.ndarray | float = 0.0
     ) -> np.ndarray:
-        """Vertical acceleration of a wheel on the road [m/s2].
+        """Compute the vertical acceleration of a wheel on the road [m/s2].
 
         Parameters
         ----------
@@ -101,13 +101,13 @@ class RoadWave:
         return self.height * k * (acceleration * np.cos(phase) - k * velocity**2 * np.sin(phase))
 
     def largest_acceleration(self, velocity: float) -> float:
-        """Amplitude of the vertical acceleration at a constant velocity along the road [m/s2]."""
+        """Compute the amplitude of the vertical acceleration at a constant velocity along the road [m/s2]."""
         peak = 0.0 if self.velocity_amplitude is not None else math.pi / 2
         return abs(float(self.acceleration(np.array(peak), np.array(velocity))))
 
 
 @dataclass(frozen=True)
-class RollingWheel(Motion):
+class RollingWheel(TurningMotion):
     """A wheel that rolls without slip along n1, on a flat or a wavy road.
 
     Parameters
@@ -140,11 +140,11 @@ class RollingWheel(Motion):
     speed: Annotated[float | Rotation, Described(key="rotation")]
     road: RoadWave | None = None
 
+    turned_by: ClassVar[str] = "speed"
+
     def __post_init__(self) -> None:
         set_fields(self, rolling_radius=size("rolling_radius", self.rolling_radius, "m"))
-        if not isinstance(self.speed, Rotation):
-            remedy = "or a rotation, such as SpinUp(speed, duration)"
-            set_fields(self, speed=SteadyRotation(real("speed", self.speed, "rad/s", remedy)))
+        self.keep_rotation()
         if self.road is not None:
             kind("road", self.road, RoadWave, "road = RoadWave(wavelength=0.3, height=0.001)")
             bound = "a wheel of this radius would pass more than 1e12 waves a turn"
@@ -153,44 +153,23 @@ class RollingWheel(Motion):
 
     @property
     def rotation(self) -> Rotation:
-        """Rotation of the wheel."""
-        assert isinstance(self.speed, Rotation)
-        return self.speed
-
-    @property
-    def final_speed(self) -> float:
-        """Speed at the end of the motion [rad/s]."""
-        return self.rotation.final_speed
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Times at which a derivative of the rotation jumps [s]."""
-        return tuple(self.rotation.breakpoints)
-
-    @property
-    def steady_start(self) -> float:
-        """Time from which the speed is constant [s], inf if never."""
-        return self.rotation.steady_start
-
-    @property
-    def end(self) -> float:
-        """Time up to which the rotation is defined [s], inf if for ever."""
-        return self.rotation.end
+        """Rotation of the wheel, without its translation."""
+        return self.turning
 
     @property
     def road_multiple(self) -> float | None:
-        """Waves of the road per turn, 2 pi R / lambda; None on a flat road."""
+        """Number of waves of the road per turn, 2 pi R / lambda; None on a flat road."""
         return None if self.road is None else self.rolling_radius * self.road.wavenumber
 
     @property
     def rates(self) -> tuple[float, ...]:
-        """Rates of the rotation, and on a wavy road that of its phase [rad/s]: see `Motion.rates`."""
+        """Rate of rotation and, on a wavy road, rate of the road's phase [rad/s]: see `Motion.rates`."""
         rates, waves = self.rotation.rates, self.road_multiple
         return rates if waves is None else (*rates, waves * rates[0])
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """Excitation lines of the road, whose frequency the rotation splits into two."""
+        """Excitation lines of the road; rotation splits the road's frequency into two."""
         if (kappa := self.road_multiple) is None:
             return ()
         return Line("road +", kappa + 1), Line("road -", abs(kappa - 1))
@@ -205,18 +184,14 @@ class RollingWheel(Motion):
             sample.carrier_acceleration[..., 1] = vertical
         return sample
 
-    def with_speed(self, speed: float) -> RollingWheel:
-        """Copy the wheel with another final speed [rad/s]."""
-        return replace(self, speed=self.rotation.with_speed(speed))
-
     def road_acceleration(self, speed: float) -> float:
-        """Largest acceleration of the wheel by the road at a steady speed [m/s2]; 0 without a road."""
+        """Compute the wheel's largest acceleration by the road at steady speed [m/s2]; 0 without road."""
         return 0.0 if self.road is None else self.road.largest_acceleration(self.rolling_radius * speed)
 
     def steady_acceleration(
         self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
     ) -> np.ndarray:
-        """Acceleration of the centre at steady speed [m/s2]: see `Motion.steady_acceleration`."""
+        """Compute the centre's acceleration at steady speed [m/s2]: see `Motion.steady_acceleration`."""
         total = super().steady_acceleration(speed, rotation, road)
         if self.road is not None:
             velocity = self.rolling_radius * np.asarray(speed, dtype=float)
@@ -226,7 +201,7 @@ class RollingWheel(Motion):
 
 @dataclass(frozen=True)
 class UserMotion(Motion):
-    """Any motion, as a function of time.
+    """A motion given by a user's function of time.
 
     A lambda is not `picklable`: workers and stores need a function defined in a module.  The motion has no
     known steady state, so that it can be simulated only.
@@ -259,6 +234,8 @@ class UserMotion(Motion):
     breakpoints: tuple[float, ...] = ()  # pyright: ignore[reportIncompatibleMethodOverride, reportIncompatibleVariableOverride, reportAssignmentType]
     t_end: float = math.inf
 
+    no_steady_state: ClassVar[str] = "has no known steady state; simulate it"
+
     def __post_init__(self) -> None:
         function("function", self.function, "it takes an array of times [s] and returns a MotionSample")
         set_fields(self, breakpoints=as_breakpoints(self.breakpoints))
@@ -274,7 +251,7 @@ class UserMotion(Motion):
 
     @property
     def end(self) -> float:
-        """Time up to which the motion is defined [s], inf if for ever."""
+        """Time up to which the motion is defined [s]; inf if it has no end."""
         return self.t_end
 
     def at(self, t: np.ndarray) -> MotionSample:
@@ -296,14 +273,8 @@ class UserMotion(Motion):
         return sample
 
     def with_speed(self, speed: float) -> UserMotion:
-        """Raise a ValueError: a function of time has no speed to change."""
+        """Raise a ValueError, because the speed of a function of time cannot be changed."""
         raise ValueError(
             f"with_speed({speed:g}): a UserMotion has one speed only; make one for each speed, "
             "or use RollingWheel with a rotation"
         )
-
-    def steady_acceleration(
-        self, speed: np.ndarray | float, rotation: np.ndarray | float, road: np.ndarray | float
-    ) -> np.ndarray:
-        """Raise a ValueError: a function of time has no known steady state."""
-        raise ValueError("a UserMotion has no known steady state; simulate it, or use RollingWheel")

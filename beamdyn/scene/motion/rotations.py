@@ -1,4 +1,4 @@
-"""Rotations about a fixed centre."""
+"""Rotations about a fixed centre: steady, spin-up, tabulated, or given by functions."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self, get_args
 
 import numpy as np
 
@@ -46,12 +46,61 @@ class Rotation(Motion):
 
     @abstractmethod
     def kinematics(self, t: np.ndarray) -> Kinematics:
-        """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
+        """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
 
     def at(self, t: np.ndarray) -> MotionSample:
         """Sample the motion at times t [s], of any shape."""
         t = check_times(t, self.end)
         return MotionSample(*self.kinematics(t), np.zeros((*t.shape, 3)))
+
+
+@dataclass(frozen=True)
+class TurningMotion(Motion):
+    """Base class of motions whose centre moves while the carrier turns by a `Rotation`, held in a field.
+
+    Examples
+    --------
+    >>> bd.ShakenCarrier(frequency=5.0, along_n1=2.0, rotation=bd.SteadyRotation(50.0)).turning.final_speed
+    50.0
+    """
+
+    turned_by: ClassVar[str] = "rotation"  # name of the field that holds the rotation
+
+    def keep_rotation(self) -> None:
+        """Check the field that holds the rotation; replace a speed [rad/s] there by a steady rotation."""
+        given = getattr(self, self.turned_by)
+        if not isinstance(given, Rotation):
+            speed = real(self.turned_by, given, "rad/s", "or a rotation, such as SpinUp(speed, duration)")
+            set_fields(self, **{self.turned_by: SteadyRotation(speed)})
+
+    @property
+    def turning(self) -> Rotation:
+        """Rotation of the carrier."""
+        return getattr(self, self.turned_by)
+
+    @property
+    def final_speed(self) -> float:
+        """Speed at the end of the rotation [rad/s]."""
+        return self.turning.final_speed
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Times at which the rotation or one of its derivatives jumps [s]."""
+        return tuple(self.turning.breakpoints)
+
+    @property
+    def steady_start(self) -> float:
+        """Time from which the speed is constant [s], inf if never."""
+        return self.turning.steady_start
+
+    @property
+    def end(self) -> float:
+        """Time up to which the rotation is defined [s]; inf if it has no end."""
+        return self.turning.end
+
+    def with_speed(self, speed: float) -> Self:
+        """Copy the motion with another final speed [rad/s]; all else stays the same."""
+        return replace(self, **{self.turned_by: self.turning.with_speed(speed)})
 
 
 @dataclass(frozen=True)
@@ -77,21 +126,21 @@ class SteadyRotation(Rotation):
 
     @property
     def final_speed(self) -> float:
-        """The speed [rad/s]."""
+        """Constant speed of the rotation [rad/s]."""
         return self.speed
 
     @property
     def steady_start(self) -> float:
-        """0 s: the speed is constant."""
+        """Time from which the speed is constant: 0 s."""
         return 0.0
 
     @property
     def rates(self) -> tuple[float, ...]:
-        """The speed [rad/s]: see `Motion.rates`."""
+        """Rate of the rotation, which is its speed [rad/s]: see `Motion.rates`."""
         return (self.speed,)
 
     def kinematics(self, t: np.ndarray) -> Kinematics:
-        """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
+        """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         return self.speed * t, np.full(t.shape, self.speed), np.zeros(t.shape)
 
     def with_speed(self, speed: float) -> SteadyRotation:
@@ -143,23 +192,24 @@ class SpinUp(Rotation):
 
     @property
     def final_speed(self) -> float:
-        """The speed after the spin-up [rad/s]."""
+        """Constant speed after the spin-up [rad/s]."""
         return self.speed
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """End of the spin-up [s]."""
+        """Time at which the spin-up ends [s]."""
         return (self.duration,)
 
     @property
     def steady_start(self) -> float:
-        """End of the spin-up [s]."""
+        """Time at which the spin-up ends [s]."""
         return self.duration
 
     def kinematics(self, t: np.ndarray) -> Kinematics:
-        """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
+        """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         x = np.clip(t / self.duration, 0.0, 1.0)
-        after_its_end = x.ndim and x.size and x.min() == 1  # one value of the law is that of all times
+        # After the spin-up one value of the law serves all times.
+        after_its_end = x.ndim and x.size and x.min() == 1
         angle, speed, acceleration = _LAWS[self.law](np.ones(1) if after_its_end else x)
         # Time at constant speed counts from the spin-up's end: the angle is continuous to the last digit.
         angle = self.speed * (self.duration * angle + np.maximum(t - self.duration, 0.0))
@@ -172,7 +222,7 @@ class SpinUp(Rotation):
 
 
 def _smooth(x: np.ndarray) -> Kinematics:
-    """Integral, value and derivative of the speed x - sin(2 pi x)/(2 pi), for 0 <= x <= 1."""
+    """Compute the integral, value and derivative of the speed x - sin(2 pi x)/(2 pi), for 0 <= x <= 1."""
     y, sine = np.pi * x, np.sin(np.pi * x)
     # x^2/2 - sin(pi x)^2/(2 pi^2) as a product, because the difference cancels at small x.
     integral = _angle_minus_sine(y, sine) * (y + sine) / (2 * np.pi**2)
@@ -180,7 +230,7 @@ def _smooth(x: np.ndarray) -> Kinematics:
 
 
 def _linear(x: np.ndarray) -> Kinematics:
-    """Integral, value and derivative of the speed x."""
+    """Compute the integral, value and derivative of a speed that is linear in x."""
     return x**2 / 2, x, np.ones_like(x)
 
 
@@ -188,7 +238,7 @@ _LAWS: dict[str, Callable[[np.ndarray], Kinematics]] = {"smooth": _smooth, "line
 
 
 def _angle_minus_sine(y: np.ndarray, sine: np.ndarray) -> np.ndarray:
-    """Compute y - sin(y) for y >= 0 from both, by its Taylor series for y < 1, where that cancels."""
+    """Compute y - sin(y) for y >= 0 from y and its sine; by a Taylor series for y < 1, where these cancel."""
     y = np.asarray(y)
     difference = np.asarray(y - sine)
     below = y < 1
@@ -259,8 +309,9 @@ class SampledRotation(Rotation):
 
     @property
     def steady_start(self) -> float:
-        """Time from which the interpolated speed is constant [s], inf if never: splines oscillate."""
-        equal = np.cumprod(np.equal(self.speeds, self.final_speed)[::-1]).sum()  # number of last speeds alike
+        """Time from which the interpolated speed is constant [s]; inf if never, as splines oscillate."""
+        # Number of equal speeds at the end of the table.
+        equal = np.cumprod(np.equal(self.speeds, self.final_speed)[::-1]).sum()
         constant = equal == len(self.times) or (equal > 1 and self.interpolation == "pchip")
         return self.times[-equal] if constant else math.inf
 
@@ -270,7 +321,7 @@ class SampledRotation(Rotation):
         return self.times[-1]
 
     def kinematics(self, t: np.ndarray) -> Kinematics:
-        """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
+        """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         angle, speed, acceleration = self._splines
         return angle(t), speed(t), acceleration(t)
 
@@ -289,19 +340,12 @@ class SampledRotation(Rotation):
 
 
 def _check_table(times: Sequence[float], speeds: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Validate the times and speeds of a table, and convert them to arrays."""
+    """Check the times and speeds of a table, and convert them to arrays."""
     t, v = real_array("times", times), real_array("speeds", speeds)
     if len(t) != len(v) or len(t) < 2:
         raise ValueError(f"times, speeds: {len(t)} times and {len(v)} speeds; give as many, at least two")
-    refuse(
-        np.diff(t) <= 0,
-        "times",
-        t[1:],
-        "s",
-        "it follows {limit}",
-        "sort the table, drop repeats",
-        limit=t[:-1],
-    )
+    bound, remedy = "it follows {limit}", "sort the table, drop repeats"
+    refuse(np.diff(t) <= 0, "times", t[1:], "s", bound, remedy, limit=t[:-1])
     refuse(t[0] != 0, "times", t[0], "s", "a motion begins at t = 0", f"subtract {t[0]:g} s from all")
     return t, v
 
@@ -317,7 +361,7 @@ def _check_scalable(final_speed: float) -> None:
 
 @dataclass(frozen=True)
 class RotationFunction(Rotation):
-    """Rotation about a fixed centre by functions of time; their consistency is checked at construction.
+    """Rotation about a fixed centre given by functions of time, whose consistency is checked at construction.
 
     Lambdas are not `picklable`: workers and stores need functions defined in a module.
 
@@ -372,7 +416,7 @@ class RotationFunction(Rotation):
         return self.t_end
 
     def kinematics(self, t: np.ndarray) -> Kinematics:
-        """Angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
+        """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         functions = ("angle", self.angle), ("speed", self.speed), ("acceleration", self.acceleration)
         angle, speed, acceleration = (self.scale * _evaluate(name, f, t) for name, f in functions)
         return angle, speed, acceleration
@@ -386,9 +430,9 @@ class RotationFunction(Rotation):
 def _evaluate(name: str, function: Callable, t: np.ndarray) -> np.ndarray:
     """Evaluate a user's function, which may return a constant, at times t [s]."""
     try:
-        with np.errstate(all="ignore"):  # `check_consistent` refuses what is not finite
+        with np.errstate(all="ignore"):  # `check_consistent` refuses values that are not finite
             values = np.asarray(function(t), dtype=float)
-    except Exception as error:  # whatever a user's function may raise
+    except Exception as error:  # any exception that a user's function may raise
         raise ValueError(f"{name}: the function failed on an array of times ({error}); use numpy") from error
     if values.shape not in ((), t.shape):
         raise ValueError(

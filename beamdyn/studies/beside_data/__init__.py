@@ -1,1 +1,1 @@
-"""Own data beside the answers of a scene: pairs, deviations, what explains them, numbers found from data."""
+"""Measured data beside computed answers: pairs, deviations, their explanations, and identified numbers."""

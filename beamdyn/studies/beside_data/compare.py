@@ -1,47 +1,36 @@
-"""Comparison of measured natural frequencies, histories, loads and responses with a scene's."""
+"""Comparison of measured frequencies, histories, loads and responses with those of a scene."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import kind
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import INPUT, Speeds, Statement, unannounced
 from beamdyn.common.words import Words
 from beamdyn.modes.modes import Modes, natural_modes
-from beamdyn.scene.measured_curves import (
-    MeasuredCurves,
-    MeasuredHistory,
-    MeasuredLoads,
-    MeasuredPeaks,
-    MeasuredResponse,
-)
+from beamdyn.scene import measured_curves
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.studies.beside_data.computed_curves import (
-    check_positions,
-    computed_history,
-    computed_loads,
-    computed_peaks,
-    computed_response,
-)
+from beamdyn.studies.beside_data import computed_curves
 from beamdyn.studies.beside_data.curve_comparison import CurveComparison
 from beamdyn.studies.beside_data.frequency_comparison import OUTSIDE, FrequencyComparison
 from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.studies.beside_data.single_numbers import explain
+from beamdyn.studies.beside_data.wrong_unit import wrong_unit
 
-_MORE_MODES = 3  # computed modes beyond the measured ones, among which pairs are sought
+# Number of computed modes beyond the number of measured ones, among which partners are sought.
+_MORE_MODES = 3
 
 
 def compare(
-    scene: Scene, data: MeasuredFrequencies | MeasuredCurves
+    scene: Scene, data: MeasuredFrequencies | measured_curves.MeasuredCurves
 ) -> FrequencyComparison | CurveComparison:
     """Compare measured values with those of a scene, and find what would explain deviations of frequencies.
 
@@ -53,6 +42,9 @@ def compare(
     where those were measured.  Where one deviates by more than its own uncertainty, the numerical error and
     what the model leaves out together, each number of the scene alone is fitted to all the data within
     physical bounds; not of a scene with large deflection, of which no derivatives are known.
+
+    Where all are off by one factor of 2 pi, 60, 1000 or an inverse of these, a warning says that they may be
+    in another unit.
 
     Parameters
     ----------
@@ -83,23 +75,42 @@ def compare(
     True
     """
     check_scene(scene)
-    if isinstance(data, MeasuredCurves):
+    if isinstance(data, measured_curves.MeasuredCurves):
         return _beside_curves(scene, data)
-    found = beside(scene, data)
+    start = perf_counter()
+    rows = measured_rows(scene, data)
+    found = _compared(scene, rows, start)
+    found = replace(found, warnings=(*doubts_of_unit(rows), *found.warnings))
     if OUTSIDE not in found.verdict or scene.physics.large_deflection:
         return found
     bound = found.allowance + found.error + np.nan_to_num(found.model_error)
     return replace(found, explanations=explain(scene, data, bound))
 
 
-def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
-    """The comparison of frequencies without explanations; arguments as of `compare`."""
-    start = perf_counter()
+def measured_rows(scene: Scene, data: MeasuredFrequencies) -> list[_MeasuredRow]:
+    """The measured frequencies at each speed beside the scene's modes; arguments as of `compare`."""
     check_scene(scene)
     kind("data", data, MeasuredFrequencies, "read a file by bd.read_measurements")
     if data.positions is not None:
-        check_positions(scene, "positions", data.positions)
-    rows = [_MeasuredRow.of(scene, data, k) for k in range(len(data.speeds))]
+        computed_curves.check_positions(scene, "positions", data.positions)
+    return [_MeasuredRow.of(scene, data, k) for k in range(len(data.speeds))]
+
+
+def doubts_of_unit(rows: Sequence[_MeasuredRow]) -> Iterator[Statement]:
+    """Yield the statement that the data may be in another unit, if they seem to be: see `wrong_unit`."""
+    return wrong_unit(
+        rows[0].data.frequency, [row.modes.frequency for row in rows], [row.of_shapes for row in rows]
+    )
+
+
+def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
+    """The comparison of frequencies without explanations and doubts; arguments as of `compare`."""
+    start = perf_counter()
+    return _compared(scene, measured_rows(scene, data), start)
+
+
+def _compared(scene: Scene, rows: Sequence[_MeasuredRow], start: float) -> FrequencyComparison:
+    data = rows[0].data
     at, column = np.nonzero(np.isfinite(data.frequency))
     joined = (np.concatenate([getattr(row, name) for row in rows]) for name in _PARTS)
     warnings = dict.fromkeys(str(said) for row in rows for said in row.modes.warnings)
@@ -112,29 +123,28 @@ def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
         resembles=tuple(said for row in rows for said in row.resembling()),
         unmeasured=tuple(said for row in rows for said in row.unmeasured()),
         explanations=(),
-        warnings=tuple(warnings),
-        provenance=Provenance(
-            __version__, provenance.method, provenance.compared_with, perf_counter() - start
-        ),
+        warnings=(*warnings,),
+        provenance=Provenance.since(start, provenance.method, provenance.compared_with),
         scene=scene,
         source=data.source,
     )
 
 
-def _beside_curves(scene: Scene, data: MeasuredCurves) -> CurveComparison:
-    """The comparison of curves of any kind."""
+def _beside_curves(scene: Scene, data: measured_curves.MeasuredCurves) -> CurveComparison:
+    """Compare measured curves of any kind (histories, peaks, loads, responses) with computed ones."""
     start = perf_counter()
     match data:
-        case MeasuredHistory():
-            found = computed_history(scene, data)
-        case MeasuredPeaks():
-            found = computed_peaks(scene, data)
-        case MeasuredLoads():
-            found = computed_loads(scene, data)
-        case MeasuredResponse():
-            found = computed_response(scene, data)
+        case measured_curves.MeasuredHistory():
+            found = computed_curves.computed_history(scene, data)
+        case measured_curves.MeasuredPeaks():
+            found = computed_curves.computed_peaks(scene, data)
+        case measured_curves.MeasuredLoads():
+            found = computed_curves.computed_loads(scene, data)
+        case measured_curves.MeasuredResponse():
+            found = computed_curves.computed_response(scene, data)
         case _:
-            raise TypeError(f"data = {data!r}: give one of the kinds that `compare` names")
+            kinds = "MeasuredFrequencies, MeasuredHistory, MeasuredPeaks, MeasuredLoads or MeasuredResponse"
+            raise TypeError(f"data = {data!r}: give {kinds}")
     made = found.result.provenance
     return CurveComparison(
         tuple(data.names),
@@ -151,14 +161,14 @@ def _beside_curves(scene: Scene, data: MeasuredCurves) -> CurveComparison:
         found.delay,
         np.full(len(data.names), found.phase),
         (*_assumed(data, found.speed), *found.result.warnings),
-        Provenance(__version__, made.method, made.compared_with, perf_counter() - start),
+        Provenance.since(start, made.method, made.compared_with),
         scene,
         data.source,
     )
 
 
-def _assumed(data: MeasuredCurves, speed: float) -> Iterator[Statement]:
-    """Yield at which speed data are compared that have none."""
+def _assumed(data: measured_curves.MeasuredCurves, speed: float) -> Iterator[Statement]:
+    """Yield a statement that names the assumed speed, if the data have none of their own."""
     if getattr(data, "speed", 0.0) is None:
         said = "the data have no speed: compared at ", Speeds(speed), ", the final speed of the scene"
         yield Statement(*said, kind=INPUT)
@@ -169,7 +179,10 @@ _PARTS = "computed", "mode", "allowance", "rounding", "error", "model_error", "l
 
 @dataclass(frozen=True)
 class _MeasuredRow:
-    """The measured values at one speed beside the modes there; arrays are of those that are given."""
+    """Measured values at one speed beside the modes at that speed.
+
+    Arrays hold only the values that are given.
+    """
 
     data: MeasuredFrequencies
     row: int
@@ -186,8 +199,8 @@ class _MeasuredRow:
         return np.isfinite(self.data.frequency[self.row])
 
     @cached_property
-    def _of_shapes(self) -> np.ndarray | None:
-        """Likeness (m, n) of shapes, or of what labels say of them."""
+    def of_shapes(self) -> np.ndarray | None:
+        """Likeness (m, n) of measured and computed shapes, or else of the kinds that labels name."""
         data, modes = self.data, self.modes
         if data.shapes is None:
             return likeness_of_kinds(data.labels, modes.kinds, len(modes.frequency))
@@ -195,7 +208,7 @@ class _MeasuredRow:
 
     @cached_property
     def _place(self) -> np.ndarray:
-        return pair(self.data.frequency[self.row], self.modes.frequency, self._of_shapes)[self._known]
+        return pair(self.data.frequency[self.row], self.modes.frequency, self.of_shapes)[self._known]
 
     def _of_modes(self, values: np.ndarray, none: float = np.nan) -> np.ndarray:
         return np.where(self._place == NO_MODE, none, values[self._place])
@@ -227,16 +240,19 @@ class _MeasuredRow:
     @property
     def likeness(self) -> np.ndarray:
         none = np.full(len(self._place), np.nan)
-        if self.data.shapes is None or self._of_shapes is None:
+        if self.data.shapes is None or self.of_shapes is None:
             return none
-        found = self._of_shapes[self._known]
+        found = self.of_shapes[self._known]
         return np.where(self._place == NO_MODE, np.nan, found[np.arange(len(found)), self._place])
 
     def resembling(self) -> Iterator[str]:
-        """Yield for each value without a mode which mode its shape is most like; empty for all others."""
+        """Yield, for each value without a mode, the mode that its shape resembles most.
+
+        Empty text for all others.
+        """
         known = np.flatnonzero(self._known)
         for column, place in zip(known.tolist(), self._place.tolist(), strict=True):
-            shapes = self._of_shapes if place == NO_MODE and self.data.shapes is not None else None
+            shapes = self.of_shapes if place == NO_MODE and self.data.shapes is not None else None
             yield "" if shapes is None else self._most_alike(shapes[column])
 
     def _most_alike(self, likeness: np.ndarray) -> str:
@@ -244,7 +260,7 @@ class _MeasuredRow:
         return f"mode {k + 1}, {number(self.modes.frequency[k], 'Hz')} (likeness {likeness[k]:.2f})"
 
     def unmeasured(self) -> Iterator[str]:
-        """Yield modes below the highest that is paired which have no measured value."""
+        """Yield the modes without a measured value, below the highest mode that has one."""
         highest = int(self._place.max(initial=NO_MODE))
         for k in sorted(set(range(highest)) - set(self._place.tolist())):
             frequency = number(self.modes.frequency[k], "Hz")

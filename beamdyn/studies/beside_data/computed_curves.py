@@ -1,4 +1,4 @@
-"""Curves of a scene at the times, speeds, positions or frequencies of measured ones."""
+"""Computed curves of a scene at the times, speeds, positions or frequencies of measured ones."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ from beamdyn.scene.scene import Scene
 from beamdyn.transient.simulate import Transient, simulate
 from beamdyn.transient.sweep import Sweep, sweep
 
-_DELAYS = 33  # delays tried between the limits
-_COMPARED = 4000  # times at which histories are aligned; at most twice as many
-_ROUNDING = 1e-9  # of the length, by which a position may lie beyond the tip
-_SHARP = 1e-9  # accuracy of a delay over the period
-_TURNED = 0.25  # share of the squares that are left with other signs, up to which signs count as turned
+_DELAYS = 33  # number of delays tried, evenly spaced between their limits
+# Least number of times at which histories are compared to find the delay; at most twice as many.
+_COMPARED = 4000
+_ROUNDING = 1e-9  # share of the length by which a position may lie beyond the tip because of rounding
+_SHARP = 1e-9  # accuracy of a delay, over the period
+_TURNED = 0.25  # the sign counts as turned if the other sign leaves at most this share of the sum of squares
 _LOADS = {
     "moment": ("moment", 0),
     "moment across": ("moment", 1),
@@ -39,7 +40,7 @@ _LOADS = {
 
 @dataclass(frozen=True)
 class ComputedCurves:
-    """Curves of a scene: values (n, C) and errors that broadcast to them, and the result they are from.
+    """Computed curves (n, C), errors that broadcast to them, their units, and the result they are taken from.
 
     `speed` is the one [rad/s] at which they were computed, nan of curves over time and speed.
     """
@@ -57,7 +58,7 @@ class ComputedCurves:
 
 
 def computed_loads(scene: Scene, data: MeasuredLoads) -> ComputedCurves:
-    """Loads at the positions of measured ones, in equilibrium at their speed."""
+    """Compute loads at the positions of measured ones, in equilibrium at the speed of the data."""
     speed = _speed(scene, data)
     check_positions(scene, "position", data.position)
     with unannounced():
@@ -72,7 +73,7 @@ def computed_loads(scene: Scene, data: MeasuredLoads) -> ComputedCurves:
 
 
 def check_positions(scene: Scene, name: str, positions: np.ndarray) -> None:
-    """Refuse data at points that the beam does not have."""
+    """Refuse data whose positions lie beyond the beam."""
     length = scene.beam.length
     beyond = (positions < 0) | (positions > length * (1 + _ROUNDING))
     if beyond.any():
@@ -81,19 +82,19 @@ def check_positions(scene: Scene, name: str, positions: np.ndarray) -> None:
 
 
 def _speed(scene: Scene, data: MeasuredLoads | MeasuredResponse) -> float:
-    """The speed of the data [rad/s], or else of the scene."""
+    """Return the speed of the data [rad/s], or the scene's final speed where the data have none."""
     return scene.final_speed if data.speed is None else data.speed
 
 
 def _check_modelled(name: str, modelled: bool) -> None:
-    """Refuse what a beam of one plane does not have."""
+    """Refuse a quantity of the second plane of bending if the scene models one plane."""
     if not modelled:
         bound = "the scene bends in one plane"
         raise InvalidValue("names", name, bound, "give physics.planes = 2, or leave the column out")
 
 
 def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
-    """Response at the frequencies of a measured one."""
+    """Compute the frequency response of a scene at the frequencies of a measured one."""
     speed = _speed(scene, data)
     with unannounced():
         found = frequency_response(scene, speed, data.frequency, data.input, data.output)
@@ -116,14 +117,14 @@ def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
 
 
 def computed_peaks(scene: Scene, data: MeasuredPeaks) -> ComputedCurves:
-    """Largest deflections in the window of measured ones, each of a run from rest to its speed."""
+    """Compute the largest deflections in the window of measured ones, by a run from rest to each speed."""
     with unannounced():
         found = sweep(scene, data.speed, (data.window[0], data.window[1]))
     return ComputedCurves(found.peaks[:, None], found.peak_error[:, None], ("m",), found)
 
 
 def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
-    """Histories of the scene's motion, later by the delay with which they come nearest to measured ones."""
+    """Compute the motion of a scene, delayed so that it comes nearest to measured histories."""
     period = _period(scene, data)
     with unannounced():
         run = simulate(scene, _end_of_run(scene, float(data.time[-1]), period / 2))
@@ -145,7 +146,7 @@ def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
 
 
 def _period(scene: Scene, data: MeasuredHistory) -> float:
-    """Period of the first mode at rest [s], 0 of a free hinge; a ValueError if the history is shorter."""
+    """Return the period of the first mode at rest [s], 0 for a free hinge; refuse a shorter history."""
     with unannounced():
         frequency = float(natural_modes(scene, 0.0, 1).frequency[0])
     period, length = 1 / frequency if frequency > 0 else 0.0, float(data.time[-1] - data.time[0])
@@ -156,7 +157,7 @@ def _period(scene: Scene, data: MeasuredHistory) -> float:
 
 
 def _curves(run: Transient, names: Sequence[str]) -> Iterator[tuple[Callable[[np.ndarray], Any], float]]:
-    """Yield each quantity as a function of time, with its error."""
+    """Yield, for each named quantity, a function of time (and its error) that evaluates it in a run."""
     for name in names:
         k = int(name.endswith("across"))
         if name == "root strain":
@@ -176,7 +177,7 @@ def _at_root(outputs: Callable[[np.ndarray], np.ndarray], place: int, t: np.ndar
 
 
 def _end_of_run(scene: Scene, last: float, more: float) -> float:
-    """Time [s] up to which a run goes: later than the last measured one by some more, if the motion lasts."""
+    """Return the time [s] at which a run ends: after the last measured one, as far as the motion lasts."""
     end = math.inf if scene.motion is None else scene.motion.end
     return max(min(last + more, end), last)
 
@@ -187,9 +188,9 @@ def _delay(
     limits: tuple[float, float],
     period: float,
 ) -> float:
-    """Delay [s] between two limits by which the curves come nearest to the measured ones.
+    """Find the delay [s], between two limits, with which the computed curves come nearest to measured ones.
 
-    Where they come far nearer with the other sign, it is the delay of that.
+    If the curves with the other sign come far nearer, it is the delay of these.
     """
     some = slice(None, None, 1 + len(data.time) // _COMPARED)
     t, values = data.time[some], data.value[some]
@@ -197,7 +198,7 @@ def _delay(
     sizes[sizes == 0] = 1.0
 
     def squares(delay: float) -> np.ndarray:
-        """Sums of squares, with the signs as they are and with the others, (2, C)."""
+        """Compute sums of squared differences for the curves as they are, and with the other sign: (2, C)."""
         curves = at(t - delay)
         return np.array([(((values - sign * curves) / sizes) ** 2).sum(axis=0) for sign in (1, -1)])
 
@@ -212,7 +213,7 @@ def _delay(
 
 
 def _least(misfit: Callable[[float], float], limits: tuple[float, float], accuracy: float) -> float:
-    """The delay [s] between two limits with the least misfit."""
+    """Find the delay [s] between two limits with the least misfit, by a grid and a bounded search."""
     tried = np.linspace(*limits, _DELAYS)
     best, step = tried[int(np.argmin([misfit(each) for each in tried]))], tried[1] - tried[0]
     between = max(best - step, tried[0]), min(best + step, tried[-1])
@@ -221,7 +222,7 @@ def _least(misfit: Callable[[float], float], limits: tuple[float, float], accura
 
 
 def _main_frequency(data: MeasuredHistory) -> float:
-    """Frequency of the largest line of the first column [Hz], on equal steps; 0 of a single value."""
+    """Return the frequency [Hz] of the largest spectral line of the first column; 0 for a single value."""
     if len(data.time) < 2:
         return 0.0
     t = np.linspace(data.time[0], data.time[-1], len(data.time))

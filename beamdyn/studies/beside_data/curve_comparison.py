@@ -1,33 +1,31 @@
-"""Measured histories, peaks, loads and frequency responses beside computed ones, and a verdict on each."""
+"""Comparison of measured histories, peaks, loads and responses with computed ones, with a verdict on each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from beamdyn.common.plots.axes_and_lines import panels, set_up_axes
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, number, warned
-from beamdyn.common.results.pictures import COLOURS, new_axes
+from beamdyn.common.results.pictures import COLOURS, Axes, new_axes
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words, amount
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.frequency_comparison import AGREES, LEFT_OUT, NOTHING, OUTSIDE, outside
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-UNKNOWN = "not known"  # verdict where the numerical error is not, or what is left out may change all
-_DIGITS = 5  # of values in sentences
-_FEW = 100  # values up to which they are drawn as points
-_IN_PHASE = 1e-3  # phase up to which there is none to name [deg]
-_VAIN = 1.0  # model error over the largest value above which it decides nothing
-_TURNED = 0.5  # share of the difference that the other sign leaves, up to which the sign counts as turned
-_WIDE = 0.8  # width of lines through more values than a picture has dots
+# Verdict where the numerical error is unknown, or the model error is as large as the curve.
+UNKNOWN = "not known"
+_DIGITS = 5  # significant digits of values in sentences
+_FEW = 100  # number of values up to which a picture draws them as points
+_IN_PHASE = 1e-3  # difference of phase too small to be mentioned [deg]
+_VAIN = 1.0  # model error over the largest value, above which no verdict is possible
+_TURNED = 0.5  # the sign counts as turned if the other sign leaves at most this share of the difference
+_WIDE = 0.8  # line width where a curve has more values than the picture has pixels
 
 
 @dataclass(frozen=True)
@@ -98,7 +96,7 @@ class CurveComparison(Result):
     field_units: ClassVar[dict[str, str]] = {"rad/s": "speed", "s": "delay", "rad": "phase"}
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{self.verdict.count(AGREES)} of {counted(len(self.name), 'curve')} agree"
         yield f"largest values within {percent(float(np.abs(self.deviation).max()))}"
         yield f"rms {percent(float(self.rms.max()))}"
@@ -171,17 +169,17 @@ class CurveComparison(Result):
         return set(self.verdict) == {AGREES}
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with deviations, verdicts and sentences."""
+        """Return the result as plain numbers, lists and strings, with deviations, verdicts and sentences."""
         names = "peak", "computed_peak", "deviation", "rms", "verdict"
         more = {name: plain(getattr(self, name)) for name in names}
         return super().to_dict() | more | {"sentences": plain(self.sentences())}
 
     def sentences(self) -> tuple[str, ...]:
-        """A sentence on each curve, with its verdict."""
+        """Return a sentence on each curve, with its verdict."""
         return tuple(self._say(k) for k in range(len(self.name)))
 
     def _say(self, k: int) -> Words:
-        """The sentence on one curve."""
+        """Word the comparison of curve k as a sentence."""
         at_speed = (" at ", Speeds(self.speed)) if np.isfinite(self.speed) else ()
         largest = say(self.peak[k], self.unit[k]), " at ", self._where(float(self.x[self.places[k]]))
         start = self.name[k], *at_speed, ": the largest, ", *largest
@@ -193,7 +191,7 @@ class CurveComparison(Result):
         return Words(*start, ", is ", *self._beside(k), whole, *more)
 
     def _beside(self, k: int) -> tuple[str, ...]:
-        """How the largest value is beside the computed one, in words."""
+        """Word how the largest value of curve k compares with the computed one."""
         deviation, computed = float(self.deviation[k]), say(self.computed_peak[k], self.unit[k])
         if np.isinf(deviation):
             return ("beside none in the model",)
@@ -202,22 +200,22 @@ class CurveComparison(Result):
         return f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'} of ", computed
 
     def _where(self, at: float) -> str:
-        """A time, speed, position or frequency in words."""
+        """Word a place on the abscissa: a time, speed, position or frequency with its unit."""
         if self.along == "position":
             return amount(at)
         return Speeds(at) if self.along == "speed" else number(at, "s" if self.along == "time" else "Hz")
 
     def _signed(self, k: int) -> str:
-        """That the sign of the curve is another one, in words; empty if it is not."""
+        """Word that the sign of curve k is opposite to the computed one; empty text if it is not."""
         if not self.is_turned[k]:
             return ""
         left = percent(float(self.rms_turned[k]))
         return f"; its sign is turned: with the other one the whole differs by {left}"
 
     def _shifted(self, k: int) -> str:
-        """What the phase is, in words; empty if there is nothing to say."""
+        """Word how far computed curve k is ahead or behind; empty text where both are in phase."""
         phase = float(np.degrees(self.phase[k]))
-        if not abs(phase) > _IN_PHASE:  # False for nan, too
+        if not abs(phase) > _IN_PHASE:  # written so that nan counts as in phase
             return ""
         side = "ahead" if phase > 0 else "behind"
         if self.along == "frequency":
@@ -226,7 +224,7 @@ class CurveComparison(Result):
         return f", with {late} {side} taken out"
 
     def _reason(self, k: int) -> str:
-        """The verdict on one curve in words."""
+        """Word the reason for the verdict on curve k."""
         left_out = float(self.model_error[k])
         own = float(_over(self.allowance[self.places[k], k], self.peak[k]))
         lacking = "the numerical error is not known"
@@ -270,7 +268,7 @@ class CurveComparison(Result):
         return self.display_units.length_unit().name if self.unit[k] == "m" else self.unit[k]
 
     def _drawn(self, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """A measured and a computed curve in the unit of the picture; magnitudes of a response."""
+        """Return measured and computed curve k in the unit of the picture; of a response its magnitudes."""
         size = self.display_units.length_unit().per_si if self.unit[k] == "m" else 1.0
         shown = abs if self.along == "frequency" else np.real
         return size * shown(self.measured[:, k]), size * shown(self.computed[:, k])
@@ -285,7 +283,7 @@ class CurveComparison(Result):
 
 
 def say(value: float, unit: str) -> str:
-    """A value with a few digits and its unit; lengths as each medium has them."""
+    """Word a value with few digits and its unit; lengths are worded by the medium that shows them."""
     rounded = float(f"{value:.{_DIGITS}g}")
     return amount(rounded) if unit == "m" else f"{rounded:.{_DIGITS}g} {unit}".rstrip()
 
@@ -295,6 +293,6 @@ def _rms(values: np.ndarray) -> np.ndarray:
 
 
 def _over(values: Any, sizes: Any) -> np.ndarray:
-    """Values over sizes; 0 where both are 0, inf where the size alone is."""
+    """Divide values by sizes; 0 where both are 0, inf where the size alone is."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(np.asarray(values) == 0, 0.0, np.asarray(values) / sizes)

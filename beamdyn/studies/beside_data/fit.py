@@ -1,4 +1,4 @@
-"""Bounded least squares on natural frequencies: residuals, their derivatives, and the fit.
+"""Bounded least squares on natural frequencies: residuals, their derivatives, and the search for the minimum.
 
 A residual is a computed frequency less the measured one over its weight [Hz].  Its derivatives are those of
 the eigenproblem, s' = -w^T dP v / (w^T (2 s M + C + omega G) v) (Lancaster 1966, section 7), where dP is the
@@ -30,16 +30,17 @@ from beamdyn.studies.beside_data.free_numbers import FreeNumber, opened
 from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.studies.sensitivities.changes import PencilChange, PerturbedModes
 
-_STEP = 1e-4  # of a variable of size 1, to either side
+_STEP = 1e-4  # difference on either side of a variable of size 1, for derivatives of the matrices
 _HZ = 1 / (2 * np.pi)
-_MORE_MODES = 3  # computed modes beyond the measured ones, among which pairs are sought
-_TRIED = 4  # places tried for each start
-_PAIRINGS = 3  # times that pairs are chosen anew in a fit
+# Number of computed modes beyond the number of measured ones, among which partners are sought.
+_MORE_MODES = 3
+_TRIED = 4  # number of places tried for each start of a fit
+_PAIRINGS = 3  # number of times that measured frequencies are paired anew within a fit
 
 
 @dataclass(frozen=True)
 class Fitting:
-    """What is to be fitted: frequencies of a scene at some speeds, by some of its numbers.
+    """The problem of a fit: frequencies of a scene at some speeds, and the numbers that may change.
 
     Parameters
     ----------
@@ -60,21 +61,21 @@ class Fitting:
     numbers: tuple[FreeNumber, ...]
     weight: np.ndarray
     tolerance: float = 1e-12
-    solved: list[int] = field(default_factory=lambda: [0])  # number of solves so far
+    solved: list[int] = field(default_factory=lambda: [0])  # number of eigenproblems solved so far
 
     @cached_property
     def start(self) -> Scene:
-        """The scene with a finite spring or a body wherever one is free."""
+        """The scene from which fits begin, with a finite spring or a body wherever its number is free."""
         return opened(self.scene, [number.path for number in self.numbers])
 
     @cached_property
     def modes(self) -> int:
-        """Number of computed modes."""
+        """Number of modes computed at each speed."""
         return self.data.frequency.shape[1] + _MORE_MODES
 
     @cached_property
     def discretization(self) -> Discretization:
-        """Functions that suffice at the highest speed; the scenes of a fit have them all."""
+        """A basis that suffices at the highest speed; all scenes of the fit are solved in it."""
         with unannounced():
             found = natural_modes(self.start, float(np.abs(self.data.speeds).max()), self.modes)
         if found.scene.physics.large_deflection:
@@ -84,31 +85,31 @@ class Fitting:
         return found.model.discretization
 
     def scene_at(self, x: Sequence[float] | np.ndarray) -> Scene:
-        """The scene with variables (p,)."""
+        """Return the scene in which the free numbers have the values of variables (p,)."""
         pairs = zip(self.numbers, np.asarray(x, dtype=float).tolist(), strict=True)
         values = {number.path: number.number(each) for number, each in pairs}
         return with_numbers(self.start, values) if values else self.start
 
     def at(self, x: np.ndarray) -> FittedModes:
-        """The modes of the scene with variables (p,)."""
+        """Solve the scene that belongs to variables (p,), and return its modes."""
         self.solved[0] += 1
         return FittedModes(self, x, Model(self.scene_at(x), self.discretization))
 
     @property
     def flat(self) -> float:
-        """Slope of the sum of squares that counts as none: as of relative deviations, in the weights'."""
+        """Slope of the sum of squares that counts as zero: the tolerance over the relative weights."""
         return self.tolerance * float(np.nanmedian((self.data.frequency / self.weight) ** 2))
 
     @property
     def limits(self) -> tuple[np.ndarray, np.ndarray]:
-        """Least and largest variables, (p,) each."""
+        """Lower and upper limits of the variables, (p,) each."""
         low, high = zip(*(number.limits for number in self.numbers), strict=True)
         return np.array(low), np.array(high)
 
 
 @dataclass(frozen=True)
 class FittedModes:
-    """Modes of one scene of a fit at all speeds.
+    """Modes of one scene of a fit, at all speeds of the data.
 
     Parameters
     ----------
@@ -135,13 +136,16 @@ class FittedModes:
         return np.abs(np.imag(self._solved[0])) * _HZ
 
     def pairs(self) -> np.ndarray:
-        """Index (S, m) of the mode of each measured frequency; `NO_MODE` where there is none."""
+        """Return the index (S, m) of the mode of each measured frequency; `NO_MODE` where there is none."""
         data = self.fitting.data
         rows = range(len(data.speeds))
         return np.array([pair(data.frequency[i], self.frequency[i], self._likeness(i)) for i in rows])
 
     def _likeness(self, row: int) -> np.ndarray | None:
-        """Likeness (m, n) of measured and computed shapes at a speed; None where none were measured."""
+        """Compute the likeness (m, n) of measured and computed shapes at a speed.
+
+        None where none were measured.
+        """
         data, equations, vectors = self.fitting.data, self.model.equations, self._solved[1][row]
         if data.shapes is None:
             kinds = kinds_of_modes(equations, vectors[None])
@@ -150,20 +154,20 @@ class FittedModes:
         return likeness_of(data.shapes, vectors.T @ equations.deflection(np.minimum(xi, 1.0)))
 
     def residual(self, pairs: np.ndarray) -> np.ndarray:
-        """Residuals (N,) of the pairs."""
+        """Compute the residuals (N,) of paired frequencies: differences over their weights."""
         rows, columns = np.nonzero(pairs != NO_MODE)
         off = self.frequency[rows, pairs[rows, columns]] - self.fitting.data.frequency[rows, columns]
         return off / self.fitting.weight[rows, columns]
 
     def derivative(self, pairs: np.ndarray) -> np.ndarray:
-        """Derivatives (N, p) of the residuals of the pairs by the variables."""
+        """Compute the derivatives (N, p) of the residuals of paired frequencies by the variables."""
         rows, columns = np.nonzero(pairs != NO_MODE)
         of_modes = np.array([self._changes(change) for change in self._matrix_changes])
         found = of_modes[:, rows, pairs[rows, columns]] / self.fitting.weight[rows, columns]
         return found.T.reshape(len(rows), len(self.x))
 
     def _changes(self, change: PencilChange) -> np.ndarray:
-        """Derivatives [Hz] (S, n) of the frequencies where the matrices change."""
+        """Compute derivatives [Hz] (S, n) of the frequencies by a variable, from those of the matrices."""
         each = [np.imag(modes.derivatives(change)) * _HZ for modes in self._perturbed]
         return np.nan_to_num(np.array(each))
 
@@ -175,7 +179,7 @@ class FittedModes:
 
     @property
     def _matrix_changes(self) -> list[PencilChange]:
-        """Derivatives of the matrices by each variable."""
+        """Derivatives of the matrices by each variable, as differences over two scenes close by."""
         changes = []
         for k, (least, most) in enumerate(zip(*self.fitting.limits, strict=True)):
             step = _STEP * (self.x[k] if self.fitting.numbers[k].is_compliance else 1.0)
@@ -190,7 +194,7 @@ class FittedModes:
 
 @dataclass(frozen=True)
 class Fitted:
-    """A fit.
+    """The end of one fit: modes, pairs and sum of squares.
 
     Parameters
     ----------
@@ -208,22 +212,22 @@ class Fitted:
 
     @property
     def rank(self) -> tuple[int, float]:
-        """Key that orders fits: fewer frequencies without a mode, then smaller residuals."""
+        """Key that orders fits: fewer frequencies without a mode first, then smaller residuals."""
         return int((self.pairs == NO_MODE).sum()), self.cost
 
 
 @one_blas_thread()
 def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fitted:
-    """Fit from variables (p,), with at most so many solves; pairs follow the fit.
+    """Minimize from variables (p,) with a limited number of solves; pairs are renewed as the scene changes.
 
     Parameters
     ----------
     fitting : Fitting
         What is to be fitted.
     x : sequence of float
-        Where to begin.
+        Variables at which the fit begins.
     most : int
-        Most solves.
+        Largest number of scenes whose modes are computed.
     """
     cache: dict[bytes, FittedModes] = {}
 
@@ -257,7 +261,7 @@ def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fi
 
 
 def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> Fitted:
-    """The best fit of several, which begin where the frequencies are nearest to the measured ones.
+    """Return the best of several fits, which start where the frequencies are nearest to the measured ones.
 
     These places are the scene's own numbers and random ones, `_TRIED` for each start.
 
@@ -270,7 +274,7 @@ def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> F
     seed : int
         Of the random starts.
     most : int
-        Most solves in all.
+        Largest number of scenes whose modes are computed, in all fits together.
     enough : float
         Sum of squared residuals at which no further start is made.
     """
@@ -288,8 +292,8 @@ def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> F
 
 
 def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
-    """Variables (p,) at which to begin, the nearest to the data first."""
-    from scipy.stats.qmc import LatinHypercube  # it takes long to load
+    """Return variables (p,) at which fits start, those nearest to the data first."""
+    from scipy.stats.qmc import LatinHypercube  # imported here because it takes long to load
 
     numbers = fitting.numbers
     rows = _TRIED * starts if len(numbers) > 1 else starts - 1
@@ -303,6 +307,6 @@ def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
 
 
 def _unfitted(modes: FittedModes) -> Fitted:
-    """The modes with their pairs as they are."""
+    """Make the result of a fit without steps: modes as they are, their pairs and sum of squares."""
     pairs = modes.pairs()
     return Fitted(modes, pairs, float((modes.residual(pairs) ** 2).sum()))

@@ -1,4 +1,4 @@
-"""Numbers of a scene as variables of size 1: what a fit changes, and between which bounds.
+"""Numbers of a scene that a fit may change, as variables of size 1 with bounds.
 
 A spring at the root is its compliance, the size of the beam's stiffness over the spring: frequencies are
 nearly linear in that, and a clamped root is 0.  All others are shares of their value, or of the beam's size.
@@ -19,18 +19,18 @@ from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber, number
 Bounds = tuple[float, float]
 
 SPRINGS = ("mount.root_stiffness", "mount.second_root_stiffness")
-_STEP = 0.01  # of `SceneNumber.step` in the size of a number
-_RIGID = 1e-6  # least compliance
-_CLAMPED = 1e-5  # compliance up to which a root counts as clamped
-_FIRST = 0.1  # variable at which a fit begins where the scene's root is clamped, or it has no such body
+_STEP = 0.01  # `SceneNumber.step` as a share of the size of a number
+_RIGID = 1e-6  # smallest compliance in a fit
+_CLAMPED = 1e-5  # compliance below which the root counts as clamped
+_FIRST = 0.1  # first value of a variable whose spring or body the scene does not have
 _SOFTEST = 1e3
-_TIMES = 10.0  # a number is sought from a tenth to ten times its value
-_TURN = math.pi / 2  # an angle, within a right angle
+_TIMES = 10.0  # a number is sought between a tenth of its value and ten times it
+_TURN = math.pi / 2  # an angle is sought within a right angle on either side
 
 
 @dataclass(frozen=True)
 class FreeNumber:
-    """A number that data shall tell.
+    """A number of a scene that a fit finds from data.
 
     Parameters
     ----------
@@ -54,38 +54,41 @@ class FreeNumber:
 
     @property
     def is_compliance(self) -> bool:
-        """Whether the variable is the inverse of the number."""
+        """Whether the variable is the inverse of the number (springs)."""
         return self.path in SPRINGS
 
     def variable(self, value: float) -> float:
-        """The variable of a value [unit]."""
+        """Return the variable that belongs to a value [unit]."""
         return self.scale / value if self.is_compliance else value / self.scale
 
     def value(self, x: float) -> float:
-        """The value [unit] of a variable; inf for a compliance at which a root counts as clamped."""
+        """Return the value [unit] of a variable.
+
+        Inf for a compliance so small that the root counts as clamped.
+        """
         if self.is_compliance:
             return math.inf if x <= _CLAMPED else self.scale / x
         return self.scale * x
 
     def number(self, x: float) -> float:
-        """The value [unit] in the scenes of a fit, where a spring is finite."""
+        """Return the value [unit] of a variable as the scenes of a fit take it: springs stay finite."""
         return self.scale / x if self.is_compliance else self.scale * x
 
     @property
     def limits(self) -> Bounds:
-        """Least and largest variable."""
+        """Lower and upper limit of the variable."""
         low, high = sorted(self.variable(each) for each in self.bounds)
         return (max(low, _RIGID), high) if self.is_compliance else (low, high)
 
     @property
     def first(self) -> float:
-        """The variable at which a fit begins: that of the scene, within the limits."""
+        """The variable at which a fit begins: the scene's value, within the limits."""
         low, high = self.limits
         absent = math.isinf(self.given) if self.is_compliance else self.given == low == 0
         return min(max(_FIRST if absent else self.variable(self.given), low), high)
 
     def place(self, share: float) -> float:
-        """The variable at a share, from 0 to 1, of the range in which fits begin.
+        """Return the variable at a share, from 0 to 1, of the range in which fits begin.
 
         It is any compliance from stiff to soft, half to twice the size, or up to the size where it may be 0.
         """
@@ -100,7 +103,10 @@ class FreeNumber:
 
 
 def opened(scene: Scene, paths: Sequence[str]) -> Scene:
-    """The scene with a spring or body, as small as can be, where a number of one shall be found."""
+    """Return the scene with a finite root spring, or a massless tip body, where a path needs what it lacks.
+
+    The spring, 10 EI/L, or the body is added where a path names a number of one that the scene does not have.
+    """
     values: dict[str, float] = {}
     for path in paths:
         if path in SPRINGS and math.isinf(number_at(scene, path) or 0.0):
@@ -111,7 +117,7 @@ def opened(scene: Scene, paths: Sequence[str]) -> Scene:
 
 
 def free_numbers(scene: Scene, free: Mapping[str, Bounds | None]) -> tuple[FreeNumber, ...]:
-    """The numbers by their paths, with bounds [unit] or None for those that follow from their kind.
+    """Return the numbers with the given paths; where bounds [unit] are None, those usual for the kind.
 
     Raises
     ------
@@ -140,7 +146,7 @@ def _free(scene: Scene, number: SceneNumber, bounds: Bounds | None) -> FreeNumbe
 
 
 def _usual_bounds(number: SceneNumber, given: float, scale: float) -> Bounds:
-    """Between which values a number is sought, by its kind."""
+    """Return the range [unit] in which a number is sought, by its kind."""
     if number.name in SPRINGS:
         return scale / _SOFTEST, math.inf
     if number.unit == "rad":
@@ -167,5 +173,5 @@ def _checked(number: SceneNumber, bounds: Bounds) -> Bounds:
 
 
 def _stiffness(scene: Scene) -> float:
-    """Bending stiffness over the length [N m/rad]."""
+    """Compute the mean bending stiffness over the length [N m/rad]."""
     return mean(scene.beam.bending_stiffness) / scene.beam.length

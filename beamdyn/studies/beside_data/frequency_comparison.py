@@ -1,32 +1,30 @@
-"""Measured natural frequencies beside computed ones: pairs, deviations, and a verdict on each."""
+"""Comparison of measured natural frequencies with computed ones: pairs, deviations, and a verdict on each."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from beamdyn.common.plots.plots import mark_points, plot_locus
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import Speeds, joined, unannounced
-from beamdyn.common.words import Setting, Words
+from beamdyn.common.words import InputName, Setting, Words
 from beamdyn.modes.kinds import TORSION
 from beamdyn.modes.locus import frequency_locus
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.single_numbers import OneNumberFit, say_value
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 AGREES, LEFT_OUT, OUTSIDE, ALONE = "agrees", "within the model error", "outside", "no mode"
-NOTHING = 1e-9  # relative change up to which there is none to name
-_DIGITS = 6  # of frequencies in sentences
-_PLACES = 61  # speeds at which a picture draws the model
-_ONE_SPEED = 0.1  # share of the first angular frequency up to which a picture of one speed goes
+NOTHING = 1e-9  # relative change too small to be mentioned
+_DIGITS = 6  # significant digits of frequencies in sentences
+_PLACES = 61  # number of speeds at which a picture draws computed frequencies
+_ONE_SPEED = 0.1  # top speed of a picture of data at rest, over the lowest angular frequency
 
 
 @dataclass(frozen=True)
@@ -97,15 +95,18 @@ class FrequencyComparison(Result):
     }
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         yield f"{self.verdict.count(AGREES)} of {counted(len(self.label), 'frequency', 'frequencies')} agree"
         if np.isfinite(self.deviation).any():
             yield f"largest deviation {percent(float(np.nanmax(np.abs(self.deviation))))}"
+        if good := [each for each in self.explanations if each.explains]:
+            more = f", and so would {counted(len(good) - 1, 'other')}" if len(good) > 1 else ""
+            yield Words(InputName(good[0].name), " = ", self._value(good[0]), f" would explain it{more}")
         yield warned(self.warnings)
 
     @property
     def deviation(self) -> np.ndarray:
-        """Measured less computed over the computed, shape (N,)."""
+        """Relative deviation of each value: measured less computed, over the computed one, shape (N,)."""
         return self.measured / self.computed - 1
 
     @property
@@ -126,12 +127,12 @@ class FrequencyComparison(Result):
         return set(self.verdict) == {AGREES}
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with deviations, verdicts and sentences."""
+        """Return the result as plain numbers, lists and strings, with deviations, verdicts and sentences."""
         more = {"deviation": self.deviation, "verdict": self.verdict, "sentences": self.sentences()}
         return super().to_dict() | {name: plain(value) for name, value in more.items()}
 
     def sentences(self) -> tuple[str, ...]:
-        """Sentences on the worst deviations, and on what would explain them."""
+        """Return sentences on the worst deviations, and on what would explain them."""
         return tuple(self._sentences())
 
     def _sentences(self) -> Iterator[str]:
@@ -157,7 +158,7 @@ class FrequencyComparison(Result):
         yield from self._explained()
 
     def _alone(self, k: int) -> Words:
-        """One value without a mode in words, with what may have it."""
+        """Word that measured value k has no mode, and what may have it."""
         setting = Setting("physics", torsion=True)
         twists = TORSION in self.label[k].lower()
         advice = ["; with ", setting, " it may have one"] if twists else []
@@ -167,7 +168,7 @@ class FrequencyComparison(Result):
         return Words(start, Speeds(self.speed[k]), ": the model has no such mode", *advice, ".")
 
     def _say(self, k: int, words: str) -> Words:
-        """One deviation in words."""
+        """Word the deviation of measured value k."""
         deviation, computed = float(self.deviation[k]), f"{self.computed[k]:.{_DIGITS}g} Hz"
         side = "the same as"
         if abs(deviation) > NOTHING:
@@ -184,12 +185,16 @@ class FrequencyComparison(Result):
     def _explained(self) -> Iterator[str]:
         good = [each for each in self.explanations if each.explains]
         if good:
-            each = [Words(f"{e.name} = ", say_value(e.value, e.unit), f" (leaves {e.left})") for e in good]
+            each = [Words(InputName(e.name), " = ", self._value(e), f" (leaves {e.left})") for e in good]
             yield Words("One number alone would explain it: ", joined(" or ", each), ".")
         elif self.explanations:
             best = self.explanations[0]
-            value, left = say_value(best.value, best.unit), f", which leaves {best.left}."
-            yield Words(f"No number alone explains it: the nearest is {best.name} = ", value, left)
+            value, left = self._value(best), f", which leaves {best.left}."
+            none = "No number alone explains it: the nearest is "
+            yield Words(none, InputName(best.name), " = ", value, left)
+
+    def _value(self, fit: OneNumberFit) -> str:
+        return say_value(fit.value, fit.unit, units=self.display_units)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies of the scene over speed, and the measured ones as points."""
@@ -207,7 +212,7 @@ _WORDS = {OUTSIDE: OUTSIDE, LEFT_OUT: "within what the model leaves out ({left_o
 
 
 def outside(left_out: float, own: float) -> str:
-    """That a value is off by more than both: what the model leaves out, and the data's uncertainty [1]."""
+    """Word that a value is off by more than the model error and the data's uncertainty, both relative."""
     each = (left_out, "what the model leaves out"), (own, "the data's uncertainty")
     limits = [f"{name} ({percent(size)})" for size, name in each if size > NOTHING]
     return f"outside {' and '.join(limits) or 'the numerical error'}"

@@ -1,27 +1,28 @@
-"""Numbers of a scene found from measured natural frequencies: values, intervals, and what is not told."""
+"""The result of an identification: numbers with intervals, and which of them the data do not determine."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import NoModelAnswer
 from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import joined
-from beamdyn.common.words import Words
+from beamdyn.common.words import InputName, Words
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.frequency_comparison import NOTHING, FrequencyComparison
 from beamdyn.studies.beside_data.separability import NotSeparable
 from beamdyn.studies.beside_data.single_numbers import say_value
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+_DIGITS = 4  # of the numbers in a line
 
 
 @dataclass(frozen=True)
@@ -87,10 +88,11 @@ class Identification(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Yield the parts of the result's one line; see `Result.headline`."""
+        """Yield the parts of the result's one-line summary; see `Result.headline`."""
         for name, value, unit in zip(self.names, self.value, self.units, strict=True):
-            yield f"{name} {'not told' if np.isnan(value) else f'{value:.4g} {unit}'.rstrip()}"
-        yield f"scatter {percent(self.scatter)}"
+            said = "not told" if np.isnan(value) else say_value(value, unit, _DIGITS, self.display_units)
+            yield Words(InputName(name), " ", said)
+        yield f"scatter {percent(self.scatter)}" if self.scatter > NOTHING else "no scatter"
         yield warned(self.warnings)
 
     @property
@@ -110,11 +112,11 @@ class Identification(Result):
         return with_numbers(self.scene, dict(zip(self.names, self.value.tolist(), strict=True)))
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with sentences."""
+        """Return the result as plain numbers, lists and strings, with sentences."""
         return super().to_dict() | {"sentences": plain(self.sentences())}
 
     def sentences(self) -> tuple[str, ...]:
-        """Sentences on numbers that the data do not tell, on the residual, and on values that lie far off."""
+        """Return sentences on numbers that the data do not determine, on the residual, and on outliers."""
         return tuple(self._sentences())
 
     def _sentences(self) -> Iterator[str]:
@@ -122,22 +124,22 @@ class Identification(Result):
             many = len(each.names) > 1
             said = "cannot be told apart by these data" if many else "is not told by these data"
             more = joined(" or ", each.measurements) if each.measurements else "to keep one of them fixed"
-            yield Words(joined(" and ", each.names), f" {said}. What would help: ", more, ".")
+            yield Words(joined(" and ", map(InputName, each.names)), f" {said}. What would help: ", more, ".")
         left_out = float(np.nan_to_num(self.comparison.model_error / self.comparison.computed).max())
-        up_to = f"what the model leaves out would change them by up to {percent(left_out)}"
+        up_to = f"what the model leaves out would change the frequencies by up to {percent(left_out)}"
         more = f"; {up_to}." if left_out > NOTHING else "."
-        yield f"The deviations that remain are {percent(self.scatter)} of the frequencies{more}"
+        remain = f"The deviations that remain are {percent(self.scatter)} of the frequencies"
+        yield (remain if self.scatter > NOTHING else "No deviations remain") + more
         yield from (f"Far off, and not left out: {each}." for each in self.outliers)
         alone = [k for k, mode in enumerate(self.comparison.mode) if not mode]
         for k in alone:
             yield f"{self.comparison.label[k]}: the model has no such mode; it was not used."
 
     def says(self, k: int) -> Words:
-        """Number k with its interval, in words."""
-        ends = (say_value(each, self.units[k]) for each in (self.low[k], self.high[k]))
-        return Words(
-            f"{self.names[k]} = ", say_value(self.value[k], self.units[k]), " (", joined(" to ", ends), ")"
-        )
+        """Word number k with its interval."""
+        said = partial(say_value, unit=self.units[k], units=self.display_units)
+        ends = joined(" to ", map(said, (self.low[k], self.high[k])))
+        return Words(InputName(self.names[k]), " = ", said(self.value[k]), " (", ends, ")")
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies of the scene that was found over speed, and the measured ones as points."""
@@ -145,10 +147,10 @@ class Identification(Result):
 
     @property
     def degrees_of_freedom(self) -> int:
-        """Number of values beyond that of the numbers."""
+        """Number of paired frequencies less the number of identified numbers."""
         return int(np.isfinite(self.standardized).sum()) - len(self.names)
 
     def counted(self) -> str:
-        """How much was asked of how much: "3 numbers from 15 frequencies"."""
+        """Word how many numbers are found from how many frequencies: "3 numbers from 15 frequencies"."""
         values = counted(int(np.isfinite(self.standardized).sum()), "frequency", "frequencies")
         return f"{counted(len(self.names), 'number')} from {values}"

@@ -8,9 +8,8 @@ from functools import cached_property
 from time import perf_counter
 
 import numpy as np
-from scipy import special  # not stats, which takes long to load
+from scipy import special  # scipy.stats has these functions, too, but takes long to load
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, kind
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance
@@ -18,18 +17,20 @@ from beamdyn.common.results.statements import INPUT, LIMITS, Speeds, Statement
 from beamdyn.common.words import Words
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.studies.beside_data.compare import beside
+from beamdyn.studies.beside_data.compare import beside, doubts_of_unit, measured_rows
 from beamdyn.studies.beside_data.fit import Fitted, Fitting, fit
 from beamdyn.studies.beside_data.free_numbers import Bounds, FreeNumber, free_numbers
 from beamdyn.studies.beside_data.identification import Identification
 from beamdyn.studies.beside_data.pairing import NO_MODE
 from beamdyn.studies.beside_data.separability import FINEST, Information, not_separable
 
-MOST_SOLVES = 40  # for each number
+MOST_SOLVES = 40  # largest number of scenes whose modes are computed, for each number that is sought
 _LEVEL = 0.95
-_CHANCE = 0.01  # of one outlier in a set of data in which there is none
-_LIKELY = 0.999  # of sums of squares, beyond which a fit is poor: further starts are made, and it is said
-_NOTHING = 1e-20  # sum of squared relative deviations of data without noise
+_CHANCE = 0.01  # probability of reporting an outlier in a set of data that has none
+# Probability of a sum of squares beyond which a fit counts as poor, is repeated from further starts, and is
+# reported.
+_LIKELY = 0.999
+_NOTHING = 1e-20  # sum of squared relative deviations below which data count as free of noise
 
 
 def identify(
@@ -41,6 +42,7 @@ def identify(
 ) -> Identification:
     """Find numbers of a scene from measured natural frequencies, by bounded least squares.
 
+    Where all frequencies are off by one factor of two units, a warning says so, as of `bd.compare`.
     Deviations count over the uncertainties of the data; where these are not known, over the frequencies, and
     the uncertainty follows from the deviations.  At most 40 solves are made for each number.
 
@@ -92,25 +94,27 @@ def identify(
     enough = _likely_sum(max(data.count - len(numbers), 1)) if known else _NOTHING
     most = MOST_SOLVES * len(numbers)
     found = fit(fitting, count("starts", starts), count("seed", seed, 0), most, enough)
+    doubts = tuple(doubts_of_unit(measured_rows(scene, data)))
     paired = int((found.pairs != NO_MODE).sum())
     if paired < len(numbers):
         bound = f"only {paired} of {data.count} frequencies are near modes, for {len(numbers)} unknowns"
         remedy = "begin with a scene that is nearer to the data, or give other bounds"
-        raise InvalidValue("free", ", ".join(free), bound, remedy)
-    return _Told(found, known).result(start)
+        raise InvalidValue("free", ", ".join(free), bound, "; ".join((*doubts, remedy)))
+    return _Told(found, known, doubts).result(start)
 
 
 def _likely_sum(freedom: int) -> float:
-    """Sum of so many squares of standard normal deviations that chance rarely exceeds."""
+    """Return the sum of squares that a number of standard normal deviations rarely exceed."""
     return float(2 * special.gammaincinv(freedom / 2, _LIKELY))
 
 
 @dataclass(frozen=True)
 class _Told:
-    """What a fit tells: its numbers with their intervals."""
+    """What is derived from a finished fit: intervals, covariances, outliers and warnings."""
 
     fit: Fitted
     known: bool
+    doubts: tuple[Statement, ...]
 
     @property
     def _fitting(self) -> Fitting:
@@ -126,7 +130,7 @@ class _Told:
 
     @property
     def _freedom(self) -> int:
-        """Degrees of freedom that remain."""
+        """Degrees of freedom: the number of residuals less that of the fitted numbers."""
         return len(self._residual) - len(self._numbers)
 
     @cached_property
@@ -135,14 +139,17 @@ class _Told:
 
     @cached_property
     def _deviation(self) -> float:
-        """Standard deviation of the residuals: 1 where uncertainties are known; nan if nothing tells it."""
+        """Standard deviation of the residuals: 1 where uncertainties are known.
+
+        Nan if nothing determines it.
+        """
         if self.known:
             return 1.0
         return float(np.sqrt(self.fit.cost / self._freedom)) if self._freedom > 0 else np.nan
 
     @cached_property
     def _uncertainty(self) -> np.ndarray:
-        """Standard deviation of each residual, with the least that counts."""
+        """Standard deviation of each residual (N,), at least that of the finest frequency assumed."""
         least = FINEST * self._measured / self._fitting.weight[self.fit.pairs != NO_MODE]
         return np.maximum(np.nan_to_num(self._deviation), least)
 
@@ -157,7 +164,10 @@ class _Told:
 
     @cached_property
     def _intervals(self) -> np.ndarray:
-        """Ends (p, 2) of the intervals; from the step without bounds, where a bound holds a number."""
+        """Ends (p, 2) of the confidence intervals.
+
+        Around the unbounded optimum where a bound holds a number.
+        """
         quantile = special.ndtri(0.5 + _LEVEL / 2)
         if not self.known:
             quantile = special.stdtrit(self._freedom, 0.5 + _LEVEL / 2) if self._freedom > 0 else np.nan
@@ -173,7 +183,7 @@ class _Told:
 
     @cached_property
     def _covariances(self) -> tuple[np.ndarray, np.ndarray]:
-        """Covariance and correlation of the numbers (p, p)."""
+        """Covariance and correlation (p, p) of the numbers."""
         C = self._information.covariance
         sizes = np.sqrt(np.diag(C))
         x = self.fit.modes.x
@@ -186,13 +196,13 @@ class _Told:
 
     @cached_property
     def _standardized(self) -> np.ndarray:
-        """Residuals over their own uncertainty in the fit, (N,)."""
+        """Residuals (N,) over their own standard deviation in the fit."""
         spread = np.sqrt(np.maximum(1 - self._information.leverage, FINEST))
         return self._residual / (self._uncertainty * spread)
 
     @property
     def _poorness(self) -> float:
-        """Deviation over the uncertainty of the data."""
+        """Root mean square of the residuals, which is about 1 where the data's uncertainties are right."""
         return float(np.sqrt(self.fit.cost / max(self._freedom, 1)))
 
     @property
@@ -202,11 +212,11 @@ class _Told:
         return self.known and freedom > 0 and self.fit.cost > _likely_sum(freedom)
 
     def _outliers(self) -> Iterator[str]:
-        """Yield values that lie too far off for chance."""
+        """Yield a sentence about each measured value that lies too far off to be chance."""
         size, freedom = np.abs(self._standardized), self._freedom
         chance = _CHANCE / max(len(size), 1) / 2
         limit = -special.ndtri(chance)
-        if not self.known or self._is_poor:  # each beside the deviation of the others
+        if not self.known or self._is_poor:  # each value is held against the scatter of all others
             size = np.abs(self._standardized) / (self._poorness if self.known else 1.0)
             if freedom < 2:
                 return
@@ -237,7 +247,7 @@ class _Told:
                 yield Statement(said, kind=LIMITS)
 
     def result(self, start: float) -> Identification:
-        """The result of a fit that began at a time."""
+        """Make the result of the fit, whose computation began at a time of `perf_counter` [s]."""
         fitting, information = self._fitting, self._information
         comparison = beside(fitting.scene_at(self.fit.modes.x), fitting.data)
         covariance, correlation = self._covariances
@@ -261,14 +271,12 @@ class _Told:
             scatter=float(np.sqrt((relative**2).sum() / max(self._freedom, 1))),
             outliers=tuple(self._outliers()),
             solves=fitting.solved[0],
-            warnings=(*self._warnings(), *comparison.warnings),
-            provenance=Provenance(
-                __version__, provenance.method, provenance.compared_with, perf_counter() - start
-            ),
+            warnings=(*self.doubts, *self._warnings(), *comparison.warnings),
+            provenance=Provenance.since(start, provenance.method, provenance.compared_with),
             scene=fitting.scene,
         )
 
 
 def comparison_rows(fitting: Fitting, pairs: np.ndarray) -> np.ndarray:
-    """Which of the finite values (N,) have a pair."""
+    """Return which of the finite measured values (N,) have a mode."""
     return (pairs != NO_MODE)[np.isfinite(fitting.data.frequency)]

@@ -15,15 +15,17 @@ import numpy as np
 from beamdyn.common.numerics import assign
 from beamdyn.modes.kinds import BENDING, TORSION
 
-_TOO_FAR = 1.5  # half ways from a mode to its neighbour; one mode may be off by more than its half way
-_BELOW = 2.0  # way from the lowest mode down, and from the highest up, where none is: a factor of seven
-_CROSSING = 1e-2  # least half way: modes that cross are told by their shapes alone
-_OF_SHAPE = 3.0  # what a shape that is orthogonal adds to a distance
+# Distance, in half gaps between modes, beyond which a value stays without a mode; a mode may be off by more
+# than half a gap.
+_TOO_FAR = 1.5
+_BELOW = 2.0  # gap below the lowest mode and above the highest, as a logarithm: a factor of about seven
+_CROSSING = 1e-2  # smallest half gap: modes that cross are told apart by their shapes alone
+_OF_SHAPE = 3.0  # what a shape that is orthogonal to the measured one adds to the distance
 NO_MODE = -1
 
 
 def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None = None) -> np.ndarray:
-    """Index (m,) of the computed mode of each measured frequency; `NO_MODE` where there is none.
+    """Return the index (m,) of the computed mode of each measured frequency; `NO_MODE` where there is none.
 
     Parameters
     ----------
@@ -41,7 +43,7 @@ def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None
     cost = _distances(measured[known], computed[there])
     if likeness is not None:
         cost = cost + _OF_SHAPE * (1 - likeness[np.ix_(known, there)])
-    alone = np.where(np.eye(len(known), dtype=bool), _TOO_FAR, 1e6)  # each may stay alone
+    alone = np.where(np.eye(len(known), dtype=bool), _TOO_FAR, 1e6)  # costs of leaving a value without a mode
     column = assign(np.hstack([cost, alone]))
     paired = column < len(there)
     found[known[paired]] = there[column[paired]]
@@ -49,7 +51,7 @@ def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None
 
 
 def _distances(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
-    """Distances (m, n) of frequencies in half ways from a mode to its neighbour on that side."""
+    """Compute distances (m, n) of frequencies, over half the gap from each mode to the next on that side."""
     log, order = np.log(computed), np.argsort(computed)
     apart = np.log(measured)[:, None] - log
     gaps = np.diff(log[order], prepend=log[order[0]] - _BELOW, append=log[order[-1]] + _BELOW)
@@ -60,14 +62,17 @@ def _distances(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
 
 
 def likeness_of(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
-    """Modal assurance criterion (m, n) of shapes (m, P), (n, P) at the same points (Allemang 2003, eq. 1)."""
+    """Compute the modal assurance criterion (m, n) of shapes (m, P), (n, P) (Allemang 2003, eq. 1)."""
     products = np.abs(measured @ computed.conj().T) ** 2
     sizes = (np.abs(measured) ** 2).sum(axis=1)[:, None] * (np.abs(computed) ** 2).sum(axis=1)
     return products / np.where(sizes == 0, 1.0, sizes)
 
 
 def likeness_of_kinds(labels: Sequence[str], kinds: np.ndarray | None, modes: int) -> np.ndarray | None:
-    """Likeness (m, n) by what labels say of torsion: 1 where a mode may be meant; None where none says it."""
+    """Compute likeness (m, n) from labels that name torsion: 1 where the kinds agree.
+
+    None if none names it.
+    """
     said = np.array([TORSION in label.lower() for label in labels])
     if not said.any():
         return None

@@ -20,21 +20,23 @@ from beamdyn.scene.profile import mean
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.fit import FittedModes, Fitting
 
-LARGEST = 1.0  # standard error of a variable of size 1, beyond which its number is not told
-FINEST = 1e-6  # least relative uncertainty of a frequency with which that is decided
-_TAKES_PART = 0.5  # least share of that standard error that a direction has which names a number
-_BOUND = 0.1  # least singular value: bounds are about ten sizes apart
-_TOLD = 0.05  # least relative change of a measurement by a whole change along a direction that tells it
+LARGEST = 1.0  # standard error of a variable of size 1, above which its number counts as undetermined
+FINEST = 1e-6  # smallest relative uncertainty of a frequency that this verdict assumes
+# Least share of `LARGEST` that a direction adds to a number's error if its name shall be listed.
+_TAKES_PART = 0.5
+_BOUND = 0.1  # singular values below it count as this one: bounds are about ten sizes apart
+_TOLD = 0.05  # least relative change of a measurement along a direction, if it shall tell that direction
 _STEP = 1e-3
-_BODY = 0.2  # mass of a known body over that of the beam
-_FASTER = 2.0  # times the largest speed
-_FAST = np.pi / 2  # speed over the first frequency [Hz] at rest: a quarter of it in radians
+_BODY = 0.2  # mass of a known body, over that of the beam, with which a measurement is suggested
+_FASTER = 2.0  # speed suggested for a measurement, over the largest one of the data
+# Speed suggested where the data are at rest [rad/s], over the first frequency [Hz]: a quarter of it in rad/s.
+_FAST = np.pi / 2
 _PLACES = np.linspace(0.0, 1.0, 201)
 
 
 @dataclass(frozen=True)
 class Information:
-    """What residuals tell of p variables.
+    """What residuals tell of p variables, by the singular values of their derivatives.
 
     Parameters
     ----------
@@ -57,12 +59,12 @@ class Information:
 
     @property
     def told(self) -> np.ndarray:
-        """Which variables (p,) the data tell."""
+        """Which variables (p,) the data determine."""
         return np.sqrt(np.diag(self.covariance)) <= LARGEST
 
     @property
     def lost(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Directions (p,) that are not told, and which of the variables (p,) each leaves untold."""
+        """Directions (p,) that the data do not determine, and which variables (p,) each leaves open."""
         _, s, V = self._parts
         each = [
             (v, ~self.told & (np.abs(v) / size > _TAKES_PART * LARGEST))
@@ -72,19 +74,19 @@ class Information:
 
     @property
     def leverage(self) -> np.ndarray:
-        """Share (N,) of each value in its own fit: the diagonal of the hat matrix."""
+        """Leverage (N,) of each value in its own fit: the diagonal of the hat matrix."""
         U, s, _ = self._parts
         return (U[:, s > _BOUND] ** 2).sum(axis=1)
 
     def step(self, residual: np.ndarray) -> np.ndarray:
-        """The step (p,) to the least sum of squares of the linear problem without bounds."""
+        """Compute the step (p,) to the least sum of squares of the linearized problem without bounds."""
         U, s, V = self._parts
         return -V @ ((U.T @ residual) / s)
 
 
 @dataclass(frozen=True)
 class NotSeparable:
-    """Numbers that the data do not tell apart.
+    """Numbers that the data do not determine separately.
 
     Parameters
     ----------
@@ -107,7 +109,7 @@ class NotSeparable:
 
 
 def not_separable(modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]]) -> tuple[NotSeparable, ...]:
-    """Name the numbers of each direction, and the measurements that change along it."""
+    """Name the numbers of each undetermined direction, and measurements that would determine it."""
     paths = np.array([number.path for number in modes.fitting.numbers])
     return tuple(
         NotSeparable(tuple(paths[named].tolist()), tuple(_telling(modes, direction)))
@@ -116,7 +118,7 @@ def not_separable(modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]])
 
 
 def _telling(modes: FittedModes, direction: np.ndarray) -> list[str]:
-    """Measurements that change along a direction of the variables."""
+    """Return names of measurements that change along a direction of the variables."""
     low, high = modes.fitting.limits
     ends = [np.clip(modes.x + step * direction, low, high) for step in (-_STEP, _STEP)]
     change = float(np.linalg.norm(ends[1] - ends[0]))
@@ -125,7 +127,7 @@ def _telling(modes: FittedModes, direction: np.ndarray) -> list[str]:
 
 
 def _measured(fitting: Fitting, scene: Scene) -> dict[str, float]:
-    """Further quantities that could be measured, and functions that compute them of a scene."""
+    """Compute quantities of a scene that could be measured in addition, by their names."""
     first, speed = _frequency(scene), float(np.abs(fitting.data.speeds).max())
     return {
         "the mass of the beam": _mass(scene),
@@ -139,26 +141,26 @@ def _measured(fitting: Fitting, scene: Scene) -> dict[str, float]:
 
 
 def _frequency(scene: Scene, speed: float = 0.0, mode: int = 1) -> float:
-    """Natural frequency [Hz]; 1 where the mode does not vibrate."""
+    """Compute a natural frequency [Hz]; 1 where the mode does not vibrate."""
     with unannounced():
         found = float(natural_modes(scene, speed, mode).frequency[mode - 1])
     return found if found > 0 else 1.0
 
 
 def _mass(scene: Scene) -> float:
-    """Mass of the beam with the body at its tip [kg]."""
+    """Compute the mass of the beam with the body at its tip [kg]."""
     beam = scene.beam
     return mean(beam.mass_per_length) * beam.length + (0.0 if beam.tip is None else beam.tip.mass)
 
 
 def _compliance(scene: Scene) -> float:
-    """Deflection of the tip over a force on it [m/N]: unit load over bending stiffness and root spring."""
+    """Compute the deflection of the tip per force [m/N]: unit load over bending stiffness and root spring."""
     L, arm = scene.beam.length, (1 - _PLACES) ** 2
     bending = float(np.trapezoid(arm / scene.beam.bending_stiffness(_PLACES), _PLACES)) * L**3
     return bending + L**2 / scene.mount.root_stiffness
 
 
 def _loaded(scene: Scene, mass: float) -> Scene:
-    """The scene with a further body at the tip [kg]."""
+    """Return the scene with a mass [kg] added at the tip."""
     tip = scene.beam.tip or TipMass(0.0)
     return replace(scene, beam=replace(scene.beam, tip=replace(tip, mass=tip.mass + mass)))

@@ -1,4 +1,4 @@
-"""Which number of a scene, changed alone, would explain what was measured."""
+"""Explanations of deviations by one number of a scene that is changed alone."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.digits import percent
+from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
 from beamdyn.common.words import Named, amount
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.numbers import SCALE
@@ -16,7 +17,7 @@ from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.fit import Fitting, fit_from
 from beamdyn.studies.beside_data.free_numbers import SPRINGS, FreeNumber, free_numbers
 
-_WITHIN = {  # numbers that may be wrong, and by which factors they are at most
+_WITHIN = {  # numbers that may be wrong, and the largest factor by which each may be
     "beam.length": (0.8, 1.25),
     "beam.thickness": (0.5, 2.0),
     "beam.width": (0.5, 2.0),
@@ -26,21 +27,22 @@ _WITHIN = {  # numbers that may be wrong, and by which factors they are at most
     "beam.mass_per_length": (0.2, 5.0),
     "mount.radius": (0.5, 2.0),
 }
-_HEAVIEST = 2.0  # largest body at the tip over the mass of the beam
-_SOLVES = 25  # of one number
-_TOLERANCE = 1e-7  # relative change at which its fit ends
-_MATTERS = 1e-3  # least relative change of a frequency by a whole change of a number
-_DIGITS = 3  # of values in sentences
-_WHOLE = 6  # places before the point up to which a rounded value has no exponent
+_HEAVIEST = 2.0  # largest mass of a body at the tip, over that of the beam
+_SOLVES = 25  # largest number of scenes whose modes are computed for the fit of one number
+_TOLERANCE = 1e-7  # relative change of a number at which its fit ends
+# Least relative change of a frequency by a whole change of a number, below which it explains nothing.
+_MATTERS = 1e-3
+_DIGITS = 3  # significant digits of values in sentences
+_WHOLE = 6  # digits before the decimal point up to which a rounded value is written without an exponent
 _USUAL = {"Pa": ("GPa", 1e-9), "kg": ("g", 1e3)}
-_NOTHING = 1e-5  # relative deviation up to which none is left
-_TIE = 3  # decimals of remaining deviations that are told apart
-_SLACK = 1e-6  # by which a deviation may pass its bound
+_NOTHING = 1e-5  # remaining relative deviation that is worded as nothing
+_TIE = 3  # decimals to which remaining deviations are compared
+_SLACK = 1e-6  # relative amount by which a deviation may exceed its bound
 
 
 @dataclass(frozen=True)
 class OneNumberFit:
-    """A number of a scene that, changed alone, comes nearest to the data.
+    """A number of a scene, and its value that, changed alone, comes nearest to the data.
 
     Parameters
     ----------
@@ -74,12 +76,12 @@ class OneNumberFit:
 
     @property
     def left(self) -> str:
-        """The largest deviation that it leaves, in words."""
+        """Word the largest deviation from the data that remains with this value of the number."""
         return percent(self.remaining) if self.remaining > _NOTHING else "nothing"
 
 
 def explain(scene: Scene, data: MeasuredFrequencies, bound: np.ndarray) -> tuple[OneNumberFit, ...]:
-    """Fit each number alone to all data; those that explain them first, and of them those that leave least.
+    """Fit each number alone to all data; order the fits: explanations first, then by remaining deviation.
 
     Parameters
     ----------
@@ -102,7 +104,7 @@ def explain(scene: Scene, data: MeasuredFrequencies, bound: np.ndarray) -> tuple
 
 
 def _numbers(scene: Scene) -> list[FreeNumber]:
-    """The numbers of a scene that may be wrong, a spring at the root first, with physical bounds."""
+    """Return the numbers of a scene that may be wrong, with physical bounds, a spring at the root first."""
     found = []
     for path in (
         *SPRINGS,
@@ -112,10 +114,10 @@ def _numbers(scene: Scene) -> list[FreeNumber]:
     ):
         try:
             (free,) = free_numbers(scene, {path: None})
-        except InvalidValue:  # none of this scene
+        except InvalidValue:  # the scene has no such number
             continue
         low, high = _physical(scene, free)
-        if low < high:  # a radius of 0 is the axis itself
+        if low < high:  # not fulfilled by a radius of 0, which keeps the root on the axis
             found.append(replace(free, bounds=(low, high)))
     return found
 
@@ -132,7 +134,7 @@ def _physical(scene: Scene, free: FreeNumber) -> tuple[float, float]:
 def _explanation(
     scene: Scene, data: MeasuredFrequencies, free: FreeNumber, allowed: np.ndarray
 ) -> OneNumberFit | None:
-    """Fit a number alone to all values; None where it hardly changes a frequency, or leaves its bounds."""
+    """Fit one number to all values; None where it hardly changes a frequency, or leaves its bounds."""
     weight = np.maximum(allowed, _SLACK * np.nan_to_num(data.frequency, nan=1.0))
     fitting = Fitting(scene, data, (free,), weight, _TOLERANCE)
     start = fitting.at(np.array([free.first]))
@@ -149,14 +151,17 @@ def _explanation(
     return OneNumberFit(free.path, free.unit, free.given, free.value(x), float(off.max()), explains)
 
 
-def say_value(value: float, unit: str, digits: int = _DIGITS) -> str:
-    """A value with three digits, or as many as are given, and its unit, as each medium has it.
+def say_value(value: float, unit: str, digits: int = _DIGITS, units: DisplayUnits = SI_UNITS) -> str:
+    """Word a value with a number of significant digits and its unit, as each medium shows it.
 
-    Python has it in SI, files in mm, GPa and g.
+    Python has it in SI, files in mm, GPa and g; lengths in the unit of the scene, where it has one.
     """
     if math.isinf(value):
         return "clamped"
     rounded = float(f"{value:.{digits}g}")
+    if unit == "m" and units.length:
+        own = units.length_unit()
+        return Named(f"{rounded:.{digits}g} m", f"{own.of(value):.{digits}g} {own.name}")
     if unit in ("m", "rad"):
         return amount(rounded, unit=unit)
     usual, size = _USUAL.get(unit, (unit, 1.0))

@@ -1,1 +1,1 @@
-"""Campbell diagrams: loci of scenes, per-rev lines and the motion's lines, crossings and margins."""
+"""Campbell diagrams: frequencies over speed, per-rev and motion lines, crossings and margins."""

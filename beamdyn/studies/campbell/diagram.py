@@ -6,15 +6,15 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, ascending, count, flag, kind, one_of, positive, real
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.common.results.one_line import counted, error_at_most, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import after
 from beamdyn.equations.effects import first_drawn, name_directions
@@ -30,12 +30,9 @@ from beamdyn.steady.crossings import left_out_of_crossings
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
 from beamdyn.studies.campbell import line_crossings
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 UNITS = ("rad/s", "rpm")
 _MOST_ORDERS = 100
-_SAME = 1e-9  # relative distance of an operating speed from another speed, below which they are one
+_SAME = 1e-9  # relative distance below which an operating speed and another speed count as one
 
 Scenes: TypeAlias = "Scene | Sequence[Scene] | Mapping[str, Scene]"
 
@@ -98,10 +95,13 @@ class Campbell(StatesModelError):
     unit: str
     warnings: tuple[str, ...]
     provenance: Provenance
-    scene: Scene = field(repr=False)  # the first one
+    scene: Scene = field(repr=False)  # the first of the scenes
 
     def headline(self) -> Iterator[str]:
-        """Numbers of crossings, lines and scenes, and the error, in one line; see `Result.headline`."""
+        """Yield numbers of crossings, lines and scenes, and the error, parts of a one-line summary.
+
+        See `Result.headline`.
+        """
         found, top = counted(len(self.crossings), "crossing"), self.loci[0].speeds[-1]
         yield f"{found} of {counted(len(self.lines), 'line')} up to {self.say_speed(top)}"
         yield counted(len(self.loci), "scene") if len(self.loci) > 1 else ""
@@ -110,23 +110,24 @@ class Campbell(StatesModelError):
 
     @property
     def plot_label(self) -> str:
-        """Nothing: the labels of the scenes stand in the picture."""
+        """Label of the curves in a picture of several results: empty, as each scene has its own label."""
         return ""
 
     @property
     def display_units(self) -> DisplayUnits:
-        """Units of its tables, columns and pictures: of speeds the one that was asked for."""
+        """Units of tables, columns and pictures; for speeds the unit that was asked for."""
         return vars(self).get("_display_units") or super().display_units.with_others({"speed": self.unit})
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the speed of each crossing by effects left out, shape (k,)."""
+        """Changes of the speed of each crossing by effects left out: arrays of shape (k,)."""
         effects, sizes = [], []
         for label, locus in zip(self.labels, self.loci, strict=True):
             own = [c for c in self.crossings if c.label == label]
             modes = locus.frequency.shape[1]
             speeds = np.array([c.speed for c in own])
-            pairs = 2 * np.pi * np.array([[c.frequency] * 2 for c in own])  # of a single mode twice
+            # Both modes of the pair are the same one.
+            pairs = 2 * np.pi * np.array([[c.frequency] * 2 for c in own])
             known = left_out_of_crossings(locus.model, speeds, pairs, modes) if own else None
             effects.append(known or nothing_known(locus.scene))
             sizes.append(len(own))
@@ -143,8 +144,9 @@ class Campbell(StatesModelError):
         return replace(effects[0], changes=changes, not_modelled=not_modelled, shape=(sum(sizes),), **words)
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with its model error and what is left out."""
-        loci = [super(StatesModelError, locus).to_dict() for locus in self.loci]  # model errors are left out
+        """Return the result as plain numbers, lists and strings, with model error and effects left out."""
+        # Loci without their model errors, which would take long.
+        loci = [super(StatesModelError, locus).to_dict() for locus in self.loci]
         return super().to_dict() | {"loci": loci}
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -169,7 +171,7 @@ class Campbell(StatesModelError):
         return Curves(locus.speeds, locus.frequency, names, label, solid, directions)
 
     def _marked(self) -> dict[str, list[tuple[float, float]]]:
-        """Points of the crossings by what they are called in the legend."""
+        """Return points (speed, frequency) of the crossings, by their name in the legend."""
         if self.operating is None:
             return {"crossing": [(c.speed, c.frequency) for c in self.crossings]}
         inside = "crossing in the operating range", "crossing outside it"
@@ -249,7 +251,7 @@ def campbell(
     one_of("unit", unit, UNITS)
     speeds = _check_speeds(speeds)
     rated, operating = _check_operation(speeds, rated, operating)
-    # The operating speeds stand among the others, in place of those that they repeat but for rounding.
+    # Operating speeds are added to the others, in place of those that equal them but for rounding.
     added = np.unique([v for v in (rated, *(operating or ())) if v is not None])
     if added.size:
         far = np.abs(speeds[:, None] - added).min(axis=1) > _SAME * speeds[-1]
@@ -278,7 +280,7 @@ def campbell(
         operating=operating,
         unit=unit,
         warnings=(*_warnings(named, lines), *unknown, *refused),
-        provenance=Provenance(__version__, *methods, wall_time=perf_counter() - start),
+        provenance=Provenance.since(start, *methods),
         scene=loci[0].scene,
     )
 
@@ -290,7 +292,7 @@ _METHODS = "method", "compared_with"
 
 
 def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
-    """The scenes by their labels; by numbers if several have none, or the same."""
+    """Return the scenes by their labels; by numbers if several have no label, or the same label."""
     if isinstance(scenes, Scene):
         return {"": scenes}
     by_label: dict[str, Any]
@@ -314,7 +316,7 @@ def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
 
 
 def _check_orders(per_rev: Iterable[int]) -> list[int]:
-    """Orders of the lines, ascending."""
+    """Return the orders of the per-rev lines, ascending; refuse what is not a whole number."""
     try:
         given = () if isinstance(per_rev, str | bytes | set | dict) else tuple(per_rev)
     except TypeError:
@@ -338,7 +340,7 @@ def _check_speeds(speeds: np.ndarray | Sequence[float]) -> np.ndarray:
 def _check_operation(
     speeds: np.ndarray, rated: float | None, operating: tuple[float, float] | None
 ) -> tuple[float | None, tuple[float, float] | None]:
-    """The rated speed and the operating range, within the speeds of the diagram."""
+    """Return the rated speed and the operating range; refuse values beyond the speeds of the diagram."""
     if rated is not None:
         rated = _within_speeds("rated", positive("rated", rated, "rad/s"), speeds)
     if operating is None:
@@ -372,9 +374,10 @@ def _within_speeds(name: str, value: float, speeds: np.ndarray) -> float:
 
 
 def _name_modes(locus: Locus) -> tuple[str, ...]:
-    """Names of the modes by the direction in which each mostly bends at the first speed, or by its kind."""
+    """Name the modes by the direction in which each mostly bends at the first speed, or by its kind."""
     words, mount = [word for _, word in name_directions(locus.scene)], locus.scene.mount
-    is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0  # it points outward
+    # A negative cosine: the beam points outward.
+    is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0
     if "flap" not in words or not is_blade:
         return locus.names()
     bent = [words[0 if locus.scene.physics.planes == 1 else k] for k in locus.plane_share[0].argmax(axis=1)]
@@ -386,24 +389,27 @@ def _name_modes(locus: Locus) -> tuple[str, ...]:
 def _all_lines(
     orders: Sequence[int], loci: Sequence[Locus], labels: Sequence[str]
 ) -> tuple[list[Line], list[str]]:
-    """Per-rev lines and the other lines of the motions; warnings where those are not known."""
+    """Return per-rev lines and the other lines of the motions, with warnings where those are unknown."""
     per_rev, others, unknown = [Line(f"{n}P", float(n)) for n in orders], [], []
     for label, locus in zip(labels, loci, strict=True):
         try:
-            # Lines that force the beam, by the scene's motion and gravity.
+            # These lines force the beam, by the scene's motion and gravity.
             motion = locus.scene.motion
             system = periodic_system(locus.model.equations, motion, locus.speeds[-1:])
             others += excitation_lines(system, motion, 1)[0]
         except ValueError as error:
             unknown.append(f"{_prefix(label)}no excitation lines: {error}")
-    distinct = distinct_lines([*per_rev, *others])  # the first of two at one frequency is kept
+    distinct = distinct_lines([*per_rev, *others])  # of two lines of one frequency the first is kept
     return [*per_rev, *(line for line in distinct if line not in per_rev)], unknown
 
 
 def _bound(
     named: Sequence[tuple[str, Sequence[str], Locus]], speed: float
 ) -> tuple[list[tuple[str, FrequencyBounds]], list[str]]:
-    """Guaranteed bounds of each scene at a speed; what limits them, and why others have none."""
+    """Compute guaranteed bounds of each scene at a speed.
+
+    Return them, their warnings, and why others have none.
+    """
     bounded, refused = [], []
     for label, names, locus in named:
         try:

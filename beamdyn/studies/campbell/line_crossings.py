@@ -64,7 +64,7 @@ class LineCrossing:
 
 @dataclass(frozen=True)
 class _Root:
-    """Root of the distance of a line from the natural frequency of some place in ascending order."""
+    """A speed at which a line meets a natural frequency, given by its place in ascending order."""
 
     line: Line
     place: int
@@ -79,7 +79,7 @@ def find_crossings(
     lines: Sequence[Line],
     operating: tuple[float, float] | None = None,
 ) -> list[LineCrossing]:
-    """Find where lines meet the modes of a locus, by ascending speed.
+    """Find the crossings of lines with the modes of a locus, by ascending speed.
 
     The roots are those of the frequencies in ascending order, which are continuous where modes exchange
     their places; each belongs to the tracked mode that is nearest there.
@@ -110,7 +110,7 @@ def find_crossings(
     found = []
     for root, frequencies, share in zip(roots, omega, shares, strict=True):
         if (mode := _tracked_mode(locus, root, frequencies[root.place])) is None:
-            continue  # one of the further modes, which are only there for the tracking
+            continue  # one of the additional modes that are computed for the tracking only
         node = _node(locus, root.speed)
         error = float(locus.error[node : node + 2, mode].max() * frequencies[root.place])
         along, across = share[root.place].tolist()
@@ -132,7 +132,7 @@ def find_crossings(
 
 
 def coincident(locus: Locus, lines: Sequence[Line]) -> Iterator[tuple[Line, int]]:
-    """Yield each line that equals a mode's frequency at every speed, as of a hinged blade, and the mode."""
+    """Yield lines that equal a mode's frequency at every speed, as for a hinged blade, each with the mode."""
     tracked = np.abs(np.imag(locus.eigenvalue))
     for line in lines:
         for mode, omega in enumerate(tracked.T):
@@ -162,16 +162,16 @@ def _find_roots(locus: Locus, lines: Sequence[Line]) -> Iterator[_Root]:
 
 
 def _frequencies(locus: Locus, speeds: np.ndarray) -> np.ndarray:
-    """Angular frequencies [rad/s] in ascending order (S, k), by the model of the locus."""
+    """Compute angular frequencies [rad/s] (S, k), in ascending order, with the model of the locus."""
     count = locus.ascending.shape[1]
     if locus.model.discretization.order is None:
         return np.abs(np.imag(locus.model.solver.eigenvalues(speeds, count)))
-    modes = locus.eigenvalue.shape[1]  # those of finite elements are extrapolated, as in the locus
+    modes = locus.eigenvalue.shape[1]  # frequencies of finite elements are extrapolated, as in the locus
     return np.abs(np.imag(solve_with_error(locus.model, speeds, modes, count - modes).eigen.eigenvalue))
 
 
 def _solve(locus: Locus, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Angular frequencies (S, k) and shares of the planes (S, k, 2), in ascending order."""
+    """Compute angular frequencies (S, k) [rad/s] and shares of the planes (S, k, 2), in ascending order."""
     eigen = locus.model.solver.solve(speeds, locus.ascending.shape[1])
     extrapolated = locus.model.discretization.order is not None
     omega = _frequencies(locus, speeds) if extrapolated else np.abs(np.imag(eigen.eigenvalue))
@@ -179,12 +179,12 @@ def _solve(locus: Locus, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _node(locus: Locus, speed: float) -> int:
-    """Index of the speed of the locus at or before a speed, not the last one."""
+    """Return the index of the locus' last speed below a given speed, at most the last index but one."""
     return int(np.clip(np.searchsorted(locus.speeds, speed) - 1, 0, len(locus.speeds) - 2))
 
 
 def _tracked_mode(locus: Locus, root: _Root, omega: float) -> int | None:
-    """Index of the tracked mode that has a place near a root; None if it is not followed."""
+    """Return the tracked mode whose frequency the line meets at a root; None if none is followed there."""
     node = _node(locus, root.speed)
     ends, tracked = locus.speeds[node : node + 2], np.abs(np.imag(locus.eigenvalue[node : node + 2]))
     modes = np.flatnonzero((locus.place[node : node + 2] == root.place).any(axis=0))
@@ -202,7 +202,7 @@ AT_RATED, IN_RANGE = "rated speed", "operating range"
 
 @dataclass(frozen=True)
 class Margin:
-    """Distance of the nearest line from a natural frequency: line over frequency, less one.
+    """Distance of the nearest line from a natural frequency: the ratio of line to frequency, less 1.
 
     Parameters
     ----------
@@ -246,7 +246,7 @@ class Margin:
 def margins_at_rated(
     label: str, names: Sequence[str], locus: Locus, lines: Sequence[Line], rated: float
 ) -> Iterator[Margin]:
-    """Margin of each mode that vibrates at the rated speed [rad/s], which is one of the locus."""
+    """Yield the margin of each mode that vibrates at the rated speed [rad/s], a speed of the locus."""
     at = np.abs(locus.speeds - rated).argmin()
     yield from _nearest(label, names, locus, lines, np.array([at]), AT_RATED)
 
@@ -259,7 +259,7 @@ def margins_in_range(
     operating: tuple[float, float],
     crossings: Sequence[LineCrossing],
 ) -> Iterator[Margin]:
-    """Least margin of each mode over the speeds of an operating range [rad/s]; 0 where a line crosses it."""
+    """Yield the least margin of each mode over an operating range [rad/s]; 0 where a line crosses it."""
     low, high = operating
     inside = np.flatnonzero((locus.speeds >= low) & (locus.speeds <= high))
     crossed = {c.mode: c for c in reversed(crossings) if low <= c.speed <= high}
@@ -274,14 +274,14 @@ def margins_in_range(
 def _nearest(
     label: str, names: Sequence[str], locus: Locus, lines: Sequence[Line], at: np.ndarray, where: str
 ) -> Iterator[Margin]:
-    """Margin of each mode from the nearest of all lines at speeds of some indices (s,)."""
+    """Yield the margin of each mode from the nearest line, over the speeds of given indices (s,)."""
     excited = np.outer(locus.speeds[at], [line.multiple for line in lines]) / (2 * np.pi)
     for mode, name in enumerate(names):
         frequency = locus.frequency[at, mode]
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = excited / frequency[:, None] - 1
         if not np.isfinite(ratio).any():
-            continue  # unstable, or free to turn at the frequency 0
+            continue  # the mode is unstable, or a free rotation with the frequency 0
         size = np.where(np.isfinite(ratio), np.abs(ratio), np.inf)
         s, n = divmod(int(size.argmin()), len(lines))
         speed, here = float(locus.speeds[at[s]]), float(frequency[s])

@@ -1,1 +1,1 @@
-"""Which numbers of a scene make its answers take wanted values: designs sought backwards."""
+"""Inverse design: numbers of a scene with which its answers take wanted values."""

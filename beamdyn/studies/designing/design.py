@@ -1,29 +1,31 @@
-"""Designs sought backwards: numbers of a scene for wanted answers."""
+"""Inverse design: search for numbers of a scene whose answers are what is wanted."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, as_floats, count
 from beamdyn.common.inputs.designs import Designs, VariedInput
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import announced
+from beamdyn.common.words import InputName, Words
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.numbers import check_path, is_speed, number_at, unit_of, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.studies.designing.found_design import FoundDesign
-from beamdyn.studies.designing.search import Ranges, Search
+from beamdyn.studies.designing.proofs import Proofs
+from beamdyn.studies.designing.search import DIFFERENCE, Ranges, Search, Spent
 from beamdyn.studies.designing.target import Target
 
 MOST_NUMBERS = 6
-_SAME = 1e-9  # difference of logarithms that is none
+_SAME = 1e-9  # difference or slope of logarithms that counts as 0
 _AT = 1e-6  # share of a range, or relative distance from a limit, at which a design lies at it
 
 
@@ -89,11 +91,11 @@ def design(
     own = ranges.shares(np.where(np.isfinite(given), given, middle))
     search = Search(scene, ranges, targets, own, discretization, tolerance)
     x = search.run(count("seed", seed, 0))
-    return _BestDesign(search, x).result(given, start)
+    return _BestDesign(search, x).with_unmoved().result(given, start)
 
 
 def _check_free(scene: Scene, free: Mapping[str, tuple[float, float] | None]) -> tuple[VariedInput, ...]:
-    """The numbers with their bounds, all of whose combinations are scenes."""
+    """Check the free numbers and their bounds, all of whose combinations must be scenes."""
     if not isinstance(free, Mapping) or not 0 < len(free) <= MOST_NUMBERS:
         bound = f"give 1 to {MOST_NUMBERS} numbers with their bounds"
         raise InvalidValue("free", free, bound, 'such as {"beam.thickness": (1e-4, 4e-4)}')
@@ -132,7 +134,7 @@ def _check_targets(targets: object) -> tuple[Target, ...]:
 
 @dataclass(frozen=True)
 class _BestDesign:
-    """The best design of a search, by its shares (p,), and what is said of it."""
+    """The best design of a search, as shares (p,) of the ranges, and the statements about it."""
 
     search: Search
     x: np.ndarray
@@ -147,26 +149,54 @@ class _BestDesign:
 
     @cached_property
     def _slopes(self) -> np.ndarray:
-        return self.search.derivatives(self.x)
+        found = self.search.derivatives(self.x)
+        _, error = self.search.known(self.x[None])
+        rounded = np.where(np.abs(found) <= np.maximum(_SAME, error.T / DIFFERENCE), 0.0, found)
+        level = [k for k in np.flatnonzero((rounded == 0).all(axis=0)).tolist() if not self._is_idle(k)]
+        # Where an answer is largest or smallest, its derivative vanishes, but the number has an effect.
+        rounded[:, level] = found[:, level]
+        return rounded
+
+    def _is_idle(self, k: int) -> bool:
+        """Whether no answer changes when number k takes its farther bound."""
+        far = self.x.copy()
+        far[k] = 0.0 if self.x[k] > 0.5 else 1.0
+        with suppress(Spent):
+            value, error = self.search.known(np.array([self.x, far]))
+            change = np.abs(value[1] - value[0])
+            return bool((change <= (error.sum(axis=0) + _SAME) * np.abs(value[0])).all())
+        return False
+
+    def with_unmoved(self) -> _BestDesign:
+        """The design with each number without effect where the scene has it, and no search has moved it."""
+        moved = np.where((self._slopes == 0).all(axis=0), self.search.own, self.x)
+        if (moved == self.x).all():
+            return self
+        with suppress(Spent):
+            if (self.search.met(moved[None])[0] == self._met).all():
+                return replace(self, x=moved)
+        return self
 
     def _limits(self) -> Iterator[str]:
-        """Yield the bounds and limits that the design lies at."""
+        """Yield a sentence for each bound and limit that the design lies at."""
         for each, x in zip(self.search.ranges.inputs, self.x.tolist(), strict=True):
             if x <= _AT or x >= 1 - _AT:
-                yield f"{each.name} is at its {'smallest' if x <= _AT else 'largest'} value"
+                at = "smallest" if x <= _AT else "largest"
+                yield Words(InputName(each.name), f" is at its {at} value")
         for target, excess in zip(self.search.targets, self._excess.tolist(), strict=True):
             if target.is_limit and abs(excess) <= _AT:
                 yield target.says
 
     def _only_one_way(self) -> bool:
-        """Whether the answers that are missed rise or fall with each number over all designs computed.
+        """Whether each missed answer depends on each number in one direction only, over all designs computed.
 
         The design then lies at the bounds that are best for each of these answers.
         """
         designs = self.search.designs
         excess = self.search.excess(designs)
         for k in np.flatnonzero(~self._met):
-            better = -np.sign(self._excess[k]) * np.sign(self._slopes[k])  # way in which each number helps
+            # The direction of each number that reduces the miss.
+            better = -np.sign(self._excess[k]) * np.sign(self._slopes[k])
             if self.search.targets[k].at_most is not None:
                 better = -better
             if not (np.where(better > 0, self.x >= 1 - _AT, self.x <= _AT) | (better == 0)).all():
@@ -180,7 +210,7 @@ class _BestDesign:
 
     def result(self, given: np.ndarray, start: float) -> FoundDesign:
         """The result of a search that began at a time."""
-        search, x = self.search, self.x
+        search, x, proofs = self.search, self.x, Proofs(self.search, self.x)
         value, error = (each[0] for each in search.known(x[None]))
         studies = [search.studied(asked, x[None]) for asked in search.asked]
         low, high = np.array([each.values for each in search.ranges.inputs]).T
@@ -198,13 +228,12 @@ class _BestDesign:
             derivative=value[:, None] * self._slopes / search.ranges.slopes(x),
             limited_by=tuple(self._limits()),
             only_one_way=self._only_one_way(),
+            proof=proofs.no_nearer,
+            why_none=proofs.none,
             solves=search.solves,
             warnings=tuple(dict.fromkeys(said for each in studies for said in each.warnings)),
-            provenance=Provenance(
-                __version__,
-                studies[0].provenance.method,
-                studies[0].provenance.compared_with,
-                perf_counter() - start,
+            provenance=Provenance.since(
+                start, studies[0].provenance.method, studies[0].provenance.compared_with
             ),
             scene=search.scene,
         )

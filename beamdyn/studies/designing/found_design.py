@@ -1,24 +1,22 @@
-"""The result of a search for a design."""
+"""The result of an inverse design: numbers, answers, and what is missed."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from beamdyn.common.plots.curves import plot_bars
 from beamdyn.common.results.one_line import counted, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import joined
-from beamdyn.common.words import Words
+from beamdyn.common.words import InputName, Words
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.designing.target import Target, say_number
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -49,7 +47,14 @@ class FoundDesign(Result):
         Bounds and limits that the design lies at, in words.
     only_one_way : bool
         Whether the answers that miss their targets rise or fall with each number over all designs computed,
-        so that no other design in the bounds comes nearer.
+        and the design lies at the end that is nearest to the targets.  This does not prove that no other in
+        the bounds comes nearer: answers may turn between designs computed.
+    proof : str
+        Why no design in the bounds, computed or not, comes nearer to any target that is missed; empty
+        without a proof for each of them.
+    why_none : str
+        Why no design in the bounds, computed or not, meets all targets, within the errors of the answers;
+        empty without a proof.
     solves : int
         Number of designs computed, at most 60.
     warnings : tuple of str
@@ -79,15 +84,21 @@ class FoundDesign(Result):
     derivative: np.ndarray
     limited_by: tuple[str, ...]
     only_one_way: bool
+    proof: str
+    why_none: str
     solves: int
     warnings: tuple[str, ...]
     provenance: Provenance
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Whether a design was found, and its numbers, in one line; see `Result.headline`."""
+        """Yield whether a design was found, and its numbers, parts of a one-line summary.
+
+        See `Result.headline`.
+        """
         yield "found" if self.found else "none found, the nearest"
-        yield from (f"{name} {value:.6g} {unit}".rstrip() for name, value, unit in self._numbers)
+        for name, value, unit in self._numbers:
+            yield Words(InputName(name), " ", say_number(value, unit))
         yield from (counted(self.solves, "solve"), warned(self.warnings))
 
     @property
@@ -97,7 +108,7 @@ class FoundDesign(Result):
 
     @property
     def scene_found(self) -> Scene:
-        """The scene of the design."""
+        """The scene with the numbers of the design."""
         return with_numbers(self.scene, dict(zip(self.names, self.value.tolist(), strict=True)))
 
     @property
@@ -106,27 +117,55 @@ class FoundDesign(Result):
         return self.derivative * self.value / self.reached[:, None]
 
     @property
+    def without_effect(self) -> tuple[str, ...]:
+        """Names of the numbers that change none of the answers, as the derivatives here tell."""
+        return tuple(
+            name
+            for name, each in zip(self.names, self.derivative.T, strict=True)
+            if (each == 0).all()  # derivatives within rounding have been set to 0 before
+        )
+
+    @property
     def _numbers(self) -> Iterator[tuple[str, float, str]]:
         return zip(self.names, self.value.tolist(), self.units, strict=True)
 
     def sentences(self) -> tuple[str, ...]:
-        """Sentences on what the design misses, and on what limits it."""
+        """Return sentences on what the design misses, and on what limits it."""
         return tuple(self._sentences())
 
     def _sentences(self) -> Iterator[str]:
         missed = [k for k, met in enumerate(self.met) if not met]
         if missed:
-            numbers = joined(", ", (Words(f"{n} = ", say_number(v, u)) for n, v, u in self._numbers))
+            numbers = joined(
+                ", ", (Words(InputName(n), " = ", say_number(v, u)) for n, v, u in self._numbers)
+            )
             said = (Words(self.targets[k].says, f" (there {self._reached(k)})") for k in missed)
-            sure = self.only_one_way
+            sure = bool(self.proof)
             none = "No design in the bounds has " if sure else "No design was found that has "
             nearest = "; the nearest is " if sure else "; the nearest found is "
-            yield Words(none, joined(" and ", said), nearest, numbers, ".")
-            if self.only_one_way:
-                said = "rise or fall with each number over all designs computed: no other comes nearer"
-                yield f"These answers {said}."
+            beside = "" if sure or len(missed) == len(self.met) else " beside all else that is wanted"
+            yield Words(none, joined(" and ", said), beside, nearest, numbers, ".")
+            if self.proof:
+                yield f"It is proven that no other comes nearer: {self.proof}."
+            elif self.why_none:
+                yield Words("It is proven that there is none that meets all targets: ", self.why_none, ".")
+            elif self.only_one_way:
+                said = "which suggests, but does not prove, that no other comes nearer"
+                yield f"These answers {self._ways()} over all designs computed, {said}."
+        if self.without_effect:
+            many = len(self.without_effect) > 1
+            names = joined(" and ", map(InputName, self.without_effect))
+            targets = " and ".join(dict.fromkeys(each.name for each in self.targets))
+            yield Words(names, f" {'have' if many else 'has'} no effect on {targets}.")
         if self.limited_by:
             yield Words("Limited by: ", joined("; ", self.limited_by), ".")
+
+    def _ways(self) -> str:
+        """How the answers follow the numbers, where each does so one way."""
+        still = len(self.without_effect)
+        if still == len(self.names):
+            return "are the same"
+        return f"rise or fall with each {'other ' if still else ''}number"
 
     def _reached(self, k: int) -> str:
         value = float(self.reached[k])
@@ -137,10 +176,11 @@ class FoundDesign(Result):
         return "no answer" if np.isnan(value) else self.targets[k].amount(value)
 
     def to_dict(self) -> dict[str, Any]:
-        """The result as plain numbers, lists and strings, with sentences."""
+        """Return the result as plain numbers, lists and strings, with its sentences under "sentences"."""
         return super().to_dict() | {"found": self.found, "sentences": plain(self.sentences())}
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the relative change of each answer over that of each number, the most important on top."""
         labels = [each.name for each in self.targets]
-        return plot_bars(self.names, self.relative.T, labels, "relative change over that of the number", ax)
+        names = [InputName(each).on_form for each in self.names]
+        return plot_bars(names, self.relative.T, labels, "relative change over that of the number", ax)

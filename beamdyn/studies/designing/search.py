@@ -1,4 +1,4 @@
-"""The search for a design: its numbers as shares of their ranges, and the best of all designs computed.
+"""The search of an inverse design: numbers as shares of their ranges, and the best of all designs computed.
 
 Numbers and answers are taken as logarithms, in which powers are straight lines.  All designs that a search
 computes are kept, and the best one is the answer.
@@ -28,27 +28,29 @@ from beamdyn.studies.resonance_speeds import NO_RESONANCE
 from beamdyn.studies.study import study
 from beamdyn.studies.study_result import Study
 
-MOST_SOLVES = 60  # designs computed
-_EXACT = 1e-10  # relative, to which a target is met whose answer has no larger error
-_STEP = 1e-5  # of shares, of differences within a search
-_WIDE = 1e-3  # of shares, of the derivatives of the answer
-_CLOSE = 1e-13  # of shares, to which a root is bracketed
+MOST_SOLVES = 60  # largest number of designs that a search computes
+_EXACT = 1e-10  # relative miss of a target that counts as none, if the error of the answer is no larger
+_STEP = 1e-5  # step of differences within a search, as a share of the range of a number
+DIFFERENCE = 1e-3  # step of the differences that give the derivatives of answers, as such a share
+_CLOSE = 1e-13  # interval to which a root is bracketed, as such a share
+_AT_END = 1e-9  # distance within which a minimization is at a bound, as such a share
 _SCANNED, _SPREAD = 9, 4  # designs with which the search begins: of one number, and for each of several
 _ROUNDING = 4 * np.finfo(float).eps
-_FLAT = 1e-12  # change of the aim at which a minimization ends
-_NEARLY, _CORRECTIONS = 1e-2, 2  # logarithm by which targets are missed that the last steps meet, and these
-_STARTS = 3  # of the search, from the best designs of these
+_FLAT = 1e-12  # change of the objective at which a minimization ends
+# Largest miss, as a logarithm, that Newton's steps remove, and the number of these steps.
+_NEARLY, _CORRECTIONS = 1e-2, 2
+_STARTS = 3  # number of starts of the minimization, from the best designs known
 
-Function = Callable[[np.ndarray], np.ndarray]  # of designs (N, p), with N rows
+Function = Callable[[np.ndarray], np.ndarray]  # from designs (N, p) to an array with N rows
 
 
 class Spent(Exception):
-    """The search has made as many solves as it may."""
+    """Raised when the search has computed as many designs as it may."""
 
 
 @dataclass(frozen=True)
 class Ranges:
-    """Numbers of a scene between bounds, as shares from 0 to 1 of the ranges; of logarithms where positive.
+    """Numbers of a scene between bounds as shares from 0 to 1; of logarithms where both bounds are positive.
 
     Parameters
     ----------
@@ -64,14 +66,14 @@ class Ranges:
         return low, high, low > 0
 
     def values(self, shares: np.ndarray) -> np.ndarray:
-        """Values [unit] (..., p) of shares."""
+        """Return the values [unit] (..., p) of shares."""
         low, high, positive = self._ends
         ratio = np.where(positive, high / np.where(positive, low, 1.0), 1.0)
         found = np.where(positive, low * ratio**shares, low + (high - low) * shares)
         return np.where(shares >= 1 - _CLOSE, high, np.where(shares <= _CLOSE, low, found))
 
     def shares(self, values: np.ndarray) -> np.ndarray:
-        """Shares (p,) of values, within the bounds."""
+        """Return the shares (p,) of values, clipped to the bounds."""
         low, high, positive = self._ends
         values = np.clip(values, low, high)
         safe = [np.where(positive, each, 1.0) for each in (values, low, high)]
@@ -79,7 +81,7 @@ class Ranges:
         return np.where(positive, of_logarithms, (values - low) / (high - low))
 
     def slopes(self, shares: np.ndarray) -> np.ndarray:
-        """Derivatives [unit] (p,) of the values by the shares."""
+        """Compute the derivatives [unit] (p,) of the values by the shares."""
         low, high, positive = self._ends
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(positive, self.values(shares) * np.log(high / low), high - low)
@@ -87,14 +89,14 @@ class Ranges:
 
 @dataclass(frozen=True)
 class Search:
-    """A search, and the designs that it has computed.
+    """A search for a design, with all designs that it has computed.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     ranges : Ranges
-        Its numbers.
+        The numbers of the scene that are free, with their ranges.
     targets : tuple of Target
         What the design shall reach.
     own : ndarray, shape (p,)
@@ -118,14 +120,14 @@ class Search:
 
     @cached_property
     def asked(self) -> dict[Asked, list[int]]:
-        """What is asked of studies, with the targets that ask it."""
+        """The questions for studies, each with the indices of the targets that need its answer."""
         found: dict[Asked, list[int]] = {}
         for k, target in enumerate(self.targets):
             found.setdefault(target.asked, []).append(k)
         return found
 
     def studied(self, asked: Asked, shares: np.ndarray) -> Study:
-        """The study of some designs, of shares (N, p)."""
+        """Run the study that answers a question for designs of shares (N, p)."""
         values = self.ranges.values(shares)
         vary = {each.name: values[:, k] for k, each in enumerate(self.ranges.inputs)}
         of = [self.targets[k] for k in self.asked[asked]]
@@ -135,7 +137,7 @@ class Search:
             return study(self.scene, vary, **asked._asdict(), modes=modes, **how)
 
     def _answers(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Answers and relative errors (N, m); nan where there is none, inf beyond the top speed."""
+        """Answers, nan where there is none and inf beyond the top speed, and relative errors (N, m)."""
         value = np.full((len(shares), len(self.targets)), np.nan)
         error = np.zeros(value.shape)
         for asked, targets in self.asked.items():
@@ -146,14 +148,17 @@ class Search:
             for k in targets:
                 place = self.targets[k].place(found.labels)
                 if place is not None:
-                    beyond = np.where(found.status == NO_RESONANCE, np.inf, found.value)  # the top speed
+                    # No crossing up to the top speed.
+                    beyond = np.where(found.status == NO_RESONANCE, np.inf, found.value)
                     value[:, k], error[:, k] = (
                         each.reshape(len(shares), -1)[:, place] for each in (beyond, found.error)
                     )
-        return value, np.where(np.isfinite(error), error, 0.0)
+        return value, np.where(np.isnan(error), 0.0, error)
 
     def known(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Answers and relative errors (N, m) of designs (N, p), computed together if not known.
+        """Return answers and relative errors (N, m) of designs (N, p).
+
+        Those not yet known are computed together.
 
         Raises
         ------
@@ -170,7 +175,7 @@ class Search:
         return np.array([value for value, _ in each]), np.array([error for _, error in each])
 
     def excess(self, shares: np.ndarray) -> np.ndarray:
-        """How far beyond the targets (N, m) designs are; see `Target.excess`."""
+        """Compute how far beyond the targets (N, m) designs are; see `Target.excess`."""
         value, _ = self.known(shares)
         return np.array([each.excess(value[:, k]) for k, each in enumerate(self.targets)]).T
 
@@ -178,63 +183,68 @@ class Search:
 
     @property
     def solves(self) -> int:
-        """Number of designs computed, with those for the derivatives of the best one."""
+        """Number of designs computed, including those for the derivatives of the best design."""
         return len(self._computed) + 2 * len(self.own) + 1
 
     @property
     def designs(self) -> np.ndarray:
-        """Shares (N, p) of the designs computed."""
+        """Shares (N, p) of all designs computed so far."""
         return np.array([np.frombuffer(key) for key in self._computed])
 
     def missed(self, shares: np.ndarray) -> np.ndarray:
-        """By how much (N, m) designs that are computed miss the targets: 0 to 1e-10."""
+        """Compute how far designs miss the targets, (N, m); see `Target.missed`. A miss below 1e-10 is 0."""
         excess = self.excess(shares)
         missed = np.array([each.missed(excess[:, k]) for k, each in enumerate(self.targets)]).T
         return np.where(missed <= _EXACT, 0.0, missed)
 
     def met(self, shares: np.ndarray) -> np.ndarray:
         """Whether designs that are computed meet the targets (N, m), within the errors of the answers."""
-        return self.missed(shares) <= self.known(shares)[1]
+        error = self.known(shares)[1]
+        return self.missed(shares) <= np.where(np.isfinite(error), error, 0.0)
 
     def aim(self, shares: np.ndarray) -> np.ndarray:
-        """What is minimized (N,): the answer that shall be the best, or the squared distance from the own."""
+        """Compute the objective (N,) to be minimized.
+
+        It is the logarithm of the answer that is to be as small as possible, or minus that of one to be as
+        large as possible; without either, the squared change of the numbers.
+        """
         for k, each in enumerate(self.targets):
             if each.best is not None:
                 return -self.excess(shares)[:, k]
         return ((shares - self.own) ** 2).sum(axis=1)
 
     def _aim_slopes(self, x: np.ndarray) -> np.ndarray:
-        """Derivatives (p,) of the aim at a design (p,)."""
+        """Compute the derivatives (p,) of the objective at a design (p,)."""
         if any(each.best is not None for each in self.targets):
             return _slopes(self.aim, x)
         return 2 * (x - self.own)
 
     def ranked(self, shares: np.ndarray) -> np.ndarray:
-        """Designs (N, p) from the best: those that miss the targets least, and of these by the aim."""
+        """Sort designs (N, p), the best first: by how far they miss the targets, then by the objective."""
         missed = (self.missed(shares) ** 2).sum(axis=1)
         return shares[np.lexsort((self.aim(shares), missed))]
 
     # The search -------------------------------------------------------------------------------------
 
     def run(self, seed: int) -> np.ndarray:
-        """Search; return the shares (p,) of the best design."""
+        """Run the search, and return the shares (p,) of the best design."""
         with suppress(Spent):
             replace(self, spare=len(self.own) + _CORRECTIONS)._explore(
                 seed
-            )  # what it computes is known here, too
+            )  # the copy shares its table of computed designs with this search
         with suppress(Spent):
             self._correct(self.ranked(self.designs)[0])
         return self.ranked(self.designs)[0]
 
     def _explore(self, seed: int) -> None:
-        """Compute designs towards the best one."""
+        """Compute designs over the ranges of the numbers, which approach the best design."""
         self.known(self._first(seed))
         if len(self.own) == 1:
             self._bracket()
         self._descend(self.ranked(self.designs)[:_STARTS])
 
     def _correct(self, x: np.ndarray) -> None:
-        """Meet targets that a design (p,) misses by little: steps of Newton's and Broyden's methods."""
+        """Remove a small miss of the targets by a design (p,), with steps by Newton and Broyden."""
         missed = self.missed(x[None])[0]
         if self._is_met or missed.max() > _NEARLY:
             return
@@ -250,7 +260,7 @@ class Search:
             slopes = slopes + np.outer(own, step) / (step @ step)
 
     def _first(self, seed: int) -> np.ndarray:
-        """Designs (N, p) with which the search begins: the own one, and others over the ranges."""
+        """Return designs (N, p) with which the search begins: the scene's own, and some over the ranges."""
         p = len(self.own)
         if p == 1:
             return np.unique(np.append(np.linspace(0, 1, _SCANNED), self.own))[:, None]
@@ -258,16 +268,16 @@ class Search:
 
     @property
     def _is_met(self) -> bool:
-        """Whether a design is known that meets all targets."""
+        """Whether any design computed meets all targets."""
         return bool(self.met(self.designs).all(axis=1).any())
 
     @property
     def _is_found(self) -> bool:
-        """Whether a design is known that meets all targets, none of which asks for the best."""
+        """Whether the search can end: all targets are met, and no answer is to be the least or most."""
         return self._is_met and all(each.best is None for each in self.targets)
 
     def _bracket(self) -> None:
-        """Find where the one answer that shall have a value has it, between designs on either side of it."""
+        """Find by bracketing where an answer takes its wanted value, if just one target is a value."""
         wanted = [k for k, each in enumerate(self.targets) if each.equals is not None]
         if len(wanted) != 1:
             return
@@ -283,7 +293,7 @@ class Search:
                 return
 
     def _descend(self, starts: np.ndarray) -> None:
-        """Minimize the aim from several designs within the targets, or what they are missed by."""
+        """Minimize from several designs: the objective within the targets, or else their miss."""
         for start in starts:
             if self._is_found:
                 return
@@ -293,7 +303,7 @@ class Search:
                 self._minimize(missed, partial(_slopes, missed), self.ranked(self.designs)[0], [])
 
     def _constraints(self) -> Iterator[dict[str, Any]]:
-        """Yield the targets that are values, and those that are limits, for the minimization."""
+        """Yield the constraints of the minimization: targets that are values, and those that are limits."""
         for kind, is_limit in (("eq", False), ("ineq", True)):
             places = [k for k, t in enumerate(self.targets) if t.best is None and t.is_limit == is_limit]
             if places:
@@ -306,7 +316,10 @@ class Search:
     def _minimize(
         self, function: Function, slopes: Function, start: np.ndarray, constraints: Sequence[Any]
     ) -> None:
-        """Minimize a function of designs by sequential quadratic programming; what it computes is kept."""
+        """Minimize a function of designs by sequential quadratic programming.
+
+        Every design computed is kept.
+        """
         minimize(
             _at(function),
             start,
@@ -320,12 +333,16 @@ class Search:
     # Beside the answer ------------------------------------------------------------------------------
 
     def derivatives(self, x: np.ndarray) -> np.ndarray:
-        """Derivatives (m, p) of the logarithms of the answers by shares, from neighbours on either side.
+        """Compute derivatives (m, p) of the answers' logarithms by shares, from neighbouring designs.
 
-        Each is that of the parabola through three designs, which at a bound lie within it.
+        Each is that of a parabola through three designs, all within the bounds.
         """
-        steps = np.where(x < _WIDE, 1.0, np.where(x > 1 - _WIDE, -2.0, -1.0)) * _WIDE
-        a, b = steps, np.where((x < _WIDE) | (x > 1 - _WIDE), np.where(x < _WIDE, 2, -1), 1) * _WIDE
+        steps = np.where(x < DIFFERENCE, 1.0, np.where(x > 1 - DIFFERENCE, -2.0, -1.0)) * DIFFERENCE
+        a, b = (
+            steps,
+            np.where((x < DIFFERENCE) | (x > 1 - DIFFERENCE), np.where(x < DIFFERENCE, 2, -1), 1)
+            * DIFFERENCE,
+        )
         designs = np.vstack([x, x + np.diag(a), x + np.diag(b)])
         with np.errstate(divide="ignore", invalid="ignore"):
             own, before, after = np.split(np.log(self._answers(designs)[0]), [1, 1 + len(x)])
@@ -335,7 +352,7 @@ class Search:
 
 
 def _step_within(slopes: np.ndarray, excess: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """The shortest step (p,) from shares that cancels an excess; numbers that reach bounds stay there."""
+    """Compute the shortest step (p,) that cancels an excess; numbers that reach their bounds stay there."""
     step, free = np.zeros(len(x)), np.ones(len(x), dtype=bool)
     while free.any():
         step[free] = np.linalg.lstsq(slopes[:, free], -excess - slopes[:, ~free] @ step[~free], rcond=None)[0]
@@ -349,12 +366,17 @@ def _step_within(slopes: np.ndarray, excess: np.ndarray, x: np.ndarray) -> np.nd
 
 def _at(function: Function) -> Callable[[np.ndarray], Any]:
     """A function of one design (p,), of one of many."""
-    return lambda x: function(np.clip(x, 0.0, 1.0)[None])[0]
+    return lambda x: function(_within(x)[None])[0]
+
+
+def _within(x: np.ndarray) -> np.ndarray:
+    """Shares (p,) within the ranges, at the ends of which steps of a minimization that round off end."""
+    return np.where(x < _AT_END, 0.0, np.where(x > 1 - _AT_END, 1.0, x))
 
 
 def _slopes(function: Function, x: np.ndarray) -> np.ndarray:
     """Differences (..., p) of a function at a design (p,) over a small step, away from the upper bound."""
-    x = np.clip(x, 0.0, 1.0)
+    x = _within(x)
     steps = np.where(x + _STEP <= 1, _STEP, -_STEP)
     values = function(np.vstack([x, x + np.diag(steps)]))
     return (values[1:] - values[0]).T / steps

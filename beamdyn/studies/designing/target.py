@@ -1,4 +1,4 @@
-"""What a design shall reach: a wanted value of an answer, a limit, or the best."""
+"""Targets of an inverse design: a wanted value of an answer, a limit, or the best."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from beamdyn.studies.beside_data.single_numbers import say_value
 from beamdyn.studies.questions import KINDS, OPTIONS, Kind
 from beamdyn.studies.study import check_window
 
-_FAR = 5.0  # logarithm of an answer over what is wanted, beyond which it is compressed
-_NONE = 100.0  # that of an answer that is not there
+_FAR = 5.0  # size of the logarithm of an answer over the wanted one, beyond which the logarithm is compressed
+_NONE = 100.0  # logarithm that stands for a missing answer
 
 
 class Asked(NamedTuple):
-    """What is asked of a study, by one target or several."""
+    """A question for a study, which one target or several need."""
 
     what: str
     speed: float | None
@@ -96,39 +96,39 @@ class Target:
 
     @property
     def kind(self) -> Kind:
-        """The kind of the answer."""
+        """The kind of the answer, from `KINDS`."""
         return KINDS[self.what]
 
     @property
     def asked(self) -> Asked:
-        """What is asked of a study; crossings are sought up to twice the wanted one."""
+        """The question for a study; crossings are sought up to twice the wanted speed."""
         wanted = self.equals or self.at_least or self.at_most
         top = 2 * wanted if wanted and self.what == "crossings" and self.speed is None else self.speed
         return Asked(self.what, top, self.window)
 
     @property
     def has_modes(self) -> bool:
-        """Whether the answer is that of a mode."""
+        """Whether the answer belongs to a mode."""
         return "modes" in self.kind.options
 
     @property
     def is_limit(self) -> bool:
-        """Whether the answer shall be within a limit."""
+        """Whether the target is a limit, of either side."""
         return self.at_least is not None or self.at_most is not None
 
     def place(self, labels: tuple[str, ...]) -> int | None:
-        """Which of the numbers of an answer it is; None if there is no such number."""
+        """Return the index of the wanted number within an answer; None if the answer has no such number."""
         if self.what != "crossings":
             return self.mode - 1 if self.has_modes else 0
         wanted = f"mode {self.mode}, {self.line}"
         return next((k for k, label in enumerate(labels) if label in (wanted, f"{wanted} (forced)")), None)
 
     def excess(self, value: np.ndarray) -> np.ndarray:
-        """Logarithm of answers over what is wanted, or how much better than it they are.
+        """Compute the logarithm of answers over what is wanted, or how much better than the limit they are.
 
-        It is 0 where a value or limit is met exactly, and positive where a limit is kept; of what shall be
-        the best it is the larger, the better.  Answers of beams are near powers of their numbers, so that
-        these are nearly linear in the logarithms of the numbers.
+        It is 0 where a value or limit is met exactly, and positive where a limit is kept; for an answer that
+        is to be as small or as large as possible, it is larger for a better answer.  Answers of beams are
+        near powers of their numbers, so that these logarithms are nearly linear in those of the numbers.
         """
         wanted = self.equals or self.at_least or self.at_most or 1.0
         sign = -1.0 if self.at_most is not None or self.best == "smallest" else 1.0
@@ -138,14 +138,17 @@ class Target:
         return found if self.best is not None else _compressed(found)
 
     def missed(self, excess: np.ndarray) -> np.ndarray:
-        """By how much, as a logarithm, the target is missed; 0 of what shall be the best."""
+        """Compute the distance from the target as a logarithm; 0 where it is met.
+
+        It is 0, too, for an answer that is to be as small or as large as possible.
+        """
         if self.best is not None:
             return np.where(excess <= -_NONE, _FAR, 0.0)
         return np.maximum(-excess, 0.0) if self.is_limit else np.abs(excess)
 
     @property
     def name(self) -> Words:
-        """The answer in words."""
+        """Wording of the answer, such as "frequency of mode 1 at" a speed."""
         of = f" of mode {self.mode}" if self.has_modes else ""
         of += f" with {self.line}" if self.line else ""
         is_at = self.speed is not None and self.kind.has_speed
@@ -153,7 +156,7 @@ class Target:
 
     @property
     def says(self) -> Words:
-        """The target in words."""
+        """Wording of the target: the answer with its wanted value, limit or "largest"."""
         if self.best is not None:
             return Words(self.name, f" {self.best}")
         words = {"=": self.equals, "at least": self.at_least, "at most": self.at_most}
@@ -161,16 +164,16 @@ class Target:
         return Words(self.name, f" {word} ", self.amount(value))
 
     def amount(self, value: float) -> str:
-        """A value of the answer with its unit."""
+        """Word a value of the answer with its unit."""
         return say_number(value, self.kind.unit)
 
 
 def _compressed(excess: np.ndarray) -> np.ndarray:
-    """Logarithms whose order stays, but that do not outgrow those of other targets."""
+    """Compress large logarithms, so that one target does not outweigh others; their order stays."""
     beyond = np.maximum(np.abs(excess) - _FAR, 0.0)
     return np.clip(excess, -_FAR, _FAR) + np.sign(excess) * np.log1p(beyond)
 
 
 def say_number(value: float, unit: str) -> str:
-    """A value with six digits and its unit, as each medium has it."""
+    """Word a value with six digits and its unit, as each medium shows it."""
     return Speeds(value) if unit == "rad/s" else say_value(value, unit, 6)

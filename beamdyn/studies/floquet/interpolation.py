@@ -15,14 +15,14 @@ from itertools import product
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-_FIRST = 8  # degree with which the search begins
-_LAST = 3  # coefficients that tell the size of those left out
-_SAFETY = 4.0  # error over that size
+_FIRST = 8  # degree of the polynomial at the first attempt
+_LAST = 3  # number of last coefficients from which the size of those left out is estimated
+_SAFETY = 4.0  # ratio of the stated error to the estimated one
 
 
 @dataclass(frozen=True)
 class ChebyshevAxis:
-    """One axis of the grid: the values of a number, and how a function is interpolated over their range.
+    """One axis of a grid: the values of a number, and the interpolation of a function over their range.
 
     Parameters
     ----------
@@ -37,17 +37,17 @@ class ChebyshevAxis:
 
     @classmethod
     def coarsest(cls, values: np.ndarray) -> ChebyshevAxis:
-        """Make an axis with the lowest degree that is tried."""
+        """Make an axis with the lowest degree."""
         return cls(values, _FIRST if len(values) > _FIRST + 1 else None)
 
     def finer(self) -> ChebyshevAxis:
-        """Copy the axis with twice the degree, or without a polynomial where that saves nothing."""
+        """Return the axis with twice the degree, or without a polynomial where that saves no evaluations."""
         assert self.degree is not None
         return replace(self, degree=2 * self.degree if len(self.values) > 2 * self.degree + 1 else None)
 
     @property
     def nodes(self) -> np.ndarray:
-        """Values of the number at which the function is evaluated."""
+        """Values (k,) of the number at which the function is evaluated."""
         if self.degree is None:
             return self.values
         low, high = self.values.min(), self.values.max()
@@ -59,7 +59,10 @@ class ChebyshevAxis:
         return chebvander((2 * at - low - high) / (high - low), self.degree)
 
     def coefficients(self, samples: np.ndarray, axis: int) -> np.ndarray:
-        """Chebyshev coefficients along an axis of samples at the nodes; the samples where degree is None."""
+        """Return Chebyshev coefficients along an axis from samples at the nodes.
+
+        The samples if degree is None.
+        """
         if self.degree is None:
             return samples
         moved = np.moveaxis(samples, axis, 0)
@@ -75,7 +78,7 @@ class ChebyshevAxis:
         return np.moveaxis(found.reshape(-1, *moved.shape[1:]), 0, axis)
 
     def tail(self, coefficients: np.ndarray, axis: int) -> float:
-        """Largest of the last coefficients along an axis, which estimates the size of those left out."""
+        """Return the largest of the last coefficients along an axis, which estimates those left out."""
         if self.degree is None:
             return 0.0
         return float(np.abs(np.take(coefficients, range(-_LAST, 0), axis=axis)).max())

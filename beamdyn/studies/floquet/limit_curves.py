@@ -20,19 +20,23 @@ from beamdyn.common.inputs.designs import VariedInput
 from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, Multipliers, multipliers_of
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 
-_STEP, _FIRST, _LEAST = 1 / 20, 1 / 160, 1e-6  # largest, first and least step, as shares of the ranges
-_WIDER = 2.0  # most that a step grows
-_TURNS, _FIRST_TURNS = 0.9, 0.2  # least cosine of the angle between steps
-_NARROWER, _NARROWEST = 0.25, 1e-7  # half widths within which the limit is sought: over the last, and least
-_FINE = 1e-11  # share to which a root is sought
-_ERRORS = (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)  # shares, at which the verdicts on either side are tried
-_MOST = 400  # points of a curve each way
-_ROUNDED = 1e-9  # of a piece, by which its end may miss the border of the chart
-_SLACK = 0.5  # of a cell, by which a curve of straight pieces may miss an edge that the limit crosses
+# Largest, first and least step along a curve, as shares of the ranges.
+_STEP, _FIRST, _LEAST = 1 / 20, 1 / 160, 1e-6
+_WIDER = 2.0  # largest ratio of a step along a curve to the step before
+_TURNS, _FIRST_TURNS = 0.9, 0.2  # least cosine of the angle between steps, later and at the first step
+# Half width of the range in which the limit is sought, over the one used before, and its least value.
+_NARROWER, _NARROWEST = 0.25, 1e-7
+_FINE = 1e-11  # accuracy of a root, as a share of the ranges of the two numbers
+# Distances, as shares of the ranges, at which the verdicts on both sides of a point are tried.
+_ERRORS = (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)
+_MOST = 400  # largest number of points of a curve in each direction
+# Distance from the border of the chart, over a piece of the curve, within which the piece ends there.
+_ROUNDED = 1e-9
+_SLACK = 0.5  # share of a cell by which a curve of straight pieces may miss an edge that the limit crosses
 
 
 class LimitPoint(NamedTuple):
-    """A point of a limit: its place as shares of the ranges (2,), error, and the multiplier that leaves."""
+    """A point of a limit: shares of the ranges (2,), error, and the multiplier that leaves the circle."""
 
     place: np.ndarray
     error: float
@@ -59,14 +63,14 @@ class LimitTracer:
     _known: dict[bytes, Multipliers] = field(default_factory=dict)
 
     def curves(self) -> list[list[LimitPoint]]:
-        """The curves, each once: one that comes over the beginning of another takes its place."""
+        """Follow all limits, each once: a curve that passes the beginning of another replaces it."""
         found: list[tuple[list[LimitPoint], np.ndarray, np.ndarray]] = []
         for low, high in self._edges():
             if any(_crosses(curve, low, high) for curve, *_ in found):
                 continue
             first = self._between(low, high)
             normal = (high - low) / np.linalg.norm(high - low)
-            along = np.array([normal[1], -normal[0]])  # unstable motion is to its left
+            along = np.array([normal[1], -normal[0]])  # unstable motion is on the left of this direction
             ahead, behind = self._trace(first, along, 1.0), self._trace(first, -along, -1.0)
             curve = [*reversed(behind), first, *ahead]
             found = [each for each in found if not _crosses(curve, *each[1:])] + [(curve, low, high)]
@@ -74,7 +78,7 @@ class LimitTracer:
 
     @property
     def solved(self) -> int:
-        """Number of scenes that were integrated."""
+        """Number of scenes that have been integrated."""
         return len(self._known)
 
     # The function -----------------------------------------------------------------------------------
@@ -88,7 +92,7 @@ class LimitTracer:
         return self._known[place.tobytes()]
 
     def _beyond(self, place: np.ndarray) -> float:
-        """The function whose roots are limits: positive where motion is unstable."""
+        """Compute the function whose roots are limits at a place (2,): positive where motion is unstable."""
         found = self._multipliers(place)
         largest = float(found.size[0, 0])
         if found.sign is None:
@@ -98,7 +102,7 @@ class LimitTracer:
         return -float(_nearest(found)[0] ** 2 / 4)
 
     def _point(self, place: np.ndarray, normal: np.ndarray) -> LimitPoint:
-        """A root with its error: how far away on either side the verdicts are certain."""
+        """Make the point of a root; its error is the distance at which verdicts on both sides are certain."""
         error = next((e for e in _ERRORS if self._verdicts(place, e * normal) == (STABLE, UNSTABLE)), np.inf)
         found = self._multipliers(place)
         leaves = found.value[0, 0] if found.sign is None else _nearest(found)[1]
@@ -111,7 +115,7 @@ class LimitTracer:
     # The curve --------------------------------------------------------------------------------------
 
     def _edges(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield edges of the chart whose ends are stable and unstable: shares (2,) of both."""
+        """Yield the edges of the chart from a stable to an unstable end, each end as shares (2,)."""
         values = [(i.values - i.values[0]) / max(float(np.ptp(i.values)), 1e-300) for i in self.inputs]
         grid = np.stack(np.meshgrid(*values, indexing="ij"), axis=-1)
         for axis in (0, 1):
@@ -122,7 +126,7 @@ class LimitTracer:
                 yield from zip(at[low][crossed], at[high][crossed], strict=True)
 
     def _between(self, low: np.ndarray, high: np.ndarray) -> LimitPoint:
-        """The limit on an edge."""
+        """Find the limit on an edge of the chart, given by its ends."""
         x = toms748(lambda x: self._beyond(low + x * (high - low)), 0.0, 1.0, xtol=_FINE)
         return self._point(low + x * (high - low), (high - low) / np.linalg.norm(high - low))
 
@@ -154,7 +158,9 @@ class LimitTracer:
     def _corrected(
         self, place: np.ndarray, normal: np.ndarray, width: float
     ) -> tuple[LimitPoint | None, float]:
-        """The limit on the normal of a place, None if there is none, and the half width that found it.
+        """Find the limit on the normal of a place, and the half width that brackets it.
+
+        None if there is none.
 
         A narrow tongue has another limit close by, so that the width must be less than its own.
         """
@@ -171,7 +177,7 @@ class LimitTracer:
 
 
 def _nearest(found: Multipliers) -> tuple[float, complex]:
-    """The least distance of two multipliers that may leave the circle without damping, and their middle."""
+    """Return the least distance of two undamped multipliers that may leave the circle, and their middle."""
     value, sign = found.value[0], np.zeros(0) if found.sign is None else found.sign[0]
     apart = np.abs(value[:, None] - value)
     barred = (sign[:, None] * sign > 0) | np.eye(len(value), dtype=bool)
@@ -180,27 +186,27 @@ def _nearest(found: Multipliers) -> tuple[float, complex]:
 
 
 def _room(place: np.ndarray, along: np.ndarray) -> float:
-    """How far one may go from a place (2,) within the square of shares."""
+    """Compute the distance from a place (2,) to the border of the square of shares, in a direction."""
     with np.errstate(divide="ignore", invalid="ignore"):
         ends = np.where(along > 0, (1 - place) / along, np.where(along < 0, -place / along, np.inf))
     return max(float(ends.min()), 0.0)
 
 
 def _within_border(place: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """The direction along the border that a place (2,) lies on, to the side of a normal."""
+    """Return the direction along the border on which a place (2,) lies, on the side of a normal."""
     on = np.minimum(place, 1 - place)
     along = np.where(np.arange(2) == on.argmin(), 0.0, np.sign(normal))
     return along if along.any() else normal
 
 
 def _crosses(curve: list[LimitPoint], low: np.ndarray, high: np.ndarray) -> bool:
-    """Whether a curve, with its unstable side, crosses an edge."""
+    """Whether a curve crosses an edge of the chart, with unstable motion on the same side."""
     axis = int(np.abs(high - low).argmax())
     way, slack = np.sign(high - low)[axis], _SLACK * abs(high - low)[axis]
     ends = sorted((low[axis], high[axis]))
     for (p, *_), (q, *_) in pairwise(curve):
         across = q[1 - axis] - p[1 - axis]
-        # Unstable motion is to the left of the curve, which is followed with it on that side.
+        # The curve was followed with unstable motion on its left.
         toward = -across if axis == 0 else across
         share = (low[1 - axis] - p[1 - axis]) / across if across else np.inf
         at = p[axis] + share * (q[axis] - p[axis])

@@ -1,4 +1,4 @@
-"""The monodromy matrix, which maps the state of a free motion over one period, from beginning to end.
+"""The monodromy matrix: the map of the state of a free motion over one period.
 
 The steps are those of the transients, Gauss collocation of order 16, which keeps the symplectic form of
 undamped motion.  Displacements are multiplied by the frequencies at rest, so that in free vibration at rest
@@ -19,14 +19,14 @@ from beamdyn.studies.floquet.period import Period
 from beamdyn.transient.gauss import step_maps, tableau
 from beamdyn.transient.system import ModalSystem
 
-COARSER = "two thirds of the steps in time"  # with which errors are estimated
+COARSER = "two thirds of the steps in time"  # words for the second solution, by which errors are estimated
 _STAGES = 8
-_ANGLE = 2.0  # of the fastest mode in a step [rad]: its error is then some 1e-14
-_FEWEST = 12  # steps of a period of the motion, for its own harmonics
-_COARSER = 2 / 3  # steps of the second solution, over those of the first
-_EXCESS = 100.0  # error of the second solution over that of the first, which is (3/2)^16 = 650 in the limit
-_SAMPLES = 64  # times of a period at which the largest stiffness is sought
-_ROUNDING = 4 * np.finfo(float).eps  # of a step, over the matrix
+_ANGLE = 2.0  # angle of the fastest mode in a step [rad], with which the error is about 1e-14
+_FEWEST = 12  # least number of steps in a period of the motion, for the motion's own harmonics
+COARSER_STEPS = 2 / 3  # ratio of the number of steps of the second solution to that of the first
+_EXCESS = 100.0  # assumed ratio of the errors of the two solutions, which is (3/2)^16 = 650 in the limit
+_SAMPLES = 64  # number of times in a period at which the stiffness is evaluated to find the largest
+_ROUNDING = 4 * np.finfo(float).eps  # rounding error of a step, relative to the size of its matrix
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
     scene : Scene
         The scene, with a periodic motion.
     period : Period
-        Its period.
+        Period of the motion.
     equations : Equations
         Its equations in modal coordinates of unit mass.
 
@@ -75,36 +75,47 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
     assert scene.motion is not None
     system = ModalSystem(equations, scene.motion)
     C, K, _ = system.coefficients(period.time * np.arange(_SAMPLES) / _SAMPLES)
-    steps = _count_steps(K, period.time, scene.motion.rates)
-    frequency = np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"])))
-    frequency = np.where(frequency > 0, frequency, 2 * math.pi / period.time)
-    scale = np.concatenate([frequency, np.ones(system.size)])
-    counts = steps, math.ceil(_COARSER * steps)
-    fine, coarse = (scale[:, None] * _propagate(system, period.time, each) / scale for each in counts)
-    if equations.voltage is not None:  # the flux of a circuit, the last coordinate, acts by its rate alone
-        states = np.arange(2 * system.size) != system.size - 1
-        fine, coarse = (each[np.ix_(states, states)] for each in (fine, coarse))
+    steps = count_steps(K, period.time, scene.motion.rates)
+    counts = steps, math.ceil(COARSER_STEPS * steps)
+    both = np.array([_propagate(system, period.time, each) for each in counts])
+    fine, coarse = scaled_states(equations, period.time, both)
     error = np.linalg.norm(fine - coarse, 2) / _EXCESS + _ROUNDING * steps * np.linalg.norm(fine, 2)
+    scale = _scale(equations, period.time)
     form = None if scene.is_damped else _form(None if C is None else C[0], scale)[None]
     return Monodromy(fine[None], np.array([error]), np.array([period.time]), form, period.turns)
 
 
-def _count_steps(K: np.ndarray, period: float, rates: tuple[float, ...]) -> int:
-    """Steps that resolve the fastest mode and the motion, by stiffnesses K over a period [s]."""
+def _scale(equations: Equations, period: float) -> np.ndarray:
+    """Return factors (2 n,) of the state: for displacements the frequencies at rest, or the period's."""
+    frequency = np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"])))
+    frequency = np.where(frequency > 0, frequency, 2 * math.pi / period)
+    return np.concatenate([frequency, np.ones(equations.size)])
+
+
+def scaled_states(equations: Equations, period: float, maps: np.ndarray) -> np.ndarray:
+    """Scale maps (P, 2 n, 2 n), and drop the flux of a circuit, which acts by its rate alone."""
+    scale = _scale(equations, period)
+    maps, n = scale[:, None] * maps / scale, equations.size
+    states = np.arange(2 * n) != (n - 1 if equations.voltage is not None else -1)
+    return maps[:, states][:, :, states]
+
+
+def count_steps(K: np.ndarray, period: float, rates: tuple[float, ...]) -> int:
+    """Return the number of steps, over a period [s], that resolve the fastest mode and the motion."""
     fastest = np.sqrt(np.abs(K).sum(axis=-1).max())
     turns = max(1.0, period * max(map(abs, rates)) / (2 * math.pi))
     return math.ceil(max(_FEWEST * turns, period * fastest / _ANGLE))
 
 
 def _propagate(system: ModalSystem, period: float, steps: int) -> np.ndarray:
-    """Map (2 n, 2 n) of the state (q, q') over a period, in equal steps."""
+    """Integrate the map (2 n, 2 n) of the state (q, q') over a period, in equal steps."""
     h = period / steps
     maps = step_maps(system, h * np.arange(steps), h, tableau(_STAGES)).step[:, :, 1:]
     return reduce(lambda before, step: step @ before, maps)
 
 
 def _form(C: np.ndarray | None, scale: np.ndarray) -> np.ndarray:
-    """The form of undamped motion, with the gyroscopic matrix at its beginning, in scaled states.
+    """Compute the antisymmetric form that undamped motion preserves, in scaled states.
 
     q1^T q2' - q1'^T q2 + q1^T C q2 of two motions is constant, as C = -C^T and K - C'/2 is symmetric.
     """

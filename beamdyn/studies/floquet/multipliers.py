@@ -1,4 +1,4 @@
-"""Floquet multipliers, eigenvalues of monodromy matrices, and what they say of stability.
+"""Floquet multipliers, the eigenvalues of monodromy matrices, and the stability that follows from them.
 
 To first order, an error d of a matrix moves a multiplier by at most k d.  Here k is its condition number:
 the norms of its left and right eigenvector, multiplied, over their inner product.  Where two multipliers
@@ -22,14 +22,15 @@ import numpy as np
 from beamdyn.studies.floquet.monodromy import Monodromy
 
 STABLE, UNSTABLE, UNDECIDED = "stable", "unstable", "undecided"
-_EIGENVALUES = 8 * np.finfo(float).eps  # backward error of an eigenvalue solver, over the matrix
-_SAFETY = 2.0  # of the bounds to first order
-_DEFINITE = 1e-6  # value of the form of a vector over its largest, beyond which its sign is known
+# Backward error of the eigenvalue solver, relative to the size of the matrix.
+_EIGENVALUES = 8 * np.finfo(float).eps
+_SAFETY = 2.0  # margin of the bounds to first order
+_DEFINITE = 1e-6  # value of the form, over its largest, above which its sign is certain
 
 
 @dataclass(frozen=True)
 class Multipliers:
-    """Multipliers of P monodromy matrices.
+    """Multipliers of P monodromy matrices, with errors and Krein signs.
 
     Parameters
     ----------
@@ -51,12 +52,12 @@ class Multipliers:
 
     @cached_property
     def size(self) -> np.ndarray:
-        """Distances from 0, (P, m)."""
+        """Magnitudes of the multipliers, (P, m)."""
         return np.abs(self.value)
 
     @cached_property
     def verdict(self) -> np.ndarray:
-        """Whether each of the motions is "stable", "unstable" or "undecided": (P,)."""
+        """Verdicts (P,) on the motions: "stable", "unstable" or "undecided"."""
         outside = (self.size - self.error > 1).any(axis=1)
         if self.sign is None:
             stable = (self.size + self.error < 1).all(axis=1)
@@ -65,7 +66,7 @@ class Multipliers:
         return np.select([outside, stable], [UNSTABLE, STABLE], UNDECIDED)
 
     def _may_leave(self, sign: np.ndarray) -> np.ndarray:
-        """Whether multipliers of undamped motion may lie beside the circle: those that meet others, (P,)."""
+        """Whether multipliers of undamped motion may lie off the unit circle, as they meet others, (P,)."""
         reach = self.error[:, :, None] + self.error[:, None, :]
         meet = np.abs(self.value[:, :, None] - self.value[:, None, :]) <= reach
         of_one_sign = sign[:, :, None] * sign[:, None, :] > 0
@@ -75,7 +76,7 @@ class Multipliers:
 
     @cached_property
     def growth(self) -> tuple[np.ndarray, np.ndarray]:
-        """Largest growth rates (P,), and their errors [1/s]; 0 of undamped stable motion."""
+        """Largest growth rates (P,) and their errors [1/s]; 0 for stable motion without damping."""
         with np.errstate(divide="ignore"):
             rate = np.log(self.size).max(axis=1) / self.period
             most = np.log(self.size + self.error).max(axis=1) / self.period
@@ -104,7 +105,7 @@ def multipliers_of(motion: Monodromy) -> Multipliers:
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:
-    """Inverses of matrices (P, m, m); inf where one is singular."""
+    """Compute inverses of matrices (P, m, m); inf where a matrix is singular."""
     try:
         return np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
@@ -114,7 +115,10 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 
 
 def _krein_sign(value: np.ndarray, error: np.ndarray, right: np.ndarray, form: np.ndarray) -> np.ndarray:
-    """Signs (P, m) of i x^* J x on vectors of multipliers on the unit circle, where they are known."""
+    """Compute Krein signs (P, m) of multipliers on the unit circle; 0 where the sign is not certain.
+
+    The sign is that of i x^* J x, with the eigenvector x and the form J that the motion preserves.
+    """
     inside = np.real(1j * np.einsum("pim,pij,pjm->pm", right.conj(), form, right))
     largest = np.einsum("pim,pij,pjm->pm", np.abs(right), np.abs(form), np.abs(right))
     known = (np.abs(inside) > _DEFINITE * largest) & (np.abs(np.abs(value) - 1) <= error)

@@ -12,9 +12,9 @@ from beamdyn.scene.motion import Rotation
 from beamdyn.scene.names_elsewhere import REPEATING
 from beamdyn.scene.scene import Scene
 
-MOST_TURNS = 64  # periods of the first phase in which all must meet again
-_MOST_OTHERS = MOST_TURNS**2  # periods of any other phase in these
-_COMMENSURATE = 1e-12  # distance of a ratio of rates from a fraction, over it, that rounding makes
+MOST_TURNS = 64  # largest number of periods of the first phase after which all phases must meet again
+_MOST_OTHERS = MOST_TURNS**2  # largest number of periods of any other phase in that time
+_COMMENSURATE = 1e-12  # relative distance of a ratio of rates from a fraction, that counts as rounding
 
 
 class Period(NamedTuple):
@@ -32,16 +32,15 @@ class Period(NamedTuple):
     turns: int
 
 
-def period_of(scene: Scene) -> Period:
-    """Smallest time after which the coefficients of the equations of motion repeat themselves.
+def rates_of(scene: Scene) -> tuple[float, ...]:
+    """Return the rates of the phases on which the coefficients of the equations of motion depend [rad/s].
 
     The angle of rotation counts where gravity, or an acceleration of the carrier, has a fixed direction.
 
     Raises
     ------
     InvalidValue
-        If there is no motion, it does not repeat itself, or its phases do not meet again within 64 periods of
-        the first, or 4096 of another.
+        If there is no motion, or it does not repeat itself.
     """
     motion = scene.motion
     if motion is None:
@@ -54,21 +53,45 @@ def period_of(scene: Scene) -> Period:
     if not rates:
         bound = "it stands still, and nothing pulsates"
         raise InvalidValue("scene.motion", motion, bound, "use natural_modes, or let it turn or pulsate")
+    return rates
+
+
+def meet_again(scene: Scene) -> bool:
+    """Whether all phases of the motion repeat together within the time that `period_of` allows."""
+    rates = rates_of(scene)
+    return all(_is_fraction(rate / rates[0]) for rate in rates)
+
+
+def period_of(scene: Scene) -> Period:
+    """Find the smallest time after which the coefficients of the equations of motion repeat themselves.
+
+    Raises
+    ------
+    InvalidValue
+        As `rates_of`, or if its phases do not meet again within 64 periods of the first, or 4096 of another.
+    """
+    rates = rates_of(scene)
     turns = math.lcm(*(_fraction(rate, rates[0]).denominator for rate in rates))
     return Period(2 * math.pi / rates[0] * turns, turns)
 
 
+def _is_fraction(ratio: float) -> bool:
+    """Whether a ratio is that of two small whole numbers, within rounding."""
+    found = Fraction(ratio).limit_denominator(MOST_TURNS)
+    return abs(found - Fraction(ratio)) <= _COMMENSURATE * ratio and found.numerator <= _MOST_OTHERS
+
+
 def _fraction(rate: float, first: float) -> Fraction:
-    """Ratio of two rates as a fraction; refused if it is none of small numbers."""
+    """Return the ratio of two rates as a fraction; refuse a ratio that is not one of small whole numbers."""
     ratio = rate / first
     found = Fraction(ratio).limit_denominator(MOST_TURNS)
     nearest = min(max(found, Fraction(1, MOST_TURNS)), Fraction(_MOST_OTHERS))
-    if abs(found - Fraction(ratio)) > _COMMENSURATE * ratio or found.numerator > _MOST_OTHERS:
+    if not _is_fraction(ratio):
         within = f"{MOST_TURNS} periods of the first and {_MOST_OTHERS} of the other"
         bound = f"its rates {first:.9g} and {rate:.9g} rad/s do not meet again within {within}"
         remedy = (
-            f"take the ratio {nearest.numerator}/{nearest.denominator}; at steady speed, steady_response "
-            "says where motion with two such rates is stable"
+            f"take the ratio {nearest.numerator}/{nearest.denominator}; floquet_multipliers says of one "
+            "scene with two such rates whether it is stable"
         )
         raise InvalidValue("scene.motion", ratio, bound, remedy)
     return found

@@ -1,4 +1,4 @@
-"""Scenes in periodic motion, and their equations in modes at rest, of which many scenes share one set."""
+"""Scenes in periodic motion, and their equations in modes at rest, which many scenes share."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.numbers import SPEED, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.studies.floquet.monodromy import Monodromy, monodromy
-from beamdyn.studies.floquet.period import period_of
+from beamdyn.studies.floquet.period import MOST_TURNS, meet_again, period_of, rates_of
 
 _STRAIGHT = "stability in periodic motion is that of the straight beam"
 
@@ -45,26 +45,31 @@ class PeriodicScenes(FieldsOnly):
     _models: dict[Any, tuple[Model, Equations]] = field(default_factory=dict, repr=False, compare=False)
 
     def at(self, values: Mapping[str, float]) -> Scene:
-        """The scene with other numbers, and in motion at another speed if that is one of them."""
+        """Return the scene with other numbers; the motion too, if the speed is one of them."""
         scene = with_numbers(self.scene, values)
         if SPEED not in values or scene.motion is None:
             return scene
         return replace(scene, motion=scene.motion.with_speed(values[SPEED]))
 
     def monodromy(self, values: Mapping[str, float]) -> Monodromy:
-        """The monodromy matrix of the scene with other numbers."""
+        """Integrate the monodromy matrix of the scene with other numbers."""
         scene = self.at(values)
-        period = period_of(scene)
-        _, equations = self.modal(scene)
-        return monodromy(scene, period, replace(equations, mount=scene.mount, gravity=scene.gravity))
+        return monodromy(scene, period_of(scene), self.equations(scene))
+
+    def equations(self, scene: Scene) -> Equations:
+        """Return the equations of a scene in modes at rest."""
+        return replace(self.modal(scene)[1], mount=scene.mount, gravity=scene.gravity)
 
     @property
     def size(self) -> int:
-        """Number 2 n of entries of a state."""
+        """Number 2 n of entries of a state: modal displacements and velocities."""
         return 2 * self.modal(self.scene)[1].size
 
     def modal(self, scene: Scene) -> tuple[Model, Equations]:
-        """Model and equations in modes at rest of a scene, or of one that differs in how its root moves."""
+        """Return model and equations in modes at rest.
+
+        Scenes that differ only in the motion of the root share them.
+        """
         still = replace(scene.mount, radius=0.0, setting_angle=0.0)
         key = scene.beam, still, scene.physics, scene.damping_ratio, scene.damping
         if key not in self._models:
@@ -74,10 +79,10 @@ class PeriodicScenes(FieldsOnly):
 
 
 def speeds_of(scene: Scene) -> np.ndarray:
-    """The slowest and the fastest speed of a periodic motion [rad/s]."""
-    period = period_of(scene)
+    """Return the slowest and the fastest speed of a scene's periodic motion [rad/s]."""
+    period = period_of(scene).time if meet_again(scene) else 2 * np.pi / rates_of(scene)[0] * MOST_TURNS
     assert scene.motion is not None
-    return np.array(find_speed_range(scene.motion, period.time))
+    return np.array(find_speed_range(scene.motion, period))
 
 
 def check_periodic(
@@ -106,7 +111,7 @@ def check_periodic(
 
 
 def _needs(scene: Scene) -> tuple[int, float]:
-    """Key that orders chosen physics: the number of effects included, then what is still left out."""
+    """Return a key that orders choices of physics: by the number of effects, then by the model error."""
     choice = scene.physics_choice
     return (0, 0.0) if choice is None else (len(choice.included), choice.model_error)
 

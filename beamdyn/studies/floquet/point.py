@@ -7,27 +7,31 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.plots.stability_charts import plot_multipliers
-from beamdyn.common.results.one_line import error_at_most, number, warned
+from beamdyn.common.plots.stability_charts import plot_exponent, plot_multipliers
+from beamdyn.common.results.one_line import counted, error_at_most, number, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.modal_basis import ModalBasis
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
+from beamdyn.studies.floquet.exponents import largest_exponent
 from beamdyn.studies.floquet.monodromy import COARSER
 from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, multipliers_of
-from beamdyn.studies.floquet.periodic_scenes import check_periodic
+from beamdyn.studies.floquet.period import meet_again
+from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes, check_periodic
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+MULTIPLIERS, EXPONENT = "multipliers", "exponent"
+_ON_CIRCLE = "stability is not decided: multipliers meet, or lie on the unit circle, within their errors"
+_BOUNDED = "stability is not decided: the largest exponent is 0 within its error"
 
 
 @dataclass(frozen=True)
@@ -54,11 +58,14 @@ class FloquetMultipliers(JudgedByRepeating):
         Without damping 1 or -1 for multipliers on the unit circle, which leave it only where they meet one of
         the other sign; 0 of others.
     period : float
-        Period of the equations of motion [s].
+        Period of the equations of motion [s]; with `method` "exponent" that of the faster phase.
     warnings : tuple of str
         Limitations of the result.
     provenance : Provenance
         How it was computed.
+    method : {"multipliers", "exponent"}
+        Of a periodic motion its multipliers, of one with two rates that do not meet again the largest
+        Lyapunov exponent, between two bounds: then there are no multipliers.
 
     Examples
     --------
@@ -80,19 +87,25 @@ class FloquetMultipliers(JudgedByRepeating):
     provenance: Provenance
     modes: int = field(repr=False)
     scene: Scene = field(repr=False)
+    method: str = field(default=MULTIPLIERS, metadata=ADDED_LATER)
 
     judged_value = "the largest multiplier"
     follows_stiffness: ClassVar[bool] = False
 
     def headline(self) -> Iterator[str]:
-        """Verdict, growth rate and its error in one line; see `Result.headline`."""
-        yield f"{self.status}, growth rate {number(self.growth_rate, '1/s')}"
+        """Yield verdict, growth rate and its error, the parts of the result's one-line summary.
+
+        See `Result.headline`.
+        """
+        by = " by its largest exponent" if self.method == EXPONENT else ""
+        yield f"{self.status}{by}, growth rate {number(self.growth_rate, '1/s')}"
         yield from (error_at_most(self.growth_rate_error, "1/s"), warned(self.warnings))
 
     @property
     def spectral_radius(self) -> float:
-        """Size of the largest multiplier: the growth of free motion over a period."""
-        return float(np.abs(self.multipliers[0]))
+        """Growth of free motion over a period: magnitude of the largest multiplier, or from the exponent."""
+        known = self.method == MULTIPLIERS
+        return float(np.abs(self.multipliers[0])) if known else math.exp(self.growth_rate * self.period)
 
     @cached_property
     def mode_error(self) -> float:
@@ -106,17 +119,19 @@ class FloquetMultipliers(JudgedByRepeating):
         return 2 * abs(self.again(self.scene, modes=finer.modes).growth_rate - self.growth_rate)
 
     def judged(self, found: FloquetMultipliers) -> np.ndarray:
-        """Size of the largest multiplier, of which the model error is stated: shape ()."""
+        """Return the magnitude of the largest multiplier, whose model error is stated: shape ()."""
         return np.array(found.spectral_radius)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the multipliers and the unit circle in the complex plane."""
+        """Draw the multipliers and the unit circle in the complex plane, or the exponent with its error."""
+        if self.method == EXPONENT:
+            return plot_exponent(self.growth_rate, self.growth_rate_error, ax)
         return plot_multipliers(self.multipliers, self.multiplier_errors, self.krein_sign, ax)
 
 
 @announced_of_plain_beam
 @repeatable
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
+@one_blas_thread()  # more threads would only wait for each other on small matrices
 def floquet_multipliers(
     scene: Scene, modes: int = 3, discretization: DiscretizationChoice = "ritz"
 ) -> FloquetMultipliers:
@@ -129,7 +144,8 @@ def floquet_multipliers(
     ----------
     scene : Scene
         The scene, in a motion that repeats itself, such as `PulsatingRotation` or `ShakenCarrier`, or in
-        steady rotation with gravity.  The phases of motion, road and gravity must meet again.
+        steady rotation with gravity.  Where two phases of motion, road and gravity do not meet again, the
+        largest Lyapunov exponent decides: `method` says which was used.
     modes : int
         Number of modes at rest of each field.
     discretization : {"ritz", "fem"} or Discretization
@@ -142,12 +158,14 @@ def floquet_multipliers(
     Raises
     ------
     ValueError
-        If there is no motion, it does not repeat itself, or an argument is out of its range.
+        If there is no motion, its rates are more than two that do not meet again, or an argument is out of
+        its range.
 
     References
     ----------
     Theory of Floquet, and of Krein for undamped motion (standard): Nayfeh and Mook (1979), Nonlinear
-    Oscillations, chapter 5; integrated as Hairer, Lubich and Wanner (2006), section II.1.3.
+    Oscillations, chapter 5; integrated as Hairer, Lubich and Wanner (2006), section II.1.3; bounds of the
+    exponent by Goldstein and Schlag (2001), Annals of Mathematics 154, 155-203.
 
     Examples
     --------
@@ -158,10 +176,12 @@ def floquet_multipliers(
     """
     start = perf_counter()
     scenes = check_periodic(scene, modes, discretization)
+    if not meet_again(scenes.scene):
+        return _by_exponent(scenes, start)
     scene, multipliers = scenes.scene, multipliers_of(scenes.monodromy({}))
     status, (rate, error) = str(multipliers.verdict[0]), map(float, np.ravel(multipliers.growth))
     model, _ = scenes.modal(scene)
-    method = f"{model.discretization}, {scenes.modes} modes, Gauss collocation of order 16"
+    method = f"{model.discretization}, {counted(scenes.modes, 'mode')}, Gauss collocation of order 16"
     sign = np.zeros(multipliers.value.shape[1]) if multipliers.sign is None else multipliers.sign[0]
     return FloquetMultipliers(
         status=status,
@@ -172,18 +192,42 @@ def floquet_multipliers(
         krein_sign=sign,
         period=float(multipliers.period[0]),
         warnings=tuple(_warnings(scene, status, rate, error)),
-        provenance=Provenance(__version__, method, COARSER, perf_counter() - start),
+        provenance=Provenance.since(start, method, COARSER),
         modes=scenes.modes,
         scene=scene,
     )
 
 
-def _warnings(scene: Scene, status: str, rate: float, error: float) -> Iterator[Statement]:
-    """Yield what limits the answer."""
+def _by_exponent(scenes: PeriodicScenes, start: float) -> FloquetMultipliers:
+    """Answer by the largest exponent, for a motion whose two rates have no common period."""
+    scene, (model, _) = scenes.scene, scenes.modal(scenes.scene)
+    found = largest_exponent(scene, scenes.equations(scene))
+    method = (
+        f"{model.discretization}, {counted(scenes.modes, 'mode')}, largest Lyapunov exponent over two phases"
+    )
+    return FloquetMultipliers(
+        status=found.status,
+        growth_rate=found.rate,
+        growth_rate_error=found.error,
+        multipliers=np.zeros(0, dtype=complex),
+        multiplier_errors=np.zeros(0),
+        krein_sign=np.zeros(0),
+        period=found.period,
+        warnings=tuple(_warnings(scene, found.status, found.rate, found.error, _BOUNDED)),
+        provenance=Provenance.since(start, method, COARSER),
+        modes=scenes.modes,
+        scene=scene,
+        method=EXPONENT,
+    )
+
+
+def _warnings(
+    scene: Scene, status: str, rate: float, error: float, why: str = _ON_CIRCLE
+) -> Iterator[Statement]:
+    """Yield warnings that limit the answer: physics left out, growth, and why it is undecided."""
     yield from warn_of_left_out(scene)
     said = {"quantity": "growth rate", "value": rate}
     if status == UNSTABLE:
         yield Statement(f"free motion grows by {rate:.4g} 1/s", kind=GROWING, **said)
     elif status != STABLE:
-        why = "stability is not decided: multipliers meet, or lie on the unit circle, within their errors"
         yield Statement(why, kind=TOLERANCE, limit=error, **said)

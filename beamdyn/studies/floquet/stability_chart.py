@@ -2,49 +2,51 @@
 
 The monodromy matrix is a smooth function of the numbers of the scene, though its eigenvalues are not: it is
 integrated at a few pairs of numbers and interpolated at all others.  What that leaves undecided is integrated
-by itself.
+by itself; so is every scene where the numbers change after how many turns the phases meet, if they do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from os import PathLike
 from time import perf_counter
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from beamdyn._version import __version__
+from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.inputs.checks import InvalidValue, ascending
 from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
 from beamdyn.common.parallel.tasks import Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.stability_charts import plot_stability_chart
 from beamdyn.common.results.one_line import counted, error_at_most, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam
+from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam, joined
+from beamdyn.common.words import InputName, Words
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.numbers import check_path, unit_of
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
+from beamdyn.studies.floquet.exponents import largest_exponent
 from beamdyn.studies.floquet.interpolation import interpolate_on_grid
 from beamdyn.studies.floquet.monodromy import COARSER, Monodromy
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED, UNSTABLE, multipliers_of
-from beamdyn.studies.floquet.period import period_of
+from beamdyn.studies.floquet.period import meet_again, period_of, rates_of
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes, check_periodic
 from beamdyn.studies.study import VERSIONS
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_TASK = 16  # scenes of a task
-_JUDGED = 3  # values of each number at which the model error is computed
-_ROUNDING = 1e-12  # relative, of a product that is constant
-_MOST_ENTRIES = 20_000_000  # of all matrices, so that they fit into memory
+_NAMES = "status", "rate", "error", "radius", "period"
+_TASK = 16  # number of scenes in a task
+_JUDGED = 3  # number of values of each number at which the model error is computed
+_ROUNDING = 1e-12  # relative change of a product that counts as constant
+_MOST_ENTRIES = 20_000_000  # largest number of entries of all matrices together, so that they fit into memory
 
 
 @dataclass(frozen=True)
@@ -101,26 +103,29 @@ class StabilityChart(JudgedByRepeating):
     follows_stiffness: ClassVar[bool] = False
 
     def headline(self) -> Iterator[str]:
-        """How many points are stable, and the error, in one line; see `Result.headline`."""
-        yield f"{self.status.size} points over {' and '.join(each.name for each in self.inputs)}"
+        """Yield the number of points of each verdict and the error, the parts of a one-line summary.
+
+        See `Result.headline`.
+        """
+        names = joined(" and ", (InputName(each.name) for each in self.inputs))
+        yield Words(f"{self.status.size} points over ", names)
         found = ((name, int((self.status == name).sum())) for name in (STABLE, UNSTABLE, UNDECIDED))
         yield from (f"{number} {name}" for name, number in found if number)
         yield from (error_at_most(self.growth_rate_error, "1/s"), warned(self.warnings))
 
     @property
     def _few(self) -> list[np.ndarray]:
-        """Places along each number at which the model error is computed."""
-        sizes = [len(each.values) for each in self.inputs]
-        return [np.unique(np.linspace(0, n - 1, min(n, _JUDGED)).round().astype(int)) for n in sizes]
+        """Indices along each number at which the model error is computed."""
+        return [evenly_spread(len(each.values), _JUDGED) for each in self.inputs]
 
     def judged(self, found: StabilityChart) -> np.ndarray:
-        """Sizes of the largest multiplier, of which the model error is stated: shape (9,) or fewer."""
+        """Return the magnitudes of the largest multiplier where the model error is computed: at most (9,)."""
         own = found.status.shape == self.status.shape
         return (found.spectral_radius[np.ix_(*self._few)] if own else found.spectral_radius).ravel()
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """The values at which the model error is computed."""
+        """Arguments of a chart over only the values at which the model error is computed."""
         pairs = zip(self.inputs, self._few, strict=True)
         return {"vary": {each.name: each.values[few] for each, few in pairs}}
 
@@ -132,7 +137,7 @@ class StabilityChart(JudgedByRepeating):
 
 @announced_of_plain_beam
 @repeatable
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
+@one_blas_thread()  # more threads would only wait for each other on small matrices
 def stability_chart(
     scene: Scene,
     vary: Mapping[str, Sequence[float] | np.ndarray],
@@ -166,8 +171,7 @@ def stability_chart(
     Raises
     ------
     ValueError
-        If there are not two numbers, an argument is out of its range, or the motion does not repeat itself
-        after the same number of turns everywhere.
+        If there are not two numbers, an argument is out of its range, or the motion does not repeat itself.
 
     References
     ----------
@@ -190,7 +194,8 @@ def stability_chart(
     grid = _Grid(scenes, inputs, run)
     found, integrated = grid.solved()
     model, _ = scenes.modal(scenes.at(grid.numbers(0)))
-    method = f"{model.discretization}, {scenes.modes} modes, Gauss collocation of order 16, interpolated"
+    basis = f"{model.discretization}, {counted(scenes.modes, 'mode')}"
+    method = f"{basis}, Gauss collocation of order 16, interpolated"
     return StabilityChart(
         inputs=grid.inputs,
         status=found["status"],
@@ -200,13 +205,13 @@ def stability_chart(
         period=found["period"],
         integrated=integrated,
         warnings=(*_warnings(scenes.scene, found["status"]), *run.warnings),
-        provenance=Provenance(__version__, method, COARSER, perf_counter() - start),
+        provenance=Provenance.since(start, method, COARSER),
         scene=scenes.scene,
     )
 
 
 def _check_inputs(vary: Mapping[str, Sequence[float] | np.ndarray]) -> tuple[VariedInput, ...]:
-    """Check the two numbers and their values."""
+    """Check the two numbers of a chart and their values."""
     if not isinstance(vary, Mapping) or len(vary) != 2:
         bound, remedy = "a chart is over two numbers", 'such as {"motion.frequency": [...], "speed": [...]}'
         raise InvalidValue("vary", vary, bound, remedy)
@@ -217,20 +222,35 @@ def _check_inputs(vary: Mapping[str, Sequence[float] | np.ndarray]) -> tuple[Var
 
 @dataclass(frozen=True)
 class Points(FieldsOnly):
-    """Some of the scenes, by their numbers, whose free motion is to be integrated: a task."""
+    """A task: some of the scenes, by their numbers, whose free motion is to be integrated."""
 
     scenes: PeriodicScenes
     numbers: tuple[dict[str, float], ...]
 
 
 def integrate(points: Points) -> list[Monodromy]:
-    """Integrate the free motions of a task."""
+    """Integrate the free motion of each scene of a task."""
     return [points.scenes.monodromy(each) for each in points.numbers]
+
+
+def judge(points: Points) -> list[dict[str, np.ndarray]]:
+    """Return the verdicts of a task: by multipliers, or by the largest exponent without a period."""
+    return [_verdict(points.scenes, numbers) for numbers in points.numbers]
+
+
+def _verdict(scenes: PeriodicScenes, numbers: dict[str, float]) -> dict[str, np.ndarray]:
+    """Return verdict, growth, error, multiplier and period of one scene, as arrays (1,) by name."""
+    if meet_again(scene := scenes.at(numbers)):
+        return _verdicts(scenes.monodromy(numbers))
+    found = largest_exponent(scene, scenes.equations(scene))
+    radius = math.exp(found.rate * found.period)
+    values = found.status, found.rate, found.error, radius, found.period
+    return {name: np.array([value]) for name, value in zip(_NAMES, values, strict=True)}
 
 
 @dataclass(frozen=True)
 class _Grid:
-    """Scenes over two numbers, and their stability.
+    """Scenes over two numbers, and the computation of their stability.
 
     Parameters
     ----------
@@ -252,15 +272,20 @@ class _Grid:
         return Designs(self.inputs).shape
 
     def numbers(self, place: int) -> dict[str, float]:
-        """The numbers at a place of the flattened chart."""
+        """Return the numbers of the scene at an index of the flattened chart."""
         return Designs(self.inputs).at(*map(int, np.unravel_index(place, self.shape)))
 
     def solved(self) -> tuple[dict[str, np.ndarray], int]:
-        """Arrays (A, B) by name, and how many scenes were integrated for them."""
+        """Compute arrays (A, B) by name, and the number of scenes that were integrated for them."""
+        if not self._keeps_ratio():
+            places = range(math.prod(self.shape))
+            each = self._run(judge, [self.numbers(place) for place in places])
+            found = {name: np.concatenate([one[name] for one in each]) for name in _NAMES}
+            return {name: values.reshape(self.shape) for name, values in found.items()}, len(places)
         motion, integrated = self._interpolated()
         found = _verdicts(motion)
         undecided = np.flatnonzero(found["status"] == UNDECIDED)
-        if integrated == len(motion.period):  # nothing was interpolated
+        if integrated == len(motion.period):  # all were integrated, none interpolated
             undecided = undecided[:0]
         alone = self._integrated([self.numbers(place) for place in undecided.tolist()])
         for place, each in zip(undecided.tolist(), alone, strict=True):
@@ -268,18 +293,32 @@ class _Grid:
                 found[name][place] = value[0]
         return {name: each.reshape(self.shape) for name, each in found.items()}, integrated + len(undecided)
 
+    def _keeps_ratio(self) -> bool:
+        """Whether the phases meet after the same turns all over the chart, by its corners and middles."""
+        rows, columns = (sorted({0, n // 2, n - 1}) for n in self.shape)
+        scenes = [self.scenes.at(Designs(self.inputs).at(i, j)) for i in rows for j in columns]
+        rates = [np.array(rates_of(each)) for each in scenes]
+        if len({len(each) for each in rates}) > 1:  # the motion stands still at one of these points
+            return False
+        ratios = np.array([each / each[0] for each in rates])
+        return bool((np.ptp(ratios, axis=0) <= _ROUNDING * ratios[0]).all()) and meet_again(scenes[0])
+
     def _integrated(self, numbers: Sequence[dict[str, float]]) -> list[Monodromy]:
-        """The monodromy matrices of some scenes."""
-        found: dict[int, list[Monodromy]] = {}
+        """Integrate the monodromy matrices of some scenes."""
+        return self._run(integrate, numbers)
+
+    def _run(self, do: Callable[[Points], list[Any]], numbers: Sequence[dict[str, float]]) -> list[Any]:
+        """Apply a function to scenes in parallel tasks, and return its results in the order of the scenes."""
+        found: dict[int, list[Any]] = {}
         tasks = [
             Task(partial(Points, self.scenes, tuple(numbers[k : k + _TASK])), min(_TASK, len(numbers) - k), k)
             for k in range(0, len(numbers), _TASK)
         ]
-        self.run.run(integrate, tasks, found.__setitem__)
+        self.run.run(do, tasks, found.__setitem__)
         return [each for k in sorted(found) for each in found[k]]
 
     def _sets_the_period(self, place: int) -> bool:
-        """Whether the period is inverse to a number, whose reciprocal is then the smoother variable."""
+        """Whether the period is inverse to a number, so that its reciprocal is the smoother variable."""
         first, values = self.numbers(0), self.inputs[place].values
         ends = [{**first, self.inputs[place].name: float(values[k])} for k in (0, -1)]
         periods = np.array([period_of(self.scenes.at(end)).time for end in ends])
@@ -287,8 +326,8 @@ class _Grid:
         return bool(np.ptp(periods) > 0 and np.ptp(products) <= _ROUNDING * np.abs(products).max())
 
     def _interpolated(self) -> tuple[Monodromy, int]:
-        """Monodromy matrices (A B, m, m), and how many of them were integrated."""
-        errors, turns, damped = [0.0], set(), set()
+        """Interpolate monodromy matrices (A B, m, m), and count those that were integrated."""
+        errors, turns, damped = [0.0], [1], set()
         names = [each.name for each in self.inputs]
 
         inverse = [self._sets_the_period(place) for place in range(2)]
@@ -299,7 +338,7 @@ class _Grid:
 
         def entries(motion: Monodromy) -> np.ndarray:
             errors.append(float(motion.error[0]))
-            turns.add(motion.turns)
+            turns.append(motion.turns)
             damped.add(motion.form is None)
             form = np.zeros_like(motion.matrix) if motion.form is None else motion.form
             return np.concatenate([motion.matrix.ravel(), form.ravel(), motion.period])
@@ -312,28 +351,25 @@ class _Grid:
             return [*map(entries, self._integrated([*map(numbers_of, pairs)]))]
 
         on_grid = interpolate_on_grid(sampled, (first, second), lambda: max(errors), slice(size**2))
-        if len(turns) > 1:
-            bound = "its phases meet again after other numbers of turns at other places of the chart"
-            raise InvalidValue("vary", names, bound, "vary what leaves the ratio of its rates")
         flat = on_grid.value.reshape(-1, 2 * size**2 + 1)
         matrix, form = flat[:, :-1].reshape(-1, 2, size, size).swapaxes(0, 1)
-        error = np.full(len(flat), max(errors) + size * on_grid.error)  # the norm of an error of all entries
+        # Bound of the norm of a matrix whose entries all have the interpolation error.
+        error = np.full(len(flat), max(errors) + size * on_grid.error)
         return Monodromy(
             matrix, error, flat[:, -1], None if True in damped else form, max(turns)
         ), on_grid.samples
 
 
 def _verdicts(motion: Monodromy) -> dict[str, np.ndarray]:
-    """Arrays (P,) by name, of P monodromy matrices."""
+    """Return verdicts, growth, errors, multipliers and periods of P monodromy matrices, (P,) by name."""
     found = multipliers_of(motion)
     rate, error = found.growth
-    names = ("status", "rate", "error", "radius", "period")
     values = found.verdict, rate, error, found.size[:, 0], motion.period
-    return dict(zip(names, map(np.array, values), strict=True))
+    return dict(zip(_NAMES, map(np.array, values), strict=True))
 
 
 def _warnings(scene: Scene, status: np.ndarray) -> Iterator[Statement]:
-    """Yield what limits the chart."""
+    """Yield warnings that limit the chart: physics left out, and undecided points."""
     yield from warn_of_left_out(scene)
     if number := int((status == UNDECIDED).sum()):
         said = f"at {counted(number, 'point')} of {status.size} the errors allow either: see status"

@@ -1,4 +1,4 @@
-"""Limits of stability over two numbers of a scene in periodic motion, as curves."""
+"""Curves that bound the stable regions over two numbers of a scene in periodic motion."""
 
 from __future__ import annotations
 
@@ -6,14 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.one_line import counted, warned
-from beamdyn.common.results.pictures import COLOURS, add_legend
+from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
@@ -22,10 +20,7 @@ from beamdyn.studies.floquet.limit_curves import LimitTracer
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_REAL = 1e-3  # imaginary part of a multiplier that is none: two meet at 1 or -1
+_REAL = 1e-3  # imaginary part of a multiplier that counts as 0: two multipliers meet at 1 or -1
 
 
 @dataclass(frozen=True)
@@ -71,7 +66,10 @@ class StabilityLimits(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """How many curves there are, and their kinds, in one line; see `Result.headline`."""
+        """Yield the number of curves and their kinds, the parts of the result's one-line summary.
+
+        See `Result.headline`.
+        """
         yield counted(len(self.kinds), "curve")
         yield ", ".join(self.kinds)
         yield warned(self.warnings)
@@ -96,7 +94,7 @@ class StabilityLimits(Result):
 
 
 @announced_of_plain_beam
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
+@one_blas_thread()  # more threads would only wait for each other on small matrices
 def stability_limits(
     scene: Scene,
     vary: Mapping[str, Sequence[float] | np.ndarray],
@@ -156,7 +154,7 @@ def stability_limits(
         error=error,
         multiplier=np.array([point.multiplier for point in points], dtype=complex),
         warnings=(*chart.warnings, *_warnings(error)),
-        provenance=Provenance(__version__, method, chart.provenance.compared_with, perf_counter() - start),
+        provenance=Provenance.since(start, method, chart.provenance.compared_with),
         scene=chart.scene,
     )
 

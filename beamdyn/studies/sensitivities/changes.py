@@ -1,13 +1,9 @@
-"""Derivatives of the matrices of a model, and of its coarser one, by the numbers of its scene.
+"""Derivatives of the matrices of a model by the numbers of its scene, and of eigenvalues by the matrices.
 
-Derivatives of matrices that depend on a number, by interpolation between places near it.
-
-The matrices are polynomials, quotients of them or sines of most numbers, and more of a place along the beam,
-which moves over functions of high degree.  They are evaluated at eight places, and the polynomial through
-these values is differentiated; the last term of that polynomial says how well it is resolved.  Eigenvalues,
-which have far fewer digits, are not differenced.
-
-First-order change of eigenvalues and critical speeds, from the derivatives of the equations' matrices.
+The matrices are polynomials, quotients or sines of most numbers; where a number moves a point along the beam,
+they are polynomials of high degree.  They are evaluated at eight places near the number, and the polynomial
+through these values is differentiated; its last term tells how well it is resolved. Eigenvalues, which have
+far fewer correct digits, are not differenced.
 
 With P(s) = s^2 M + s (C + omega G) + K0 + omega^2 K2 and P v = 0, w^T P = 0, a change dP of P changes the
 eigenvalue by ds = -w^T dP v / (w^T (2 s M + C + omega G) v)  (Lancaster, Lambda-Matrices and Vibrating
@@ -31,14 +27,14 @@ from beamdyn.scene.numbers import with_numbers
 from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber
 
 PLACES = 8
-_STEPS = 9  # sizes of steps, over four decades: rounding counts by their inverse
+_STEPS = 9  # number of step sizes, over four decades: rounding errors grow as the inverse of the step
 
 Evaluated = TypeVar("Evaluated")
 
 
 @dataclass(frozen=True)
 class Nearby(Generic[Evaluated]):
-    """What was evaluated around a number, and the weights that make derivatives of it.
+    """Values of matrices around a number, and the weights that combine them to derivatives.
 
     Parameters
     ----------
@@ -61,7 +57,7 @@ class Nearby(Generic[Evaluated]):
 def evaluate_nearby(
     number: SceneNumber, evaluate: Callable[[float], Evaluated]
 ) -> Iterator[Nearby[Evaluated]]:
-    """Evaluate something around a number, in the widest interval that is not refused, then in narrower ones.
+    """Evaluate matrices around a number, in the widest interval that is not refused, then in narrower ones.
 
     Where the values on one side are always refused, those on the other alone are taken.
 
@@ -105,12 +101,12 @@ def evaluate_nearby(
 
 
 def _slope(degree: int, t: float) -> float:
-    """Derivative of a Chebyshev polynomial of some degree at t."""
+    """Compute the derivative of the Chebyshev polynomial of a degree at t."""
     return float(np.polynomial.Chebyshev.basis(degree).deriv()(t)) if degree else 0.0
 
 
 def _intervals(number: SceneNumber) -> Iterator[list[tuple[float, float]]]:
-    """Intervals around the number, those above it, and those below it, each from wide to narrow."""
+    """Yield lists of intervals from wide to narrow: around the number, then above it, then below it."""
     steps = [number.step * 10 ** (-k / 2) for k in range(_STEPS)]
     lowest = [max(number.value - step, number.least) for step in steps]
     yield [(low, number.value + step) for low, step in zip(lowest, steps, strict=True)]
@@ -123,7 +119,7 @@ def _intervals(number: SceneNumber) -> Iterator[list[tuple[float, float]]]:
 
 @dataclass(frozen=True)
 class PencilChange:
-    """Derivatives of the matrices of a `SteadyPencil`, each of shape (n, n)."""
+    """Derivatives of the matrices of a `SteadyPencil` by one number, each of shape (n, n)."""
 
     M: np.ndarray
     C: np.ndarray
@@ -133,17 +129,20 @@ class PencilChange:
 
     @classmethod
     def of(cls, pencils: Sequence[SteadyPencil], weights: np.ndarray) -> PencilChange:
-        """The weighted sum of some equations."""
+        """Return the weighted sum of the matrices of several equations."""
         return cls(*(_sum(weights, [getattr(p, f.name) for p in pencils]) for f in fields(cls)))
 
     def between(self, left: np.ndarray, right: np.ndarray, s: complex, speed: float) -> complex:
-        """The derivative of P(s) at a speed [rad/s] between two vectors: no matrix is made of it."""
+        """Compute w^T dP v for vectors w and v, the change dP of the dynamic stiffness at exponent s.
+
+        The speed is in rad/s; dP is not formed.
+        """
         of_rate = left @ (self.C @ right) + speed * (left @ (self.G @ right))
         of_stiffness = left @ (self.K0 @ right) + speed**2 * (left @ (self.K2 @ right))
         return complex(s**2 * (left @ (self.M @ right)) + s * of_rate + of_stiffness)
 
     def stiffness(self, speed: float) -> np.ndarray:
-        """The derivative of the stiffness at a speed [rad/s]."""
+        """Compute the derivative of the stiffness at a speed [rad/s]."""
         return self.K0 + speed**2 * self.K2
 
 
@@ -153,7 +152,7 @@ def _sum(weights: np.ndarray, matrices: list[np.ndarray]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class PerturbedModes:
-    """Modes at a speed, with what their eigenvalues' derivatives need.
+    """Modes at a speed with their left eigenvectors, from which derivatives of eigenvalues follow.
 
     Parameters
     ----------
@@ -177,12 +176,12 @@ class PerturbedModes:
     def of(
         cls, pencil: SteadyPencil, speed: float, eigenvalue: np.ndarray, right: np.ndarray
     ) -> PerturbedModes:
-        """Add the left eigenvectors to modes."""
+        """Compute the left eigenvectors of modes, and return both."""
         left = [_left(pencil, speed, s, v) for s, v in zip(eigenvalue, right.T, strict=True)]
         return cls(pencil, speed, eigenvalue, right, np.array(left).T)
 
     def derivatives(self, change: PencilChange) -> np.ndarray:
-        """Derivatives of the eigenvalues where the matrices change, shape (k,)."""
+        """Compute the derivatives (k,) of the eigenvalues for derivatives of the matrices."""
         return np.array(
             [
                 -change.between(self.left[:, k], self.right[:, k], s, self.speed) / self._slope(k)
@@ -193,7 +192,7 @@ class PerturbedModes:
         )
 
     def speed_derivatives(self) -> np.ndarray:
-        """Derivatives of the eigenvalues with respect to the speed, shape (k,)."""
+        """Compute the derivatives (k,) of the eigenvalues by the speed."""
         p = self.pencil
         changes = (s * p.G + 2 * self.speed * p.K2 for s in self.eigenvalue)
         return np.array(
@@ -201,9 +200,9 @@ class PerturbedModes:
         )
 
     def scales(self) -> np.ndarray:
-        """Changes of the eigenvalues if all entries of P(s) had one sign, shape (k,).
+        """Sizes (k,) of the eigenvalues' derivatives by a relative change of mass and stiffness.
 
-        Rounding errors are relative to this.
+        All entries of the matrices count as if they had one sign: rounding errors are relative to these.
         """
         p = self.pencil
         whole = np.abs(p.K0) + self.speed**2 * np.abs(p.K2)
@@ -218,17 +217,20 @@ class PerturbedModes:
         return -complex(self.left[:, k] @ dP @ self.right[:, k]) / self._slope(k)
 
     def _slope(self, k: int) -> complex:
-        """The derivative of P(s) by s between both eigenvectors."""
+        """Compute the derivative of the dynamic stiffness by the eigenvalue, in mode k.
+
+        It is the product with the mode's left and right eigenvector.
+        """
         p, left, right = self.pencil, self.left[:, k], self.right[:, k]
         of_rate = left @ (p.C @ right) + self.speed * (left @ (p.G @ right))
         return complex(2 * self.eigenvalue[k] * (left @ (p.M @ right)) + of_rate)
 
 
-_NONE = complex(np.nan, np.nan)  # a double eigenvalue 0 moves by the root of a change
+_NONE = complex(np.nan, np.nan)  # derivative of a double eigenvalue 0, which moves by the root of a change
 
 
 def _left(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> np.ndarray:
-    """The left eigenvector of an eigenvalue.
+    """Compute the left eigenvector of an eigenvalue of the dynamic stiffness P(s).
 
     Without gyroscopic terms all matrices are symmetric; without damping P(s)^T is the conjugate of P(s).
     """
@@ -237,33 +239,37 @@ def _left(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> np.n
     if not pencil.C.any():
         return v.conj()
     P = s**2 * pencil.M + s * (pencil.C + speed * pencil.G) + pencil.K0 + speed**2 * pencil.K2
-    scale = np.sqrt(np.diag(pencil.K0) + abs(s) ** 2 * np.diag(pencil.M))  # a hinge has no stiffness
+    # Includes the mass, as a hinge has no stiffness.
+    scale = np.sqrt(np.diag(pencil.K0) + abs(s) ** 2 * np.diag(pencil.M))
     return scipy.linalg.svd(P.T / np.outer(scale, scale))[2][-1].conj() / scale
 
 
 def critical_vector(pencil: SteadyPencil, speed: float) -> np.ndarray:
-    """The shape in which the beam buckles at its critical speed, shape (n,)."""
+    """Compute the shape (n,) in which the beam buckles at its critical speed."""
     return scipy.linalg.eigh(pencil.K0 + speed**2 * pencil.K2, pencil.K0, subset_by_index=[0, 0])[1][:, 0]
 
 
 def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, change: PencilChange) -> float:
-    """Derivative of the critical speed where the matrices change."""
+    """Compute the derivative of the critical speed for derivatives of the matrices."""
     return float(-(v @ change.stiffness(speed) @ v) / (2 * speed * (v @ pencil.K2 @ v)))
 
 
 # Derivatives of the matrices ----------------------------------------------------------------------
 
 
-_EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to the largest part
-_RESOLVED = 1e-13  # share of the matrices within an interval: what the last term of a polynomial may be
-_ROUNDED = 1e-10  # what rounding alone may be, as of damping by modes
-_CONVERGES = 0.1  # most that a narrower interval leaves of it, where it is no rounding
+_EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to its largest part
+# Size of the last term of a polynomial, over the matrices, up to which the interval counts as resolved.
+_RESOLVED = 1e-13
+# Size of the last term, over the matrices, that may be rounding alone, as for damping by modes.
+_ROUNDED = 1e-10
+# Ratio of the last term of a narrower interval to that of a wider one, above which it is rounding.
+_CONVERGES = 0.1
 _Pencils: TypeAlias = tuple[SteadyPencil, SteadyPencil]
 
 
 @dataclass(frozen=True)
 class Changes:
-    """Derivatives of the matrices by each of n numbers.
+    """Derivatives of the matrices of a model, and of its coarser one, by each of n numbers.
 
     Parameters
     ----------
@@ -283,9 +289,9 @@ class Changes:
     refusals: tuple[str, ...]
 
 
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
+@one_blas_thread()  # more threads would only wait for each other on small matrices
 def changes_of(model: Model, numbers: Sequence[SceneNumber]) -> Changes:
-    """Evaluate the equations of a model around each number."""
+    """Evaluate the equations of a model at some values around each number."""
     fine, coarse, missed, rounding, refusals = [], [], [], [], []
     for number in numbers:
         try:
@@ -310,10 +316,10 @@ def changes_of(model: Model, numbers: Sequence[SceneNumber]) -> Changes:
 
 
 def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nearby[_Pencils]:
-    """Evaluate the equations within the widest interval that resolves them, or else leaves rounding alone."""
+    """Evaluate the equations in the widest interval about a number over which polynomials resolve them."""
     before, best = np.inf, None
     for nearby in evaluate_nearby(number, evaluate):
-        # The last term of a model's matrices within an interval, relative to each of them: the largest.
+        # Compute the largest last term of a model's matrices within the interval, relative to each matrix.
         last, whole = _last(nearby), nearby.values[0][0]
         pairs = ((getattr(last, f.name), getattr(whole, f.name)) for f in fields(last))
         share = max(_largest(part) * nearby.width / (_largest(matrix) or 1.0) for part, matrix in pairs)
@@ -327,7 +333,7 @@ def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nea
 
 
 def _last(nearby: Nearby[_Pencils]) -> PencilChange:
-    """The last term of the derivatives of a model's matrices."""
+    """Compute the last term of the polynomials for the matrices over a number: small if they resolve."""
     return PencilChange.of([fine for fine, _ in nearby.values], nearby.last)
 
 
@@ -336,11 +342,11 @@ def _largest(matrix: np.ndarray) -> float:
 
 
 def _pencils(model: Model, name: str, value: float) -> _Pencils:
-    """The equations of both models with another value of a number."""
+    """Return the equations of a model and of its coarser one, with another value of a number."""
     scene = with_numbers(model.scene, {name: value})
     if len(scene.beam.breakpoints) != len(model.scene.beam.breakpoints):
-        bound = "a point mass or spring at the tip, or where a section jumps, would leave its place"
-        raise InvalidValue(name, value, bound, "move both")
+        bound = "a point mass or spring would leave the tip, or the jump of the section, where it is"
+        raise InvalidValue(name, value, bound, "place it beside that")
     nearby = Model(scene, model.discretization)
     if nearby.equations.size != model.equations.size:
         remedy = 'give discretization="fem", or a Ritz of few functions'
@@ -350,7 +356,7 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
 
 
 def steady_pencils(model: Model, coarse: np.ndarray | None) -> tuple[SteadyPencil, SteadyPencil]:
-    """The equations of a model at steady speeds, and those of its coarser one.
+    """Return the equations of a model at steady speeds, and those of its coarser model.
 
     The coarser one's are over the functions at the indices `coarse`, where it has no others.
     """

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import unannounced
@@ -40,7 +39,7 @@ from beamdyn.studies.sensitivities.changes import (
 )
 from beamdyn.studies.sensitivities.sensitivity_result import Sensitivities
 
-_SAME = 1e-6  # relative distance of eigenvalues below which modes cross
+_SAME = 1e-6  # relative distance below which eigenvalues count as equal, so that modes cross
 _HZ = 1 / (2 * np.pi)
 
 
@@ -100,12 +99,13 @@ def frequency_sensitivities(
     if names is None or SPEED in names:
         numbers = (*numbers, sensitivity_result.SceneNumber(SPEED, "rad/s", found.speed, 0.0))
         rate, other = (np.imag(each.speed_derivatives()) * _HZ for each in both)
-        with np.errstate(invalid="ignore"):  # a mode may not vibrate
+        with np.errstate(invalid="ignore"):  # the frequency is 0 where a mode does not vibrate
             of_shapes = found.error * fine.scales() * _HZ / (found.speed or np.inf)
         derivative = np.vstack([derivative, rate])
         error = np.vstack([error, np.abs(rate - other) + of_shapes])
     lost, words = _without_derivative(found)
-    error += np.where(lost, 0.0, found.error) * np.abs(derivative)  # as derivatives are over the frequency
+    # The error of the frequency counts, as the derivative is relative to it.
+    error += np.where(lost, 0.0, found.error) * np.abs(derivative)
     derivative[:, lost], error[:, lost] = np.nan, np.inf
     answer = (f"mode {k}" for k in range(1, modes + 1)), "Hz", found.frequency
     warnings = (*found.warnings, *words, *changes.refusals)
@@ -245,7 +245,7 @@ def _result(
     warnings: tuple[str, ...],
 ) -> Sensitivities:
     names = str(model.discretization), str(model.coarser.discretization)
-    provenance = Provenance(__version__, *names, perf_counter() - start)
+    provenance = Provenance.since(start, *names)
     of = tuple(answers), unit, value
     return Sensitivities(*of, numbers, derivative, error, warnings, provenance, scene)
 
@@ -254,7 +254,7 @@ def _result(
 
 
 def _linear(model: Model) -> Model:
-    """The model, unless its deflections may be large."""
+    """Return the model; refuse one with large deflection."""
     if model.scene.physics.large_deflection:
         bound = "sensitivities are those of the linear equations"
         remedy = Words("leave it out, or use ", Named("bd.study", "beamdyn study"))
@@ -263,7 +263,7 @@ def _linear(model: Model) -> Model:
 
 
 def _modes_of(model: Model, speed: float, modes: int) -> tuple[PerturbedModes, PerturbedModes]:
-    """Modes of a model and of its coarser one."""
+    """Solve for the modes of a model and of its coarser one."""
     fine, coarse = (
         PerturbedModes.of(pencil, speed, found.eigenvalue[0], found.vector[0])
         for pencil, solver in zip(_pencils(model), (model.solver, model.coarse_solver), strict=True)
@@ -283,7 +283,7 @@ def _compared(
     part: Callable[[np.ndarray], np.ndarray] = np.real,
     unit: float = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives of k answers by each number and their errors, shape (n, k).
+    """Compute derivatives of k answers by n numbers and their errors, by both models: shape (n, k).
 
     Parameters
     ----------
@@ -305,7 +305,7 @@ def _compared(
 
 
 def _without_derivative(found: Modes) -> tuple[np.ndarray, list[str]]:
-    """Modes whose derivative there is none of, shape (k,), and why."""
+    """Return which modes (k,) have no derivative, with sentences that say why."""
     s, words = found.eigenvalue, []
     apart = np.abs(s[:, None] - s) + np.diag(np.full(len(s), np.inf))
     crossing = (apart <= _SAME * np.abs(s)).any(axis=1) if len(s) > 1 else np.zeros(len(s), dtype=bool)
@@ -322,7 +322,7 @@ def _without_derivative(found: Modes) -> tuple[np.ndarray, list[str]]:
 def _crossing_derivatives(
     model: Model, changes: Changes, crossing: Crossing, modes: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Derivatives of the speed of a crossing, and their errors, shape (n, 1).
+    """Compute the derivatives of the speed of a crossing by n numbers, and their errors, shape (n, 1).
 
     A line m omega meets the sum of the angular frequencies lambda of one mode or two:
     d omega = -sum d lambda / (sum d lambda / d omega - m).
@@ -338,7 +338,7 @@ def _crossing_derivatives(
 
 
 def _sums(angular: np.ndarray, crossing: Crossing) -> np.ndarray:
-    """How often each mode stands in the sum that the line meets, shape (k,)."""
+    """Count how often each mode occurs in the sum of frequencies that the line meets, shape (k,)."""
     first = 2 * np.pi * crossing.frequency
     sums = np.zeros(len(angular))
     sums[np.abs(angular - first).argmin()] += 1

@@ -1,4 +1,4 @@
-"""The result of a sensitivity analysis: the derivative of each answer by each number of the scene."""
+"""The result of a sensitivity analysis: derivatives of answers by the numbers of the scene."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import difflib
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -14,8 +14,10 @@ from scipy.optimize import linear_sum_assignment
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.plots.curves import plot_bars
 from beamdyn.common.results.one_line import counted, number, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
+from beamdyn.common.words import InputName
 from beamdyn.modes.repeated import JudgedByRepeating
 from beamdyn.scene.beam import ANGLE_UNITS, OFFSETS, PROPERTY_UNITS, Beam
 from beamdyn.scene.numbers import SCALE, SPEED, number_at, paths_of, unit_of
@@ -23,24 +25,21 @@ from beamdyn.scene.profile import mean
 from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
 from beamdyn.scene.scene import Scene
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_TOUCHING = 1e-6  # distance over the length at which a point stands beside another
-_STEP = 0.01  # step, as a share of a value or of the size of its kind
-_FURTHER = 2  # times as many modes, among which those of another scene are sought
-_SAME = 0.2  # relative distance up to which an answer may be the same one
-_NEAR = 0.8  # similarity of a mistyped name: all begin alike
+_TOUCHING = 1e-6  # distance between two points, over the length, at which they count as touching
+_STEP = 0.01  # step of a number, as a share of its value or of the usual size of its kind
+_FURTHER = 2  # another scene is solved for this many times as many modes, so that each finds its match
+_SAME = 0.2  # relative distance up to which answers of two scenes may be the same one
+_NEAR = 0.8  # least similarity of a name that is suggested for a mistyped one: many names begin alike
 _ACROSS = "beam.tip.offset_across"
 _OF_OFFSETS = tuple(f"beam.{name}" for name in OFFSETS)
-_COUPLING = "harvester.d31", "harvester.e31"  # of either sign
+_COUPLING = "harvester.d31", "harvester.e31"  # coupling constants, which may be negative
 _ENDS = "harvester.start", "harvester.end"
-_OF_LOAD = "harvester.resistance", "harvester.strain_limit"  # of which no natural mode knows
+_OF_LOAD = "harvester.resistance", "harvester.strain_limit"  # numbers without effect on natural modes
 
 
 @dataclass(frozen=True)
 class SceneNumber:
-    """A number of a scene.
+    """A number of a scene, with its value and the step by which it is varied.
 
     Parameters
     ----------
@@ -72,7 +71,7 @@ class SceneNumber:
 
 
 def check_names(inputs: object) -> tuple[str, ...] | None:
-    """The names of numbers as they were given to an analysis; None for all."""
+    """Check the names of numbers that an analysis was given; None stands for all numbers."""
     if inputs is None:
         return None
     good = isinstance(inputs, list | tuple) and inputs and all(isinstance(name, str) for name in inputs)
@@ -85,7 +84,7 @@ def check_names(inputs: object) -> tuple[str, ...] | None:
 def numbers_of(
     scene: Scene, names: Sequence[str] | None = None, argument: str = "inputs"
 ) -> tuple[SceneNumber, ...]:
-    """The numbers of a scene, all or those that an argument names.
+    """Return the numbers of a scene: all, or those that an argument names.
 
     Raises
     ------
@@ -107,7 +106,10 @@ def numbers_of(
 
 
 def _all(scene: Scene) -> Iterator[SceneNumber]:
-    """Yield the numbers on which frequencies depend, a factor in place of a property that varies."""
+    """Yield the numbers on which frequencies depend.
+
+    For a property that varies along the beam, its factor.
+    """
     for path in paths_of(scene):
         value = _value_of(scene, path)
         if value is None or not _matters(scene, path, value):
@@ -118,7 +120,7 @@ def _all(scene: Scene) -> Iterator[SceneNumber]:
 
 
 def _value_of(scene: Scene, path: str) -> float | None:
-    """The number of a path among those that the physics models; None if there is none."""
+    """Return the value of a path, if the physics models it; nan where it varies, None if there is none."""
     name = path.removeprefix("beam.")
     if name in SECTION_UNITS:
         return number_at(scene, path) if _has_constant_section(scene) else None
@@ -135,9 +137,14 @@ def _has_constant_section(scene: Scene) -> bool:
 
 
 def _matters(scene: Scene, path: str, value: float) -> bool:
-    """Whether frequencies change with a number: not with one that is infinite, absent or not modelled."""
+    """Whether frequencies change with a number: not if it is infinite, absent or not modelled."""
     table, _, key = path.partition(".")
-    if table in ("motion", SPEED) or path.startswith(SCALE) or path == "model.gravity" or math.isinf(value):
+    if (
+        table in ("motion", "tip_load", SPEED)
+        or path.startswith(SCALE)
+        or path == "model.gravity"
+        or math.isinf(value)
+    ):
         return False
     if table == "damping" or key in ("damping_ratio", "precone"):
         return value != 0
@@ -155,7 +162,7 @@ def _matters(scene: Scene, path: str, value: float) -> bool:
 
 
 def _number(scene: Scene, path: str, value: float) -> SceneNumber:
-    """A number with the step to take of it: a share of its value, or of the beam's size if that is larger."""
+    """Make the number of a path, with a step of 1 % of its value, or of the beam's size if that is larger."""
     unit, beam, step = unit_of(path) or "", scene.beam, _STEP * abs(value)
     if unit == "rad" or path == "beam.poissons_ratio":
         return SceneNumber(path, unit, value, _STEP)
@@ -171,7 +178,7 @@ def _number(scene: Scene, path: str, value: float) -> SceneNumber:
 
 
 def _room_of(beam: Beam, path: str) -> float:
-    """How far a point may move along the beam for a derivative [m]; 0 where it stands beside another."""
+    """Return how far [m] a point may move along the beam for a derivative; 0 if another touches it."""
     field = "point_masses" if "point_mass" in path else "point_springs"
     points, k = getattr(beam, field), int(path.partition("[")[2].partition("]")[0])
     others = replace(beam, **{field: [*points[:k], *points[k + 1 :]]}).breakpoints
@@ -229,7 +236,10 @@ class Sensitivities(JudgedByRepeating):
     speed: float = field(default=0.0, repr=False, metadata=ADDED_LATER)
 
     def headline(self) -> Iterator[str]:
-        """Numbers of answers and inputs, and which input matters most, in one line; see `Result.headline`."""
+        """Yield numbers of answers and inputs, and the most important one, parts of a one-line summary.
+
+        See `Result.headline`.
+        """
         yield f"{counted(len(self.answers), 'answer')} by {counted(len(self.inputs), 'number')}"
         if self.derivative.size and np.isfinite(self.relative).any():
             size = np.nan_to_num(np.abs(self.relative))
@@ -256,13 +266,15 @@ class Sensitivities(JudgedByRepeating):
         return tuple(self.inputs[row].name for row in size.argmax(axis=0).tolist())
 
     def judged(self, found: Sensitivities) -> np.ndarray:
-        """Derivative of each answer by the number that matters most, of which the error is stated: (k,)."""
+        """Return derivatives (k,) by the number that matters most to each answer: their error is stated."""
         rows = {each.name: i for i, each in enumerate(found.inputs)}
         most = zip(self._same_answers(found).tolist(), self.most_important, strict=True)
         return np.array([np.nan if k < 0 else found.derivative[rows[name], k] for k, name in most])
 
     def _same_answers(self, found: Sensitivities) -> np.ndarray:
-        """Index (k,) of the answer of another scene's result that is nearest to each one; -1 where none is.
+        """Return the index (k,) of the nearest answer of another scene's result for each answer.
+
+        -1 if none is near.
 
         Modes that an effect adds may stand between the others.
         """
@@ -275,17 +287,17 @@ class Sensitivities(JudgedByRepeating):
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """The numbers that matter most, by which the analysis is repeated; modes may come between others."""
+        """Arguments of the analysis by which it is repeated: the numbers that matter most, and more modes."""
         numbers = {"inputs": [*dict.fromkeys(self.most_important)]}
         return numbers | ({"modes": _FURTHER * len(self.answers)} if self.unit == "Hz" else {})
 
     @property
     def bending_speed(self) -> float:
-        """Speed [rad/s] at which large deflection is judged: that of frequencies, or the largest found."""
+        """Speed [rad/s] at which large deflection is judged: of the frequencies, or the largest answer."""
         return self.speed if self.unit == "Hz" else float(np.nanmax(self.value, initial=0.0))
 
     def by(self, name: str) -> np.ndarray:
-        """Derivatives by the number of a name, shape (k,).
+        """Return the derivatives by the number of a name, shape (k,).
 
         Raises
         ------
@@ -299,5 +311,5 @@ class Sensitivities(JudgedByRepeating):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the relative change of each answer over that of each number, the most important on top."""
-        names = [each.name for each in self.inputs]
+        names = [InputName(each.name).on_form for each in self.inputs]
         return plot_bars(names, self.relative, self.answers, "relative change over that of the number", ax)

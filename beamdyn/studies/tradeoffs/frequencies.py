@@ -1,4 +1,4 @@
-"""Work-precision of natural frequencies: bases and elements over their number."""
+"""Work-precision diagrams of natural frequencies: error over time for bases and elements of many sizes."""
 
 from __future__ import annotations
 
@@ -30,16 +30,17 @@ from beamdyn.studies.tradeoffs.measurements import Diagram, Family, TimedCase, m
 Mesh = Literal["graded", "uniform"]
 
 _LEGENDRE = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40)
-_MOST_ACROSS = 14  # of them on a segment where there are functions across the width, too
+_MOST_ACROSS = 14  # largest number of functions on a segment if there are functions across the width, too
 _EIGENFUNCTIONS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _ELEMENTS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _TOLERANCES = tuple(10.0**-k for k in range(1, 13))
-_REFERENCES = (40, 80, 160)  # numbers of functions of the reference on all segments, tried in turn
-_REFERENCE_ACROSS = (60,)  # where there are functions across the width, which never reach `_RESOLVED`
-_RESOLVED = 1e-10  # relative error of a reference that is accurate enough
+_REFERENCES = (40, 80, 160)  # numbers of functions of the reference, on all segments together, tried in turn
+# Numbers of functions if there are others across the width, whose error never reaches `_RESOLVED`.
+_REFERENCE_ACROSS = (60,)
+_RESOLVED = 1e-10  # relative error at which a reference is accurate enough
 
 
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
+@one_blas_thread()  # more threads would only wait for each other on small matrices
 def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 10.0) -> Diagram:
     """Measure error against time of the natural frequencies at one speed or a batch of speeds.
 
@@ -83,23 +84,18 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
         else f"at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s"
     )
     reference = f"{exact.model.discretization}; {_compare_with_bounds(exact, float(speeds[-1]), modes)}"
-    return Diagram.make(
-        f"{number_of(modes, 'frequency', 'frequencies')} {at}",
-        "the worst frequency, relative",
-        reference,
-        resolved,
-        measurements,
-        skipped,
-    )
+    title = f"{number_of(modes, 'frequency', 'frequencies')} {at}"
+    error_of = "the worst frequency, relative"
+    return Diagram.make(title, error_of, reference, resolved, measurements, skipped)
 
 
 def sizes_of_eigenvalues(eigenvalues: np.ndarray) -> np.ndarray:
-    """Magnitudes of eigenvalues in ascending order, shape (S, m)."""
+    """Compute magnitudes of eigenvalues in ascending order, shape (S, m)."""
     return np.sort(np.abs(eigenvalues), axis=-1)
 
 
 def solve_reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
-    """Compute reference modes, with as many Ritz functions as resolve them."""
+    """Compute reference modes with as many Ritz functions as resolve them."""
     *coarser, finest = _REFERENCE_ACROSS if scene.models_width else _REFERENCES
     segments = _segments(scene)
     for functions in coarser:
@@ -110,18 +106,18 @@ def solve_reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedMo
 
 
 def _solve_by_ritz(scene: Scene, speeds: np.ndarray, modes: int, functions: int) -> EstimatedModes:
-    """Solve for modes and their errors with a number of Ritz functions on each segment.
+    """Compute modes and their errors with a number of Ritz functions on each segment.
 
-    They are as many that the coarser basis, which gives the errors, has all modes, too.
+    The number is raised so far that the coarser basis, which gives the errors, has all modes, too.
     """
     return solve_with_error(Model(scene, Ritz(max(functions, 12, 5 * modes // 4 + 3))), speeds, modes)
 
 
 def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str:
-    """Check the reference against the guaranteed bounds at a speed; return the outcome in words."""
+    """Compare the reference with the guaranteed bounds at a speed, and word the outcome."""
     try:
         bounds = frequency_bounds(exact.model.scene, speed, modes)
-    except ValueError:  # stretch or damping
+    except ValueError:  # bounds cover neither stretch nor damping
         return "the guaranteed bounds do not cover this model"
     s = exact.eigen.eigenvalue[-1]
     squared = np.sort(-np.real(s**2))
@@ -135,14 +131,15 @@ def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str
 
 
 def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
-    """All families to measure: Ritz bases, finite elements, and the choice by a tolerance."""
+    """Yield all families to measure: Ritz bases, finite elements, and the choice by a tolerance."""
     segments, bases = _segments(scene), {"legendre": _LEGENDRE, "eigenfunctions": _EIGENFUNCTIONS}
     for basis, sizes in bases.items():
         yield Family(f"Ritz, {basis}", _basis_settings(scene, speeds, modes, basis, sizes, segments))
     meshes: tuple[Mesh, ...] = ("graded", "uniform")
     for mesh in meshes:
         yield from _fem_pair(scene, speeds, modes, mesh, segments)
-    if not scene.physics.stretch:  # modes may cross then: a tracked locus differs from the lowest modes
+    # With stretch, modes may cross: a tracked locus differs from the lowest modes.
+    if not scene.physics.stretch:
         cases = (TimedCase(f"tolerance={t:.0e}", t, _full_call(scene, speeds, modes, t)) for t in _TOLERANCES)
         yield Family("tolerance=", tuple(cases))
 
@@ -154,7 +151,7 @@ def _segments(scene: Scene) -> int:
 def _basis_settings(
     scene: Scene, speeds: np.ndarray, modes: int, basis: Any, sizes: Sequence[int], segments: int
 ) -> tuple[TimedCase, ...]:
-    """Computations by a Ritz basis, the fewest functions first: of Legendre functions on each segment."""
+    """Return computations by a Ritz basis, with few functions first; Legendre functions count per segment."""
     per_segment = segments if basis == "legendre" else 1
     each = "functions a segment" if per_segment > 1 else "functions"
     least, most = -(-modes // per_segment), _MOST_ACROSS if scene.models_width else inf
@@ -166,7 +163,7 @@ def _basis_settings(
 
 
 def _fem_pair(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments: int) -> Iterator[Family]:
-    """Families of finite elements, plain and extrapolated."""
+    """Yield two families of finite elements: plain and extrapolated."""
     for name, solve, share in (("", _solve, 1), (", extrapolated", _extrapolate, 2)):
         least = max(segments, -(-modes // 2), 2) * share
         cases = (
@@ -180,14 +177,14 @@ def _fem_pair(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments
 def _solve(
     scene: Scene, discretization: Discretization, speeds: np.ndarray, modes: int
 ) -> Callable[[float], Any]:
-    """Computation of the eigenvalues by a discretization."""
+    """Return the computation of the eigenvalues by a discretization."""
     return lambda deadline: Model(scene, discretization).solver.eigenvalues(speeds, modes)
 
 
 def _extrapolate(
     scene: Scene, discretization: Discretization, speeds: np.ndarray, modes: int
 ) -> Callable[[float], Any]:
-    """Richardson extrapolation from half the elements."""
+    """Return the computation of eigenvalues by Richardson extrapolation from half the elements."""
     fine, coarse = (_solve(scene, d, speeds, modes) for d in (discretization, discretization.coarser()))
     gain = 2 ** (discretization.order or 4) - 1
 
@@ -199,7 +196,7 @@ def _extrapolate(
 
 
 def _full_call(scene: Scene, speeds: np.ndarray, modes: int, tolerance: float) -> Callable[[float], Any]:
-    """Whole call of `natural_modes` or `frequency_locus` with a tolerance."""
+    """Return the whole call of `natural_modes` or `frequency_locus` with a tolerance."""
     if len(speeds) == 1:
         return lambda deadline: natural_modes(scene, speeds[0], modes, tolerance=tolerance).eigenvalue[None]
     return lambda deadline: frequency_locus(scene, speeds, modes, tolerance=tolerance).eigenvalue
@@ -210,21 +207,21 @@ def _full_call(scene: Scene, speeds: np.ndarray, modes: int, tolerance: float) -
 
 AS_GIVEN, ALL = "as given", "all of these"
 _FUNCTIONS = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20)
-_NOTHING = 1e-10  # relative change of the frequencies below which an effect is left aside
-_BETTER = 0.5  # share of the error of the model as given: more physics that stays above it has gained nothing
-_COMPARED = (STRETCH.name,)  # effects that are modelled to compare with papers only
+_NOTHING = 1e-10  # relative change of the frequencies below which an effect is not measured
+_BETTER = 0.5  # share of the model error that more physics must get below to count as a gain
+_COMPARED = (STRETCH.name,)  # effects that are modelled only for comparisons with papers
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A choice of physics, solved well beyond its own error.
+    """One choice of physics, solved with errors far below those of the model.
 
     Parameters
     ----------
     name : str
         The effects that it adds.
     scene : Scene
-        The scene with them.
+        The scene with these effects.
     solution : EstimatedModes
         Its modes at the speed.
     """
@@ -235,7 +232,7 @@ class Choice:
 
     @property
     def frequency(self) -> np.ndarray:
-        """Magnitudes of the eigenvalues [1/s], ascending."""
+        """Magnitudes of the eigenvalues [1/s], in ascending order."""
         return sizes_of_eigenvalues(self.solution.eigen.eigenvalue)[0]
 
 
@@ -291,7 +288,7 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
 
 
 def pick(found: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """The frequencies that belong to those wanted (m,): the nearest, each used once."""
+    """Return the frequencies nearest to those wanted (m,), each used once."""
     order = assign(np.abs(np.log(wanted[:, None] / found[None, :])))
     return found[order]
 
@@ -306,7 +303,7 @@ def _names(choices: list[Choice]) -> str:
 def _list_choices(
     scene: Scene, speed: float, modes: int, given: Choice
 ) -> tuple[list[Choice], tuple[str, ...]]:
-    """The effects of the set that changes most, one by one and then together; why others are missing."""
+    """List choices of physics: effects one by one, then together; and words for those that are missing."""
     additions, missing, _ = list_effects(scene)
     scenes = {a.name: a.scene for a in additions if a.name not in _COMPARED}
     not_known = [f"{name}: {why}" for name, why in missing.items() if name not in _COMPARED]
@@ -317,7 +314,7 @@ def _list_choices(
             not_known.append(f"{LARGE_DEFLECTION.name}: {error}")
 
     def change(choice: Choice) -> float:
-        """Largest relative change of the frequencies by a choice."""
+        """Compute the largest relative change of the frequencies by a choice."""
         wanted = given.frequency[:modes]
         return float(np.abs(pick(choice.frequency, wanted) / wanted - 1).max())
 
@@ -337,7 +334,7 @@ def _list_choices(
 
 
 def _combined(scene: Scene, choices: list[Choice]) -> Scene | None:
-    """The scene with all that the choices add, of a beam with the data for all; None if there is none."""
+    """Return the scene with all effects of several choices; None if no beam has the data for all."""
     added = {}
     for choice in choices:
         physics = choice.scene.physics
@@ -357,5 +354,8 @@ def _solve_choice(name: str, scene: Scene, speed: float, modes: int) -> Choice:
 
 
 def _count(scene: Scene, modes: int) -> int:
-    """Modes among which those wanted are: those of a second plane stand between them."""
+    """Return the number of modes among which the wanted ones are.
+
+    A second plane of bending has others between.
+    """
     return 2 * modes + 2 if scene.physics.planes == 2 else modes

@@ -1,4 +1,4 @@
-"""Measured errors and times, their Pareto front, and the cost per digit."""
+"""Measurements of error and time: their Pareto front, the cost of a digit, and how they are taken."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from itertools import groupby
 from math import inf, isfinite, isnan, nan
 from statistics import median
 from time import perf_counter, process_time
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.linalg import LinAlgError
@@ -16,13 +16,11 @@ from numpy.linalg import LinAlgError
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.plots.curves import plot_work_precision
 from beamdyn.common.results.one_line import counted, number
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Result
 from beamdyn.common.results.snapshots import ADDED_LATER
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-_MOST_DIGITS = 14  # most digits of `cost_per_digit`; double precision has 16
+_MOST_DIGITS = 14  # largest number of digits in `cost_per_digit`; double precision has 16
 
 
 @dataclass(frozen=True)
@@ -89,7 +87,7 @@ class Digit:
 
 
 def number_of(number: int, one: str, many: str) -> str:
-    """Number with its noun, in the singular or the plural."""
+    """Word a number with its noun, in the singular or plural."""
     return f"{number} {one if number == 1 else many}"
 
 
@@ -163,7 +161,10 @@ class Diagram(Result):
     skipped: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """Title, number of measurements and resolved digits in one line; see `Result.headline`."""
+        """Yield title, number of measurements and resolved digits, parts of a one-line summary.
+
+        See `Result.headline`.
+        """
         yield self.title
         yield f"{counted(len(self.measurements), 'measurement')}, {len(self.front)} in front"
         yield f"reference to {number(self.resolved)}"
@@ -178,7 +179,7 @@ class Diagram(Result):
         measurements: Sequence[Measurement],
         skipped: Sequence[str] = (),
     ) -> Diagram:
-        """Make a diagram, with its front and cost per digit."""
+        """Make a diagram of measurements, with their front and cost per digit."""
         front, per_digit = pareto_front(measurements), cost_per_digit(measurements)
         return cls(
             title, error_of, reference, resolved, tuple(measurements), front, per_digit, tuple(skipped)
@@ -186,7 +187,7 @@ class Diagram(Result):
 
     @property
     def summary(self) -> str:
-        """Front as one line of text: families and settings by ascending time."""
+        """Word the front in one line: families and settings by ascending time."""
         parts = []
         for family, members in groupby(self.front, key=lambda m: m.family):
             settings = [m.setting for m in members]
@@ -205,15 +206,17 @@ class Diagram(Result):
 # Measurement of error and time of settings within a time budget -----------------------------------
 
 
-RUNS = 7  # runs of a setting; the shortest counts, because other programs can only add time
-_REPEATS = 0.4  # part of a setting's share of the budget that is for repetitions
-_AGAIN, _NEAR = 0.2, 1.3  # part of the budget for runs in turns; time over the shortest of what runs again
-_TIE, _SCATTER_OF_ONE = 2.0, 0.1  # scatters within which times are equal; that of a single run, relative
+RUNS = 7  # number of runs of a setting; the shortest counts, as other programs can only add time
+_REPEATS = 0.4  # share of a setting's part of the budget that is for repetitions
+# Share of the budget for runs in turns; ratio to the shortest time, below which settings run again.
+_AGAIN, _NEAR = 0.2, 1.3
+# Number of scatters within which times count as equal; assumed relative scatter of a single run.
+_TIE, _SCATTER_OF_ONE = 2.0, 0.1
 
 
 @dataclass(frozen=True)
 class TimedCase:
-    """One setting of a family.
+    """One setting of a family, with the function that computes its result.
 
     Parameters
     ----------
@@ -284,7 +287,7 @@ def measure_families(
 
 @dataclass(frozen=True)
 class _Timed:
-    """A setting of a family with the error of its result and the processor times of its runs [s]."""
+    """A setting of a family, with the error of its result and the processor times of its runs [s]."""
 
     family: str
     setting: TimedCase
@@ -292,14 +295,14 @@ class _Timed:
     times: list[float]
 
     def measurement(self) -> Measurement:
-        """The shortest time, with its scatter."""
+        """Return the setting's measurement: its shortest time, with the scatter."""
         time = min(self.times)
         scatter = median(self.times) - time if len(self.times) > 1 else _SCATTER_OF_ONE * time
         return Measurement(self.family, self.setting.name, self.setting.size, self.error, time, scatter)
 
 
 def _repeat_in_turns(timed: Sequence[_Timed], end: float) -> None:
-    """Run the settings that may be the cheapest of a digit again and again, in turns, until a time [s].
+    """Repeat, in turns until a time [s], the settings that may be the cheapest for some number of digits.
 
     The speed of a machine drifts: settings that were timed one after the other are not told apart by it.
     """
@@ -318,7 +321,7 @@ def _repeat_in_turns(timed: Sequence[_Timed], end: float) -> None:
 def _measure_family(
     family: Family, error: Callable[[Any], float], resolved: float, share: float
 ) -> tuple[list[_Timed], str]:
-    """Measure a family: its settings with their times, and why the rest was left out.
+    """Measure the settings of a family; return them with their times, and why the rest was left out.
 
     Whether the next setting still fits is told by the processor time of the last one: a moment in which
     the machine did something else would look like a slow setting, and end the family too early.
@@ -342,7 +345,7 @@ def _measure_family(
 
 
 def _time_runs(setting: TimedCase, rest: float, spare: float) -> tuple[Any, list[float]]:
-    """Run a setting several times: the result, and the processor times [s].
+    """Run a setting several times; return its result and the processor times [s].
 
     Other programs hardly influence the processor time; all runs are in one thread.
     """
@@ -357,5 +360,5 @@ def _time_runs(setting: TimedCase, rest: float, spare: float) -> tuple[Any, list
 
 
 def remaining_budget(budget: float, start: float) -> float:
-    """Budget [s] that remains after a reference begun at `start` [s], at least half of it."""
+    """Return the budget [s] left after a reference that began at `start` [s], at least half of the whole."""
     return max(budget / 2, budget - (perf_counter() - start))

@@ -1,8 +1,9 @@
-"""Work-precision of transients, over integrators and modes, and of the steady response."""
+"""Work-precision diagrams of transients, over integrators and modes, and of the steady response."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from time import perf_counter
 from typing import Any
 
@@ -30,14 +31,14 @@ STOCK = ("RK45", "DOP853", "Radau", "BDF", "LSODA")
 _TOLERANCES = tuple(10.0**-k for k in range(1, 11))
 _STOCK_TOLERANCES = tuple(10.0**-k for k in range(2, 10))
 _TIGHTEST = 1e-11  # tolerance of the reference
-_CHECK_RTOL = 1e-11  # tolerance of DOP853, which checks the reference
-_CHECKED_PART = 0.05  # part of the run that is checked, from its start
-_CHECK_SHARE = 0.15  # share of the budget for this check
-_INSTANTS = 20_001  # times at which tip deflections are compared
+_CHECK_RTOL = 1e-11  # relative tolerance of DOP853, which checks the reference
+_CHECKED_PART = 0.05  # share of the reference's run, from its start, that is compared with DOP853
+_CHECK_SHARE = 0.15  # share of the budget that this check may take
+_INSTANTS = 20_001  # number of times at which tip deflections are compared
 AT_REST, AT_ENDS = "modes at rest", "modes at the slowest and the fastest speed"
 _MODES = tuple(range(1, 11))
 _MODES_AT_ENDS = (1, 2, 3, 4, 6)
-_ALL_MODES = 8  # modes of the reference, at each of two speeds
+_ALL_MODES = 8  # number of modes of the reference, at each of two speeds
 _MODES_TOLERANCE = 1e-7
 _ERROR_OF = f"the tip deflection, largest at {_INSTANTS} times, over the largest deflection"
 _TIGHT = f"{OURS} with a tolerance of {_TIGHTEST:g}"
@@ -124,19 +125,19 @@ def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> 
 
 
 def _tip_error(exact: Transient, t_end: float) -> Callable[[Transient], float]:
-    """Error measure: largest difference of the tip deflection at common times, over the largest."""
+    """Return the error of a run: largest difference of tip deflections at common times, over the largest."""
     t = np.linspace(0, t_end, _INSTANTS)
     true = exact.deflection(t)
     return lambda run: _relative(float(np.abs(run.deflection(t) - true).max()), exact.largest)
 
 
 def _relative(difference: float, largest: float) -> float:
-    """Difference over the largest deflection; absolute where that is 0."""
+    """Return a difference over the largest deflection, or the difference itself if that is 0."""
     return difference / largest if largest else difference
 
 
 def _check_by_dop853(scene: Scene, exact: Transient, modes: int, basis: Discretization, limit: float) -> str:
-    """Compare the reference with DOP853 at a tight tolerance on the first part of the run, in words."""
+    """Compare the reference with DOP853 on the first part of the run, and word the outcome."""
     end = _CHECKED_PART * exact.path.end
     options = {"discretization": basis, "events": _stop_after(perf_counter() + limit)}
     try:
@@ -150,14 +151,15 @@ def _check_by_dop853(scene: Scene, exact: Transient, modes: int, basis: Discreti
 
 
 def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) -> Iterator[Family]:
-    """Families of the integrators, over their tolerances."""
+    """Yield the families of integrators, over their tolerances."""
 
     def ours(tolerance: float) -> Callable[[float], Any]:
         return lambda deadline: simulate(scene, t_end, modes, tolerance, discretization=basis)
 
     def stock(method: str, rtol: float) -> Callable[[float], Any]:
         def run(deadline: float) -> Transient:
-            with np.errstate(over="ignore", invalid="ignore"):  # divergence is measured as error
+            # Divergence is measured as an error, not warned of.
+            with np.errstate(over="ignore", invalid="ignore"):
                 options = {"discretization": basis, "events": _stop_after(deadline)}
                 return simulate(scene, t_end, modes, rtol, method, **options)
 
@@ -170,7 +172,7 @@ def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) 
 
 
 def _stop_after(deadline: float) -> Callable[[float, np.ndarray], float]:
-    """Event for `solve_ivp` that never occurs, but raises a TimeoutError once the deadline has passed."""
+    """Make an event for `solve_ivp` that never occurs, but raises TimeoutError after a deadline."""
 
     def event(t: float, y: np.ndarray) -> float:
         if perf_counter() > deadline:
@@ -184,10 +186,10 @@ def _stop_after(deadline: float) -> Callable[[float, np.ndarray], float]:
 
 
 _HARMONICS = tuple(range(6))
-_ALL_HARMONICS = 6  # harmonics of the reference
+_ALL_HARMONICS = 6  # number of harmonics of the reference
 _STEADY_MODES = tuple(range(1, 9))
-_ALL_STEADY_MODES = 12  # modes of the reference
-_PHASES = 24  # samples of each phase, at which tip deflections are compared
+_ALL_STEADY_MODES = 12  # number of modes of the reference
+_PHASES = 24  # number of values of each phase at which tip deflections are compared
 _ERROR_OF_STEADY = "the tip deflection, largest over phases and speeds, over the sum of the lines"
 _EPS = float(np.finfo(float).eps)
 
@@ -211,14 +213,8 @@ def harmonics_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
     -------
     Diagram
     """
-    return _diagram(
-        "harmonics",
-        speeds,
-        lambda h: steady_response(scene, speeds, modes, harmonics=h),
-        _HARMONICS,
-        _ALL_HARMONICS,
-        budget,
-    )
+    solve = partial(steady_response, scene, speeds, modes)
+    return _diagram("harmonics", speeds, solve, _HARMONICS, _ALL_HARMONICS, budget)
 
 
 @one_blas_thread()
@@ -238,14 +234,8 @@ def steady_modes_diagram(scene: Scene, speeds: np.ndarray, budget: float = 5.0) 
     -------
     Diagram
     """
-    return _diagram(
-        "modes",
-        speeds,
-        lambda m: steady_response(scene, speeds, m, harmonics=2),
-        _STEADY_MODES,
-        _ALL_STEADY_MODES,
-        budget,
-    )
+    solve = partial(steady_response, scene, speeds, harmonics=2)
+    return _diagram("modes", speeds, solve, _STEADY_MODES, _ALL_STEADY_MODES, budget)
 
 
 def _diagram(
@@ -256,7 +246,7 @@ def _diagram(
     most: int,
     budget: float,
 ) -> Diagram:
-    """Measure responses of several `sizes` against a reference, that of size `most`."""
+    """Measure steady responses of several `sizes` against a reference of size `most`."""
     start = perf_counter()
     exact = run(most)
     title = f"steady response at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s, number of {what}"
@@ -265,7 +255,7 @@ def _diagram(
     cases = tuple(TimedCase(f"{what}={n}", n, lambda deadline, n=n: run(n)) for n in sizes)
     resolved = 10 * _EPS if what == "modes" else float(np.nanmax(exact.error, initial=10 * _EPS))
     left = remaining_budget(budget, start)
-    # Error measure: largest difference of the tip over the phases, over the bound, where both are stable.
+    # The error is the largest difference at the tip over all phases, over the bound, where both are stable.
     phase = 2 * np.pi * np.arange(_PHASES) / _PHASES
     rotation, road = np.meshgrid(phase, phase)
     true = [exact.tip(rotation, road, direction) for direction in (0, 1)]

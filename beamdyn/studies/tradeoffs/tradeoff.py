@@ -1,4 +1,4 @@
-"""Trade-off of a scene between error and computing time, over all of its computations."""
+"""Trade-off between error and computing time of a scene, for all of its computations."""
 
 from __future__ import annotations
 
@@ -7,14 +7,13 @@ from dataclasses import dataclass, field
 from functools import partial
 from math import pi
 from time import perf_counter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue, count, function, positive, real
 from beamdyn.common.plots.axes_and_lines import panels
 from beamdyn.common.results.one_line import counted, warned
+from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import OUTSIDE, announced_of_plain_beam, of_kind
 from beamdyn.modes.modal.discretization_choice import choose_model
@@ -27,15 +26,13 @@ from beamdyn.studies.tradeoffs import responses
 from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-MOST_MODES = 20  # number of modes that the references resolve, also beside those of a second plane
-LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # [s]
+# Largest number of modes that the references resolve, also if there are as many of a second plane.
+MOST_MODES = 20
+LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # limits of the budget [s]
 _REMEDY = "the times of fewer tell how those of more grow"
-_DEFAULT_PERIODS = 100  # periods of the first mode, after the start, in a run whose length is not given
-_LONGEST_START = 900  # periods of the first mode; a longer start is not waited for
-_LOCUS, _STEADY = 101, 50  # numbers of speeds
+_DEFAULT_PERIODS = 100  # default length of a run after its start, in periods of the first mode
+_LONGEST_START = 900  # longest start, in periods of the first mode, that a default run includes
+_LOCUS, _STEADY = 101, 50  # number of speeds of the locus, and of the steady response
 _SHARES = {
     "frequencies": 0.05,
     "locus": 0.07,
@@ -81,7 +78,10 @@ class Tradeoff(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Numbers of diagrams and measurements, and the speed, in one line; see `Result.headline`."""
+        """Yield numbers of diagrams and measurements, and the speed, parts of a one-line summary.
+
+        See `Result.headline`.
+        """
         yield f"{counted(len(self.diagrams), 'diagram')} at {self.say_speed(self.speed)}"
         yield counted(sum(len(each.measurements) for each in self.diagrams), "measurement")
         yield warned(self.warnings)
@@ -162,7 +162,7 @@ def tradeoff(
         t_end=end,
         diagrams=tuple(d for d in diagrams if d.measurements),
         warnings=(*warn_of_plain(unresolved), *of_model, *_warnings(scene, diagrams)),
-        provenance=Provenance(__version__, f"{modes} modes, budget {budget:g} s", "", perf_counter() - start),
+        provenance=Provenance.since(start, f"{modes} modes, budget {budget:g} s"),
         scene=scene,
     )
 
@@ -175,7 +175,7 @@ def _check_budget(budget: float) -> float:
 
 
 def _end(scene: Scene) -> float:
-    """Default end [s]: a hundred periods of the first mode, after the motion has settled if that is soon."""
+    """Return the default end [s]: 100 periods of the first mode, after a start that is not too long."""
     assert scene.motion is not None
     model = choose_model(scene, "ritz", np.zeros(1), 1, target=1e-3)
     period = 2 * pi / float(np.abs(model.solver.eigenvalues(np.zeros(1), 1)[0, 0]))
@@ -186,7 +186,7 @@ def _end(scene: Scene) -> float:
 def _list_diagrams(
     scene: Scene, speed: float, modes: int, t_end: float, budget: float
 ) -> Iterator[Callable[[], Diagram]]:
-    """List the diagrams that apply to the scene, each with its share of the budget."""
+    """Yield the diagrams that apply to the scene, each to be computed within its share of the budget."""
     time = {name: share * budget for name, share in _SHARES.items()}
     yield partial(frequency_diagram, scene, np.array([speed]), modes, time["frequencies"])
     if speed:

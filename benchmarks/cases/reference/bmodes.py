@@ -15,9 +15,7 @@ import scipy.linalg
 from numpy.polynomial import Polynomial
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(6)
-_ON_ELEMENT = (
-    9  # coordinates before the next node: u, v, v', w, w', phi there, two of u and one of phi within
-)
+_ON_ELEMENT = 9  # coordinates of an element: u, v, v', w, w', phi at its node, two of u and one of phi within
 _PLACES = {"u": [0, 6, 7, 9], "v": [1, 2, 10, 11], "w": [3, 4, 12, 13], "phi": [5, 8, 14]}
 _CUBIC = [
     Polynomial(c) for c in ([1, -5.5, 9, -4.5], [0, 9, -22.5, 13.5], [0, -4.5, 18, -13.5], [0, 1, -4.5, 4.5])
@@ -27,7 +25,7 @@ _HERMITE = [Polynomial(c) for c in ([1, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2],
 
 
 def frequencies(blade: Mapping[str, Any], ends: np.ndarray, speed: float, count: int) -> np.ndarray:
-    """Frequencies [Hz] of a blade of published stations at a speed [rad/s], by elements between x/L."""
+    """Compute frequencies [Hz] of a published blade at a speed [rad/s], by elements between x/L."""
     size = _ON_ELEMENT * (len(ends) - 1) + 6
     M, K = np.zeros((size, size)), np.zeros((size, size))
     middle, length = (ends[:-1] + ends[1:]) / 2, blade["length"]
@@ -36,7 +34,7 @@ def frequencies(blade: Mapping[str, Any], ends: np.ndarray, speed: float, count:
         for name, values in blade.items()
         if isinstance(values, np.ndarray) and values.shape == blade["stations"].shape
     }
-    for name in ("flap_inertia", "edge_inertia"):  # it interpolates the squared radii of gyration
+    for name in ("flap_inertia", "edge_inertia"):  # BModes interpolates the squared radii of gyration
         squared = blade[name] / blade["mass_per_length"]
         sections[name] = np.interp(middle, blade["stations"], squared) * sections["mass_per_length"]
     r, m = blade["hub_radius"] + ends * length, sections["mass_per_length"]
@@ -56,7 +54,7 @@ def frequencies(blade: Mapping[str, Any], ends: np.ndarray, speed: float, count:
 
 
 def about_shear_centres(blade: Mapping[str, Any], ends: np.ndarray, speed: float, count: int) -> np.ndarray:
-    """`frequencies` with the centre of mass and the edgewise inertia from the shear centre, not the axis."""
+    """Compute `frequencies` with centre of mass and edgewise inertia counted from the shear centre."""
     from_shear_centre = blade["mass_offset"] - blade["shear_offset"]
     inertia = blade["edge_inertia"] + blade["mass_per_length"] * from_shear_centre**2
     read = {**blade, "mass_offset": from_shear_centre, "edge_inertia": inertia}
@@ -64,7 +62,7 @@ def about_shear_centres(blade: Mapping[str, Any], ends: np.ndarray, speed: float
 
 
 def _functions(point: float, length: float) -> dict[tuple[str, int], np.ndarray]:
-    """Functions of each displacement and their derivatives at a point of an element: (15,) each."""
+    """Evaluate functions of each displacement and their derivatives at a point of an element: (15,) each."""
     found = {}
     for name, functions in (("u", _CUBIC), ("v", _HERMITE), ("w", _HERMITE), ("phi", _QUADRATIC)):
         slopes = [length if name in "vw" and k % 2 else 1.0 for k in range(4)]
@@ -79,10 +77,10 @@ def _functions(point: float, length: float) -> dict[tuple[str, int], np.ndarray]
 def _at_point(
     own: Mapping[str, float], turn: float, x: float, f: Mapping[tuple[str, int], np.ndarray], speed: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Mass and stiffness per length at a radius x, both of the source's linear part."""
+    """Compute mass and stiffness per length at a radius x, as the linear part of the source has them."""
     u, v, w, phi = (f[name, 0] for name in ("u", "v", "w", "phi"))
     c, s, m, spin = np.cos(turn), np.sin(turn), own["mass_per_length"], speed**2
-    cg = -own["mass_offset"]  # to the leading edge
+    cg = -own["mass_offset"]  # counted towards the leading edge
     tc = own["shear_offset"] - own["tension_offset"]
     polar = own["flap_inertia"] + own["edge_inertia"]
     M = m * _product(u, u) + m * _product(v, v) + m * _product(w, w) + polar * _product(phi, phi)

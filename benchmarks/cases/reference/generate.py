@@ -29,7 +29,7 @@ HEADER = """\
 # (Model "coupled": the three lowest frequencies, whether mainly of bending or of stretch.)
 """
 
-# (mass, stiffness) as polynomials in x/L
+# mass and stiffness as polynomials in x/L
 SECTIONS = {
     "linear": ((1, -0.5), (1, -0.3)),
     "wedge": ((1, -0.8), (1, -2.4, 1.92, -0.512)),
@@ -43,7 +43,7 @@ SECTIONS = {
 
 
 def uniform(random: Random) -> Iterator[Case]:
-    """Outward, inward below the critical speed, inward at any speed, and the corners."""
+    """Yield cases: outward, inward below the critical speed, inward at any speed, and the corners."""
     for _ in range(4):
         yield scene("uniform outward", random.uniform(0, 12), random.uniform(0, 5), random.uniform(0, 90))
     for _ in range(4):
@@ -87,7 +87,7 @@ def coupled(random: Random) -> Iterator[Case]:
 
 
 def subcritical(random: Random, delta: float) -> float:
-    """A speed below gamma^2 |delta| = 5, where an inward uniform beam is stable from delta = -1 on."""
+    """Draw a speed below gamma^2 |delta| = 5, where an inward uniform beam is stable from delta = -1 on."""
     return random.uniform(0.3, 1) * (5 / abs(delta)) ** 0.5
 
 

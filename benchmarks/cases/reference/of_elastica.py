@@ -16,7 +16,7 @@ from benchmarks.cases.reference.elastica.beam import Function
 
 @dataclass(frozen=True)
 class SceneAnswer:
-    """What the second method finds.
+    """The answer of the second method.
 
     Parameters
     ----------
@@ -39,13 +39,13 @@ class SceneAnswer:
 def answer(
     scene: bd.Scene, speed: float, count: int = 3, breakpoints: Sequence[float] | None = None
 ) -> SceneAnswer:
-    """On the branch continued from rest; breakpoints, if not those of the beam, as in `elastica_of_scene`."""
+    """Solve a scene on the branch continued from rest; breakpoints as in `elastica_of_scene`."""
     beam, unit = elastica_of_scene(scene, breakpoints)
     return _dimensional(scene, unit, converged(from_rest(beam, abs(speed) * unit), count))
 
 
 def bent_answer(scene: bd.Scene, speed: float, side: int = 1, count: int = 3) -> SceneAnswer:
-    """On the branch beside that from rest, its tip on the given side along the direction of bending."""
+    """Solve a scene on the branch beside that from rest, with the tip on a given side."""
     beam, unit = elastica_of_scene(scene)
     return _dimensional(scene, unit, converged(bent(beam, abs(speed) * unit, side), count))
 
@@ -58,7 +58,7 @@ def _dimensional(scene: bd.Scene, unit: float, found: Answer) -> SceneAnswer:
 
 
 def elastica_of_scene(scene: bd.Scene, breakpoints: Sequence[float] | None = None) -> tuple[Elastica, float]:
-    """The beam over length, and mass and stiffness at the root; and its unit of time [s]."""
+    """Return the beam in units of length, and of mass and stiffness at the root; its unit of time [s]."""
     beam, mount, length, root = scene.beam, scene.mount, scene.beam.length, np.zeros(1)
     mass, stiffness = (float(p(root)[0]) for p in (beam.mass_per_length, beam.bending_stiffness))
     (along, across), (c, s) = map(_cosine_and_sine, (mount.setting_angle, mount.bending_angle))
@@ -84,7 +84,7 @@ def _over(profile: Profile, unit: float) -> Function:
 
 
 def _cosine_and_sine(angle: float) -> tuple[float, float]:
-    """Exact at multiples of a quarter turn."""
+    """Compute cosine and sine, exact at multiples of a quarter turn."""
     c, s = math.cos(angle), math.sin(angle)
     return (0.0 if abs(c) < 5e-16 else c), (0.0 if abs(s) < 5e-16 else s)
 

@@ -19,7 +19,7 @@ _DIGITS = 40
 
 
 def exact(scene: bd.Scene, speed: float, count: int = 3, digits: int = 30) -> list[mpc]:
-    """The lowest s of exp(s t) [1/s] of a beam without breakpoints, stretch and damping."""
+    """Compute the lowest s of exp(s t) [1/s] of a beam without breakpoints, stretch and damping."""
     with mp.workdps(_DIGITS):
         tau = _time_unit(scene.beam)
         squares = bending_eigenvalues(mpf(speed) * tau, **_parameters(scene), count=count, digits=digits)
@@ -27,7 +27,7 @@ def exact(scene: bd.Scene, speed: float, count: int = 3, digits: int = 30) -> li
 
 
 def exact_critical_speed(scene: bd.Scene, digits: int = 30) -> mpf:
-    """The critical speed [rad/s] of such a beam; inf if a basis of 48 functions has none."""
+    """Compute the critical speed [rad/s] of such a beam; inf if a basis of 48 functions has none."""
     with mp.workdps(_DIGITS):
         return critical_speed(**_parameters(scene), digits=digits) / _time_unit(scene.beam)
 
@@ -38,7 +38,7 @@ def _time_unit(beam: bd.Beam) -> mpf:
 
 
 def _parameters(scene: bd.Scene) -> dict[str, Any]:
-    """The nondimensional arguments of the power series."""
+    """Return the nondimensional arguments of the power series."""
     beam, mount, L = scene.beam, scene.mount, mpf(scene.beam.length)
     mass, stiffness = map(_monomials, (beam.mass_per_length, beam.bending_stiffness))
     return {
@@ -51,19 +51,19 @@ def _parameters(scene: bd.Scene) -> dict[str, Any]:
 
 
 def relative_errors(found: bd.Modes, truth: list[mpc]) -> list[float]:
-    """Relative errors of the eigenvalues of a result."""
+    """Compute relative errors of the eigenvalues of a result."""
     with mp.workdps(_DIGITS):
         pairs = zip(found.eigenvalue.tolist(), truth, strict=True)
         return [float(abs(mpc(s) - t) / abs(t)) for s, t in pairs]
 
 
 def _cosine(angle: float) -> mpf:
-    """0 at a quarter turn, as the scene takes it."""
+    """Compute a cosine; 0 at a quarter turn, as the scene takes it."""
     return mpf(0) if abs(math.cos(angle)) < 2e-16 else mp.cos(mpf(angle))
 
 
 def _monomials(profile: Profile) -> list[mpf]:
-    """Coefficients in x of a Legendre series in 2 x - 1: P_k = (-1)^k sum_j C(k, j) C(k + j, j) (-x)^j."""
+    """Compute coefficients in x of a Legendre series in 2 x - 1."""
     (row,) = profile.coefficients
     size = len(row)
     return [

@@ -44,7 +44,7 @@ from scipy.linalg import cholesky, eigh
 Number = int | float | str | mpf
 State = Sequence[mpf]
 
-# Ritz functions of the start values, and modes kept of each field where stretch is coupled.
+# Number of Ritz functions for start values, and of modes kept of each field where stretch is coupled.
 _FUNCTIONS, _MODES = 48, 20
 _GUARD_DIGITS = 15
 
@@ -84,7 +84,7 @@ def bending_eigenvalues(
     count: int = 3,
     digits: int = 30,
 ) -> list[mpf]:
-    """Lowest values of lambda^2, ascending; a negative one is a divergent mode.
+    """Compute the lowest values of lambda^2, ascending; a negative one is a divergent mode.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def coupled_frequencies(
     count: int = 1,
     digits: int = 30,
 ) -> list[mpf]:
-    """Lowest frequencies of a uniform beam with stretch and Coriolis coupling, ascending.
+    """Compute the lowest frequencies of a uniform beam with stretch and Coriolis coupling, ascending.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def critical_speed(
     tip: Tip | None = None,
     digits: int = 30,
 ) -> mpf:
-    """Lowest gamma at which lambda^2 = 0, infinite if there is none.
+    """Compute the lowest gamma at which lambda^2 = 0, infinite if there is none.
 
     The parameters are those of `bending_eigenvalues`.
     """
@@ -156,14 +156,14 @@ def critical_speed(
     starts = [1 / mu for mu in softening[:2] if mu > 1e-8]
     if not starts:
         return mp.inf
-    starts = [*starts, 4 * starts[0]][:2]  # the second only bounds the search for the first
+    starts = [*starts, 4 * starts[0]][:2]  # the second start only bounds the search for the first root
     with mp.workdps(digits + _lost_digits(beam, starts[-1], 0.0)):
         beam = _beam(delta, bending_angle, mass, stiffness, tip)
         return mp.sqrt(_roots(lambda z: _bending_determinant(beam, z, mpf(0)), starts, digits, floor=0)[0])
 
 
 def solve_case(case: dict[str, Any], count: int = 3, digits: int = 30) -> list[mpf]:
-    """lambda^2 of a ``[[case]]`` of the data files, ascending."""
+    """Compute lambda^2 of a ``[[case]]`` of the data files, ascending."""
     with mp.workdps(digits + _GUARD_DIGITS):
         angle = mp.radians(_exact(case["bending_angle_deg"]))
     if case["model"] == "coupled":
@@ -190,7 +190,7 @@ class _Beam:
 
 
 def _exact(number: Number) -> mpf:
-    """0.1 means one tenth, not the nearest binary number."""
+    """Convert a number by its decimal digits: 0.1 means one tenth, not the nearest binary number."""
     return number if isinstance(number, mpf) else mpf(str(number))
 
 
@@ -214,14 +214,14 @@ def _exact_tip(tip: Tip) -> Tip:
 
 
 def _load(mass: list[mpf], delta: mpf, tip: Tip) -> list[mpf]:
-    """int_x^1 m(s) (delta + s) ds + m_t (delta + 1 + eps)."""
+    """Compute int_x^1 m(s) (delta + s) ds + m_t (delta + 1 + eps)."""
     moment = [delta * a + b for a, b in zip([*mass, 0], [0, *mass], strict=True)]
     integral = [a / k for k, a in enumerate(moment, start=1)]
     return [sum(integral) + tip.mass * (delta + 1 + tip.offset), *(-a for a in integral)]
 
 
 def _steps(stiffness: list[mpf]) -> Iterator[tuple[mpf, mpf]]:
-    """Steps within half the radius of convergence, which the zeros of EI limit."""
+    """Yield steps within half the radius of convergence, which the zeros of EI limit."""
     zeros = Polynomial([float(c) for c in stiffness]).roots()
     start = mpf(0)
     while start < 1:
@@ -238,7 +238,7 @@ def _steps(stiffness: list[mpf]) -> Iterator[tuple[mpf, mpf]]:
 
 @dataclass(frozen=True)
 class _Rates:
-    """Coefficients of the first-order equations, see the module's text."""
+    """Coefficients of the first-order equations in the module's docstring."""
 
     weight: mpf
     coupling: mpf | int = 0
@@ -265,7 +265,7 @@ def _coupled_determinant(beam: _Beam, gamma: mpf, alpha: mpf, frequency: mpf) ->
 
 
 def _shoot(beam: _Beam, gamma_squared: mpf, rates: _Rates, start: int) -> State:
-    """The state (u, u', M, Q, s, F) at the tip of the solution that starts with a unit there."""
+    """Compute the state (u, u', M, Q, s, F) at the tip of the solution that starts with a unit there."""
     state: State = [mpf(i == start) for i in range(6)]
     tension = [gamma_squared * c for c in beam.load]
     for x, step in beam.steps:
@@ -285,7 +285,7 @@ def _residual(beam: _Beam, gamma_squared: mpf, eigenvalue: mpf, state: State) ->
 
 
 def _local(polynomial: list[mpf], start: mpf, step: mpf) -> list[mpf]:
-    """Coefficients in xi = (x - start) / step."""
+    """Compute coefficients in xi = (x - start) / step."""
     terms = range(len(polynomial))
     return [
         step**k * sum(mp.binomial(j, k) * start ** (j - k) * polynomial[j] for j in terms if j >= k)
@@ -319,7 +319,7 @@ def _advance(
 
 
 def _convolved(polynomial: list[mpf], series: list[mpf], k: int, first: int = 0) -> mpf:
-    """Coefficient k of the product, without the polynomial's terms below `first`."""
+    """Compute coefficient k of the product, without the polynomial's terms below `first`."""
     last = min(k + 1, len(polynomial))
     return mp.fdot((polynomial[j], series[k - j]) for j in range(first, last))
 
@@ -329,7 +329,7 @@ def _vanished(series: Sequence[list[mpf]], window: int, small: mpf) -> bool:
 
 
 def _lost_digits(beam: _Beam, gamma_squared: float, eigenvalue: float) -> int:
-    """Digits that the series and the determinant cancel: twice the solutions' growth."""
+    """Estimate the digits that series and determinant cancel: twice the solutions' growth."""
     x = np.linspace(0, 1, 101)
     mass, stiffness, load = (_values(p, x) for p in (beam.mass, beam.stiffness, beam.load))
     string = gamma_squared * np.abs(load) / stiffness
@@ -343,7 +343,7 @@ def _lost_digits(beam: _Beam, gamma_squared: float, eigenvalue: float) -> int:
 def _roots(
     function: Callable[[mpf], mpf], starts: Sequence[float], digits: int, floor: float = -np.inf
 ) -> list[mpf]:
-    """One root near each start but the last, each alone between the midpoints."""
+    """Find one root near each start but the last, each alone between the midpoints."""
     middles = [(a + b) / 2 for a, b in pairwise(starts)]
     edges = [mpf(e) for e in (max(floor, starts[0] - (starts[1] - starts[0]) / 2), *middles)]
     signs = [mp.sign(function(edge)) for edge in edges]
@@ -375,7 +375,7 @@ def _secant(function: Callable[[mpf], mpf], start: mpf, low: mpf, high: mpf, dig
 
 @lru_cache
 def _basis() -> tuple[np.ndarray, ...]:
-    """Gauss points (the last is the tip), weights, and u, u', u'' there: shape (points, functions)."""
+    """Return Gauss points (the last is the tip), weights, and u, u', u'': shape (points, functions)."""
     nodes, weights = np.polynomial.legendre.leggauss(2 * _FUNCTIONS)
     x = np.append((nodes + 1) / 2, 1.0)
     bends = [Legendre.basis(k, domain=[0, 1]) * np.sqrt(2 * k + 1) for k in range(_FUNCTIONS)]
@@ -388,7 +388,7 @@ def _values(polynomial: list[mpf], x: np.ndarray) -> np.ndarray:
 
 
 def _forms(beam: _Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Quadratic forms of bending stiffness, gamma^2, and -lambda^2."""
+    """Compute quadratic forms of bending stiffness, gamma^2, and -lambda^2."""
     x, weights, u, slope, bend = _basis()
     mass, offset, inertia, lateral, axial = map(float, vars(beam.tip).values())
     delta, cos_squared = float(beam.delta), float(beam.cos) ** 2
@@ -405,7 +405,7 @@ def _integral(weights: np.ndarray, table: np.ndarray) -> np.ndarray:
 
 
 def _lowest(stiffness: np.ndarray, mass: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest eigenvalues and vectors of unit mass.
+    """Compute the lowest eigenvalues and vectors of unit mass.
 
     Solved for 1/(eigenvalue + shift): factorising the mass matrix would lose the digits.
     """
@@ -427,7 +427,7 @@ def _definite_shift(stiffness: np.ndarray, mass: np.ndarray) -> float:
 
 
 def _coupled_starts(beam: _Beam, gamma: float, alpha: float) -> list[float]:
-    """Positive frequencies of the gyroscopic problem (K + lambda G - lambda^2) q = 0."""
+    """Compute positive frequencies of the gyroscopic problem (K + lambda G - lambda^2) q = 0."""
     x, weights, u, *_ = _basis()
     bending, spin, inertia = _forms(beam)
     squares, vectors = _lowest(bending + gamma**2 * spin, inertia, _MODES)

@@ -13,15 +13,15 @@ from benchmarks.cases.reference.twisted_beam import Blade, solve
 from benchmarks.cases.reference.twisted_beam.mesh import graded
 
 _ROUNDING = 2e-14  # least relative uncertainty of a squared frequency
-_FALL = 0.1  # at most, of the change by a refinement to the next: a small one may be so by accident
-_FINEST = 64  # pieces of the whole beam
-_REST = 1e-12  # squared frequency of a beam that turns freely about its hinge: rounding, over 1 + gamma^2
-_QUOTIENT = 1.0  # distance from the quotient that the extrapolation of both may leave, at worst
+_FALL = 0.1  # largest ratio of changes by successive refinements: a small one may be accidental
+_FINEST = 64  # most pieces of the whole beam
+_REST = 1e-12  # rounding error of the squared frequency 0 of a free hinge, over 1 + gamma^2
+_QUOTIENT = 1.0  # largest share of the distance from the quotient that their extrapolation may leave
 
 
 @dataclass(frozen=True)
 class Known:
-    """Eigenvalues [1/s], that of the lowest squared frequency first, and their relative uncertainties.
+    """Eigenvalues [1/s], by ascending squared frequency, and their relative uncertainties.
 
     They are imaginary for modes that vibrate and positive for those that diverge.  One whose size is below
     `zero` [1/s] is not told from 0: it is given as 0, with the uncertainty 0.
@@ -33,7 +33,7 @@ class Known:
 
 
 def known_frequencies(scene: bd.Scene, speed: float, count: int) -> Known:
-    """Those of the first mesh whose refinement changes nothing but rounding."""
+    """Return the frequencies of the first mesh whose refinement changes nothing but rounding."""
     blade, unit = blade_of_scene(scene)
     gamma = speed * unit
     stops = graded((blade.mass, *blade.stiffness[: blade.planes]), scene.beam.breakpoints)
@@ -58,7 +58,7 @@ def known_frequencies(scene: bd.Scene, speed: float, count: int) -> Known:
 
 
 def _solve(blade: Blade, gamma: float, count: int, pieces: int) -> tuple[np.ndarray, np.ndarray]:
-    """Squared frequencies by collocation on one mesh, and their uncertainty by rounding.
+    """Compute squared frequencies by collocation on one mesh, and their uncertainty by rounding.
 
     Rounding in the solution usually changes the quotient of energies twice as much as the eigenvalue:
     both together give the value without it.
@@ -70,7 +70,7 @@ def _solve(blade: Blade, gamma: float, count: int, pieces: int) -> tuple[np.ndar
 
 
 def _meshes(segments: int) -> Iterator[int]:
-    """Numbers of pieces of each segment."""
+    """Yield numbers of pieces of each segment."""
     pieces = 2 if segments < 3 else 1
     while pieces < 8 or pieces * segments <= _FINEST:
         yield pieces

@@ -1,4 +1,4 @@
-"""The designs shown on opening: those of this folder, or the examples of the same name."""
+"""The designs that documents open with: files in this folder, or else the examples of the same name."""
 
 from importlib.resources import files
 
@@ -6,6 +6,6 @@ from beamdyn.common.screens.examples import examples_folder
 
 
 def base(name: str) -> str:
-    """Text of a design's TOML file."""
+    """Return the TOML text of the design that a document opens with."""
     own = files("brakes.app.bases") / f"{name}.toml"
     return (own if own.is_file() else examples_folder() / f"{name}.toml").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The beam: plain functions and numbers."""
+"""The beam of the second method, as plain functions and numbers."""
 
 from __future__ import annotations
 
@@ -63,5 +63,5 @@ class Elastica:
 
     @property
     def is_symmetric(self) -> bool:
-        """Whether the straight beam is an equilibrium, and the mirror image of each equilibrium another."""
+        """Whether the straight beam is an equilibrium, so that each equilibrium has a mirror image."""
         return not self.in_plane or self.centre[1] == 0

@@ -17,21 +17,21 @@ from benchmarks.cases.reference.elastica.vibration import frequencies
 _NEWTON = 30
 _TOLERANCE = 1e-14
 _SETTLED = 1e-11
-_FIRST_ANGLE = 0.05  # of the tip, on leaving the pitchfork [rad]
+_FIRST_ANGLE = 0.05  # angle of the tip on leaving the pitchfork [rad]
 _BESIDE = 1e-3  # angle of the tip of a beam that is just bent [rad]
 _ENTRIES = (1.0, 1.5, 2.0, 0.5, 2.5)  # angles of the tip at which a branch with a fold may be entered [rad]
-_STEP = 0.1  # of the tip's angle along a branch [rad]
-_NEAR = 1e-2  # half the interval of speeds, relative, of the polynomial through the least frequency
-_LARGEST_ANGLE = 6.0  # of the tip, to which branches are followed [rad]
+_STEP = 0.1  # step of the tip's angle along a branch [rad]
+_NEAR = 1e-2  # half the relative interval of speeds for a polynomial through the least frequency
+_LARGEST_ANGLE = 6.0  # largest angle of the tip to which branches are followed [rad]
 
 
 def critical_speed(beam: Elastica, pieces: int = 2, nodes: int = NODES) -> float:
-    """The lowest gamma at which the straight beam of a symmetric scene has a neighbouring equilibrium."""
+    """Compute the lowest gamma at which the straight beam of a symmetric scene buckles."""
     return _pitchfork(Collocation(beam, pieces, nodes))[0] ** 0.5
 
 
 def _pitchfork(equations: Collocation) -> tuple[float, np.ndarray]:
-    """gamma^2 and the mode, of the tip's angle 1: the stiffness is linear in gamma^2."""
+    """Compute gamma^2 and the mode, with the tip's angle 1; the stiffness is linear in gamma^2."""
     if not equations.beam.is_symmetric:
         raise NotFound("the straight beam is no equilibrium")
     still = np.zeros(equations.size)
@@ -49,7 +49,7 @@ def _pitchfork(equations: Collocation) -> tuple[float, np.ndarray]:
 
 
 def at_tip_angle(start: State, angle: float) -> State:
-    """The equilibrium with this angle of the tip, near the start."""
+    """Find the equilibrium with an angle of the tip, near the start."""
     equations, q, square, before = start.equations, start.q, start.square, np.inf
     for _ in range(_NEWTON):
         residual = np.append(equations.residual(q, square), equations.tip_angle @ q - angle)
@@ -72,13 +72,13 @@ def _bordered(equations: Collocation, q: np.ndarray, square: float) -> np.ndarra
 
 
 def _tangent(state: State) -> np.ndarray:
-    """Change of q and of gamma^2 per angle of the tip."""
+    """Compute the change of q and of gamma^2 per angle of the tip."""
     right = np.append(np.zeros(state.q.size), 1.0)
     return np.linalg.solve(_bordered(state.equations, state.q, state.square), right)
 
 
 def followed(state: State, angle: float) -> State:
-    """The equilibrium on the same branch with another angle of the tip."""
+    """Follow the branch of an equilibrium to another angle of the tip."""
     count = max(1, int(np.ceil(abs(angle - state.tip_angle) / _STEP)))
     for goal in np.linspace(state.tip_angle, angle, count + 1)[1:]:
         step = (goal - state.tip_angle) * _tangent(state)
@@ -99,12 +99,12 @@ class Branch:
         return self.known[-1]
 
     def slope(self, angle: float) -> float:
-        """Change of gamma^2 per angle of the tip."""
+        """Compute the change of gamma^2 per angle of the tip."""
         return float(_tangent(self.at(angle))[-1])
 
 
 def branch_at(beam: Elastica, angle: float, pieces: int = 2, nodes: int = NODES, stages: int = 20) -> State:
-    """The equilibrium with this angle of the tip on the branch that comes from the pitchfork.
+    """Find the equilibrium with an angle of the tip on the branch that comes from the pitchfork.
 
     In a scene that is not symmetric it is reached from the symmetric one, the same with the axis of rotation
     on the line of the beam, by moving the axis away at the same angle of the tip.
@@ -123,14 +123,14 @@ def branch_at(beam: Elastica, angle: float, pieces: int = 2, nodes: int = NODES,
 
 
 def fold(start: State) -> State:
-    """The equilibrium at which the speed is least along the branch through the start."""
+    """Find the equilibrium of least speed along the branch through the start."""
     branch, angle = Branch(start), start.tip_angle
     end = 0.0 if branch.slope(angle) > 0 else _limit(start)
     return branch.at(_root(branch.slope, angle, end))
 
 
 def fold_beside(beam: Elastica, side: int) -> State:
-    """The fold of the branch on one side."""
+    """Find the fold of the branch on one side."""
     for angle in _ENTRIES:
         try:
             return fold(branch_at(beam, side * angle))
@@ -140,7 +140,7 @@ def fold_beside(beam: Elastica, side: int) -> State:
 
 
 def equilibria_bent_to(beam: Elastica, gamma: float, side: int) -> list[State]:
-    """Those beside the branch from rest, at one speed, from the least angle of the tip to the largest.
+    """Find the equilibria beside the branch from rest at one speed, by ascending angle of the tip.
 
     A symmetric scene has one on either side past its pitchfork; any other has two past its fold, between the
     straight beam, which the inner one approaches at high speeds, and the beam coiled up.
@@ -153,7 +153,7 @@ def equilibria_bent_to(beam: Elastica, gamma: float, side: int) -> list[State]:
 
 
 def _at_speed(branch: Branch, gamma: float, end: float) -> State:
-    """The equilibrium at a speed between the start of the branch and an angle of the tip."""
+    """Find the equilibrium at a speed, between the start of the branch and an angle of the tip."""
 
     def excess(angle: float) -> float:
         return branch.at(angle).square - gamma**2
@@ -163,7 +163,7 @@ def _at_speed(branch: Branch, gamma: float, end: float) -> State:
 
 
 def bent(beam: Elastica, gamma: float, side: int = 1) -> State:
-    """The stable equilibrium of the branch beside that from rest: its outermost at this speed."""
+    """Find the stable equilibrium of the branch beside that from rest: its outermost at this speed."""
     found = equilibria_bent_to(beam, gamma, side)
     if not found:
         raise NotFound(f"no bent equilibrium at gamma = {gamma:.6g}")
@@ -175,7 +175,7 @@ def _limit(state: State) -> float:
 
 
 def _root(function: Callable[[float], float], start: float, end: float) -> float:
-    """The first zero from the start to short of the end."""
+    """Find the first zero between the start and short of the end."""
     count = int(np.ceil(abs(end - start) / _STEP)) + 1
     angles = np.linspace(start, end, count + 1)[:-1].tolist()
     before = function(start)
@@ -191,7 +191,7 @@ def _root(function: Callable[[float], float], start: float, end: float) -> float
 
 
 def slowest(beam: Elastica, low: float, high: float, pieces: int = 2) -> tuple[float, float]:
-    """The gamma at which the first frequency is least on the branch from rest, and that frequency.
+    """Find the gamma at which the first frequency on the branch from rest is least, and the frequency.
 
     Brent's method finds it to half the digits; a polynomial through its neighbourhood the others.
     """

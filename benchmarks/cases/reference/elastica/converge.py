@@ -1,4 +1,4 @@
-"""Equilibrium and frequencies, with how far two meshes differ."""
+"""Equilibrium and frequencies on finer and finer meshes, and how far two meshes differ."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from benchmarks.cases.reference.elastica.equilibrium import State, on
 from benchmarks.cases.reference.elastica.vibration import Complexes, exponents, frequencies, growth
 
 _NODES = 16
-_FINEST = 24  # pieces of each interval between breakpoints
+_FINEST = 24  # most pieces of each interval between breakpoints
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What a scene has at one speed.
+    """Equilibrium and frequencies of a scene at one speed.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Answer:
 
 
 def converged(state: State, count: int = 3, rtol: float = 1e-12) -> Answer:
-    """The answer on the first mesh that changes nothing by more than `rtol`."""
+    """Return the answer on the first mesh whose refinement changes nothing by more than `rtol`."""
     beam, pieces, change = state.equations.beam, 2, np.inf
     before = _answer(on(Collocation(beam, 1, _NODES), state), count, change)
     while pieces <= _FINEST:

@@ -11,12 +11,12 @@ import numpy as np
 from benchmarks.cases.reference.elastica.beam import Elastica
 from benchmarks.cases.reference.twisted_beam.mesh import Mesh
 
-NODES = 12  # Gauss points of a piece
+NODES = 12  # number of Gauss points of a piece
 
 
 @dataclass(frozen=True)
 class Shape:
-    """Of one deflection: at the nodes and, last, at the body; places X, Y those of its centre of gravity."""
+    """The shape of one deflection: at the nodes and, last, at the centre of gravity of the body."""
 
     cos: np.ndarray
     sin: np.ndarray
@@ -28,7 +28,7 @@ class Shape:
 
 @dataclass(frozen=True)
 class Pencil:
-    """(stiffness + s gyroscopic + s^2 inertia) q = 0."""
+    """Matrices of (stiffness + s gyroscopic + s^2 inertia) q = 0."""
 
     stiffness: np.ndarray
     gyroscopic: np.ndarray
@@ -64,12 +64,12 @@ class Collocation:
 
     @property
     def row_weights(self) -> np.ndarray:
-        """Of the equations in virtual work: 1 at the root, and of the nodes those of their integrals."""
+        """Weights of the equations in virtual work: 1 at the root, and those of integrals at the nodes."""
         return np.append(1.0, self.weights)[self.free]
 
     @cached_property
     def tip_angle(self) -> np.ndarray:
-        """Row of theta(1) over q."""
+        """Row of theta(1) over the unknowns q."""
         return self.turn[-1, self.free]
 
     def shape(self, q: np.ndarray) -> Shape:
@@ -84,15 +84,15 @@ class Collocation:
         return Shape(cos, sin, seen, force, moment, tip)
 
     def moment(self, q: np.ndarray) -> np.ndarray:
-        """Of centrifugal forces over gamma^2, beside each unknown."""
+        """Compute the moment of centrifugal forces over gamma^2, beside each unknown."""
         return self.shape(q).moment[self.free]
 
     def residual(self, q: np.ndarray, square: float) -> np.ndarray:
-        """B kappa - M at the square of gamma."""
+        """Compute B kappa - M at a squared gamma."""
         return self.bending[self.free] * q - square * self.moment(q)
 
     def stiffness(self, q: np.ndarray, square: float) -> np.ndarray:
-        """Derivative of the residual."""
+        """Compute the derivative of the residual."""
         shape, turn = self.shape(q), self.turn
         along, across = self._moves(shape)
         force = self.outboard @ along, self.beam.in_plane * self.outboard @ across
@@ -102,7 +102,7 @@ class Collocation:
         return self._free(np.diag(self.bending) - square * (by_force + by_spin))
 
     def pencil(self, q: np.ndarray, square: float) -> Pencil:
-        """Small motion about an equilibrium."""
+        """Return the equations of small motions about an equilibrium."""
         shape = self.shape(q)
         along, across = self._moves(shape)
         twice = 2 * math.sqrt(square) * self.beam.in_plane
@@ -116,7 +116,7 @@ class Collocation:
         )
 
     def _moves(self, shape: Shape) -> tuple[np.ndarray, np.ndarray]:
-        """Changes of X and Y by those of the unknowns."""
+        """Compute the changes of X and Y by those of the unknowns."""
         return -self.reach @ (shape.sin[:, None] * self.turn), self.reach @ (shape.cos[:, None] * self.turn)
 
     def _moment_of(self, shape: Shape, horizontal: np.ndarray, vertical: np.ndarray) -> np.ndarray:
@@ -127,7 +127,7 @@ class Collocation:
 
 
 def _from_root(mesh: Mesh) -> np.ndarray:
-    """Integrals from the root to each node of the polynomials through the nodes: shape (n, n)."""
+    """Compute integrals from the root to each node of the polynomials through the nodes: (n, n)."""
     pieces, nodes = mesh.x.shape
     matrix = np.zeros((pieces, nodes, pieces, nodes))
     for k, step in enumerate(mesh.steps):
@@ -137,6 +137,6 @@ def _from_root(mesh: Mesh) -> np.ndarray:
 
 
 def _to_tip(mesh: Mesh) -> np.ndarray:
-    """Integrals from each node to the tip."""
+    """Compute integrals from each node to the tip."""
     whole = (mesh.steps[:, None] * mesh.weights).ravel()
     return whole - _from_root(mesh)

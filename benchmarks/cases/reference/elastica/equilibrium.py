@@ -9,16 +9,16 @@ import numpy as np
 from benchmarks.cases.reference.elastica.beam import Elastica
 from benchmarks.cases.reference.elastica.equations import NODES, Collocation
 
-_TOLERANCE = 3e-15  # of curvatures, over the largest of them and 1
-_SETTLED = 1e-11  # a change that rounding need not bring further down
+_TOLERANCE = 3e-15  # tolerance of curvatures, over the largest of them and 1
+_SETTLED = 1e-11  # change of curvatures that may be rounding
 _STEPS = 30
-_LARGEST_TURN = 0.15  # of any slope in one step of continuation [rad]
-_LARGEST_CORRECTION = 0.03  # of any slope from where the tangent leads [rad]
+_LARGEST_TURN = 0.15  # largest change of a slope in one step of continuation [rad]
+_LARGEST_CORRECTION = 0.03  # largest distance of a slope from where the tangent leads [rad]
 _LEAST_STEP = 1e-9
 
 
 class NotFound(ArithmeticError):
-    """There is no such equilibrium near the start."""
+    """Raised if there is no such equilibrium near the start."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class State:
 
     @property
     def downhill(self) -> int:
-        """In how many directions the energy falls: it changes at folds and pitchforks.
+        """Number of directions in which the energy falls, which changes at folds and pitchforks.
 
         The stiffness is the second derivative of the energy, but for the weights of the nodes.
         """
@@ -67,7 +67,7 @@ class State:
 
 
 def polished(start: State, steps: int = _STEPS) -> State:
-    """The equilibrium at the speed of the start, by Newton's method."""
+    """Find the equilibrium at the speed of the start by Newton's method."""
     equations, q, before = start.equations, start.q, np.inf
     for _ in range(steps):
         change = np.linalg.solve(equations.stiffness(q, start.square), equations.residual(q, start.square))
@@ -80,14 +80,14 @@ def polished(start: State, steps: int = _STEPS) -> State:
 
 
 def on(equations: Collocation, state: State) -> State:
-    """The same equilibrium on another mesh."""
+    """Return the same equilibrium on another mesh."""
     theta_rate = _interpolated(state, equations.mesh.x.ravel())
     root = state.q[: 1 - state.equations.free.start]
     return polished(State(equations, np.append(root, theta_rate), state.square))
 
 
 def _interpolated(state: State, x: np.ndarray) -> np.ndarray:
-    """Curvature at any x, by the polynomials through the nodes of each piece."""
+    """Interpolate the curvature at any x by the polynomials through the nodes of each piece."""
     mesh = state.equations.mesh
     curvature = state.q[1 - state.equations.free.start :].reshape(mesh.x.shape)
     place = np.clip(np.searchsorted(mesh.ends, x, side="right") - 1, 0, mesh.steps.size - 1)
@@ -99,7 +99,7 @@ def _interpolated(state: State, x: np.ndarray) -> np.ndarray:
 
 
 def from_rest(beam: Elastica, gamma: float, pieces: int = 3, nodes: int = NODES) -> State:
-    """The equilibrium continued from the straight beam at rest in gamma^2.
+    """Continue the equilibrium from the straight beam at rest in gamma^2.
 
     A step is halved until Newton's method ends close to where the tangent led, and the energy falls in as
     many directions as before; only the straight beam of a symmetric scene may pass its pitchfork.
@@ -122,7 +122,7 @@ def from_rest(beam: Elastica, gamma: float, pieces: int = 3, nodes: int = NODES)
 
 
 def _advanced(state: State, step: float) -> State:
-    """The next equilibrium, if it is clearly that of the same branch."""
+    """Return the next equilibrium, if it is clearly one of the same branch."""
     equations = state.equations
     tangent = np.linalg.solve(state.stiffness, equations.moment(state.q))
     turn = equations.turn[:, equations.free]

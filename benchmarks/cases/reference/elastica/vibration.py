@@ -1,4 +1,4 @@
-"""Small motion about an equilibrium: exponents s of exp(s t)."""
+"""Small motions about an equilibrium: exponents s of exp(s t)."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from benchmarks.cases.reference.elastica.equilibrium import State
 
 Complexes = np.ndarray[Any, np.dtype[np.complex128]]
 
-_STILL = 1e-7  # real part over modulus that rounding gives: s^2 is real but for 1e-14
+_STILL = 1e-7  # real part over modulus that is rounding: s^2 is real but for 1e-14
 _SWEEPS = 4
 
 
 def exponents(state: State, count: int = 3) -> Complexes:
-    """The `count` exponents of least modulus, one of each pair +-s (Im s > 0, or s > 0).
+    """Compute the `count` exponents of least modulus, one of each pair +-s (Im s > 0, or s > 0).
 
     Of (1/s^2) q + (1/s) K^-1 G q + K^-1 A q = 0: A integrates, so that 1/s has no large useless values.
     """
@@ -32,7 +32,7 @@ def exponents(state: State, count: int = 3) -> Complexes:
 
 
 def _one_of_each_pair(inverse: Complexes) -> np.ndarray:
-    """Indices, by falling modulus of 1/s; Im s > 0 is Im 1/s < 0."""
+    """Return indices by falling modulus of 1/s, one of each pair; Im s > 0 means Im 1/s < 0."""
     least = _STILL * np.abs(inverse)
     upper = (inverse.imag < -least) | ((np.abs(inverse.imag) <= least) & (inverse.real > 0))
     chosen = np.flatnonzero(upper)
@@ -40,7 +40,7 @@ def _one_of_each_pair(inverse: Complexes) -> np.ndarray:
 
 
 def _refined(pencil: Pencil, s: complex, q: np.ndarray) -> complex:
-    """Newton's method for the pencil and its mode together."""
+    """Refine an exponent and its mode together by Newton's method."""
     n, against = q.size, q.conj() / np.linalg.norm(q) ** 2
     for _ in range(_SWEEPS):
         matrix = pencil.stiffness + s * pencil.gyroscopic + s**2 * pencil.inertia
@@ -52,13 +52,13 @@ def _refined(pencil: Pencil, s: complex, q: np.ndarray) -> complex:
 
 
 def frequencies(state: State, count: int = 3) -> np.ndarray:
-    """The lowest `count` frequencies lambda; nan for each exponent that has a real part."""
+    """Compute the lowest `count` frequencies lambda; nan for each exponent with a real part."""
     found = exponents(state, count)
     return np.where(np.abs(found.real) <= _STILL * np.abs(found), np.abs(found.imag), np.nan)
 
 
 def growth(state: State, count: int = 8) -> float:
-    """The largest real part of the lowest exponents, either of each pair +-s: 0 is stable."""
+    """Compute the largest real part of the lowest exponents, of either sign of s; 0 means stable."""
     found = exponents(state, count)
     real = np.where(np.abs(found.real) > _STILL * np.abs(found), np.abs(found.real), 0.0)
     return float(real.max())

@@ -15,13 +15,14 @@ from benchmarks.cases.reference.many_digits.energies import Space
 from benchmarks.cases.reference.many_digits.fixed import DIGITS
 from benchmarks.cases.reference.many_digits.numbers import Numbers
 
-_BESIDE = mpf(10) ** -18  # change of a number, over its size
-_MESHES = (  # functions on each segment, pieces of it
+_BESIDE = mpf(10) ** -18  # change of a number in a difference, over its size
+_MESHES = (  # numbers of functions on each segment, and of its pieces
     (10, 1), (14, 1), (20, 1), (28, 1), (40, 1), (28, 2), (40, 2), (28, 4),
 )  # fmt: skip
-_AT_REST = "beam.", "mount.root_stiffness", "mount.second_root_stiffness"  # numbers of modes at rest
-_LARGEST = 700  # functions of all fields
-_RTOL = 1e-11  # change of frequencies by a finer mesh
+# Numbers on which the modes at rest depend.
+_AT_REST = "beam.", "mount.root_stiffness", "mount.second_root_stiffness"
+_LARGEST = 700  # most functions of all fields together
+_RTOL = 1e-11  # largest change of frequencies by a finer mesh
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class Number:
 def frequency_derivatives(
     scene: bd.Scene, speed: float, modes: int, numbers: Sequence[Number]
 ) -> tuple[list[float], np.ndarray, np.ndarray]:
-    """Frequencies [Hz], their derivatives [Hz / unit of each number], and what another mesh changes of these.
+    """Compute frequencies [Hz], derivatives [Hz / unit of each number], and their change by another mesh.
 
     Arrays have the shape (numbers, modes).
     """
@@ -48,7 +49,7 @@ def frequency_derivatives(
 
 
 def _meshes(scene: bd.Scene, speed: float, modes: int) -> tuple[Pencil, Pencil]:
-    """The first two meshes between which the frequencies settle."""
+    """Return the first two meshes between which the frequencies settle."""
     before: tuple[Pencil, np.ndarray] | None = None
     for functions, pieces in _MESHES:
         pencil = Pencil.of(Numbers(scene, speed, functions, pieces))
@@ -62,7 +63,7 @@ def _meshes(scene: bd.Scene, speed: float, modes: int) -> tuple[Pencil, Pencil]:
 
 
 def _rough(pencil: Pencil, modes: int) -> np.ndarray:
-    """Squared frequencies of double precision, without damping and gyroscopic terms."""
+    """Compute squared frequencies in double precision, without damping and gyroscopic terms."""
     e, matrix = pencil.energies, pencil.space.matrix
     M, K = matrix(e.mass), matrix(e.still) + float(pencil.numbers.omega) ** 2 * matrix(e.spin)
     shift = 1.0
@@ -71,7 +72,7 @@ def _rough(pencil: Pencil, modes: int) -> np.ndarray:
 
 
 def _derivatives(pencil: Pencil, modes: int, of: Sequence[Number]) -> tuple[list[Mode], np.ndarray]:
-    """Modes of a scene, and the differences of their frequencies."""
+    """Compute modes of a scene, and the differences of their frequencies."""
     if pencil.numbers.ratios(1):
         pencil = replace(pencil, damping=AtRest.of(pencil))
     found = [replace(mode, s=pencil.quotient(mode)) for mode in modes_of(pencil, modes)]
@@ -80,14 +81,14 @@ def _derivatives(pencil: Pencil, modes: int, of: Sequence[Number]) -> tuple[list
 
 
 def _by_number(pencil: Pencil, modes: Sequence[Mode], number: Number) -> list[float]:
-    """The eigenvalues beside have an error of the square of the change."""
+    """Compute differences by a number; eigenvalues beside have an error of the square of the change."""
     change = _BESIDE * mpf(number.size)
     beside = _changed(pencil, number, change)
     return [float(mp.im(beside.quotient(mode) - mode.s) / change / (2 * mp.pi)) for mode in modes]
 
 
 def _changed(pencil: Pencil, number: Number, change: mpf) -> Pencil:
-    """The scene with a number changed; trial functions stay where the mesh does."""
+    """Return the scene with a number changed; trial functions stay where the mesh does."""
     numbers = replace(pencil.numbers, name=number.name, value=mpf(number.value), change=change)
     same = numbers.mesh.ends == pencil.numbers.mesh.ends
     found = Pencil(numbers, pencil.space if same else Space(numbers))

@@ -20,14 +20,14 @@ from benchmarks.cases.reference.many_digits.fixed import BITS, dot, fixed, from_
 from benchmarks.cases.reference.many_digits.numbers import Numbers
 
 DIGITS = 40
-_STEPS = 12  # of refinement at most
-_LOST = 1e-13  # eigenvalues over the largest that double precision loses
-_OF_DOUBLES = 3  # steps, each of which doubles the digits of the modes at rest
+_STEPS = 12  # most steps of refinement
+_LOST = 1e-13  # size of eigenvalues, over the largest, that double precision loses
+_OF_DOUBLES = 3  # number of steps that each double the digits of the modes at rest
 
 
 @dataclass(frozen=True)
 class Pencil:
-    """The matrices of a scene, as what they do to vectors."""
+    """The matrices of a scene, as products with vectors."""
 
     numbers: Numbers
     space: Space
@@ -42,7 +42,7 @@ class Pencil:
         return energies(self.numbers)
 
     def parts(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What multiplies s^2, s and 1 in P(s) v, in units of the scene's time."""
+        """Compute the factors of s^2, s and 1 in P(s) v, in units of the scene's time."""
         e, found = self.energies, self.space.quantities(v)
         forms = e.mass, e.still, e.spin, e.gyroscopic, e.damper
         mass, rates, stiffness = self._summed(*(self._collected(form, found, v) for form in forms))
@@ -52,14 +52,14 @@ class Pencil:
         return self.space.collect(form.times(quantities)) if form.parts else np.zeros_like(v)
 
     def _summed(self, mass: Any, still: Any, spin: Any, gyroscopic: Any, damper: Any) -> tuple[Any, Any, Any]:
-        """The factors of s^2, s and 1 from those of the forms."""
+        """Compute the factors of s^2, s and 1 from those of the forms."""
         n = self.numbers
         rates = _scaled(gyroscopic, n.omega) + _scaled(mass, n.mass_factor())
         rates = rates + _scaled(still, n.stiffness_factor()) + _scaled(damper, n.tip_damper())
         return mass, rates, still + _scaled(spin, n.omega**2)
 
     def quotient(self, mode: Mode) -> mpc:
-        """The root of left^T P(s) right near s [1/s] of a mode whose vectors are nearly those of this scene.
+        """Compute the root of left^T P(s) right near s [1/s] of a mode with nearly the vectors of this scene.
 
         Its error is of the square of theirs.
         """
@@ -80,7 +80,7 @@ class Pencil:
 
 
 def _between(form: Form, left: Rows, right: Rows) -> np.ndarray:
-    """A form of the real and imaginary parts of two vectors, shape (2, 2)."""
+    """Compute a form of the real and imaginary parts of two vectors, shape (2, 2)."""
     found = np.zeros((2, 2), dtype=object)
     for key, values in form.times(right).items():
         found = found + dot(left[key].T, values)
@@ -110,7 +110,7 @@ class AtRest:
 
     @classmethod
     def of(cls, pencil: Pencil, near: np.ndarray | None = None) -> AtRest:
-        """All modes at rest, from those of double precision, or of a scene that differs by 1e-18 or so."""
+        """Compute all modes at rest from approximate ones: of double precision, or of a scene close by."""
         M, K = (_dense(pencil, form) for form in (pencil.energies.mass, pencil.energies.still))
         X = _modes_of_doubles(M, K) if near is None else near
         for _ in range(_OF_DOUBLES if near is None else 1):
@@ -147,7 +147,7 @@ def _modes_of_doubles(M: np.ndarray, K: np.ndarray) -> np.ndarray:
 
 
 def _improved(X: np.ndarray, M: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, list[int]]:
-    """One step of Ogita and Aishima (2018, doi:10.1007/s13160-018-0310-3): twice as many digits."""
+    """Take one step of Ogita and Aishima (2018, doi:10.1007/s13160-018-0310-3), which doubles the digits."""
     R = -dot(X.T, dot(M, X))
     size = len(R)
     R[np.diag_indices(size)] += 1 << BITS
@@ -177,20 +177,20 @@ class Mode:
 
 
 def modes_of(pencil: Pencil, count: int) -> list[Mode]:
-    """The lowest modes that vibrate, in order of |s|."""
+    """Return the lowest modes that vibrate, in order of |s|."""
     doubles = _Doubles.of(pencil)
     return [_refined(pencil, doubles, s, v) for s, v in doubles.lowest(count)]
 
 
 @dataclass(frozen=True)
 class _Doubles:
-    """The matrices in double precision, by s^2, s and 1."""
+    """The matrices in double precision, by powers of s."""
 
     M: np.ndarray
     D: np.ndarray
     K: np.ndarray
-    rest: np.ndarray  # stiffness at rest
-    conserves: bool  # neither damping nor gyroscopic terms
+    rest: np.ndarray  # matrix of stiffness at rest
+    conserves: bool  # whether there is neither damping nor gyroscopic terms
 
     @classmethod
     def of(cls, pencil: Pencil) -> _Doubles:
@@ -241,12 +241,12 @@ def _refined(pencil: Pencil, doubles: _Doubles, s: complex, v: np.ndarray) -> Mo
 
 
 def _is_even(doubles: _Doubles) -> bool:
-    """Whether there is no damping: then P(s)^T is the conjugate of P(s)."""
+    """Whether there is no damping, so that P(s)^T is the conjugate of P(s)."""
     return bool(np.abs(doubles.D + doubles.D.T).max() == 0)
 
 
 def _bordered(doubles: _Doubles, s: complex, v: np.ndarray, scale: np.ndarray) -> tuple:
-    """Factors of the bordered matrix, in scaled coordinates of unit vectors."""
+    """Factorize the bordered matrix, in scaled coordinates of unit vectors."""
     P = doubles.at(s) * np.outer(scale, scale)
     x = v / scale
     x = x / np.linalg.norm(x)
@@ -268,7 +268,7 @@ def _converged_in_doubles(doubles: _Doubles, s: complex, v: np.ndarray, scale: n
 def _corrected(
     pencil: Pencil, doubles: _Doubles, s: mpc, v: np.ndarray, scale: np.ndarray
 ) -> tuple[mpc, np.ndarray]:
-    """Newton's method with exact residuals and these factors."""
+    """Correct a mode by Newton's method with exact residuals and these factors."""
     factors, weight, _ = _bordered(doubles, complex(s), v, scale)
     vector, before = from_complex(v), mp.inf
     for _ in range(_STEPS):
@@ -277,7 +277,7 @@ def _corrected(
         size = max(abs(int(value)) for value in residual.flat)
         if size == 0:
             break
-        shift = max(size.bit_length() - 60, 0)  # of the residual the leading digits count
+        shift = max(size.bit_length() - 60, 0)  # only the leading digits of the residual count
         leading = np.array([[int(x) >> shift for x in row] for row in residual], dtype=float)
         change = scipy.linalg.lu_solve(factors, np.append(-scale * (leading[:, 0] + 1j * leading[:, 1]), 0))
         vector = vector + _shifted(scale * change[:-1], shift)
@@ -294,7 +294,7 @@ def _corrected(
 
 
 def _left_in_doubles(doubles: _Doubles, s: complex, scale: np.ndarray) -> np.ndarray:
-    """The left vector of double precision: quotients of an exact right one err by none of it."""
+    """Compute the left vector in double precision; quotients with an exact right one do not need more."""
     P = (doubles.at(s) * np.outer(scale, scale)).T
     return scale * scipy.linalg.svd(P)[2][-1].conj()
 
@@ -303,12 +303,12 @@ def _left_in_doubles(doubles: _Doubles, s: complex, scale: np.ndarray) -> np.nda
 
 
 def from_complex(v: np.ndarray) -> np.ndarray:
-    """Columns of the real and the imaginary part."""
+    """Return columns of the real and the imaginary part."""
     return np.stack([from_float(v.real), from_float(v.imag)], axis=1)
 
 
 def _shifted(v: np.ndarray, shift: int) -> np.ndarray:
-    """Numbers of double precision in units of 2^(shift - BITS), as columns."""
+    """Return double-precision numbers in units of 2^(shift - BITS), as columns."""
     both = np.stack([v.real, v.imag], axis=1)
     flat = [int(mp.ldexp(mpf(float(x)), shift)) for x in both.flat]
     return np.array(flat, dtype=object).reshape(both.shape)
@@ -326,10 +326,10 @@ def _complex_times(v: np.ndarray, factor: mpc) -> np.ndarray:
 
 
 def _inner(left: np.ndarray, right: np.ndarray) -> mpc:
-    """left^T right, without conjugation."""
+    """Compute left^T right, without conjugation."""
     return _without_conjugate(dot(left.T, right))
 
 
 def _without_conjugate(table: np.ndarray) -> mpc:
-    """left^T right from the products (2, 2) of real and imaginary parts."""
+    """Compute left^T right from the products (2, 2) of real and imaginary parts."""
     return mpc(to_mpf(table[0, 0]) - to_mpf(table[1, 1]), to_mpf(table[0, 1]) + to_mpf(table[1, 0]))

@@ -23,25 +23,25 @@ Side = Callable[[int], list[Quantity]]
 
 @dataclass
 class Form:
-    """A bilinear form: the sum of a coefficient at each point times both quantities."""
+    """A bilinear form: the sum of a coefficient at each point times two quantities."""
 
     points: int
     parts: dict[tuple[Quantity, Quantity], np.ndarray] = field(default_factory=dict)
 
     def add(self, left: Iterable[Quantity], right: Iterable[Quantity], factors: np.ndarray) -> None:
-        """Add to all pairs of quantities."""
+        """Add factors to all pairs of quantities."""
         for a in left:
             for b in right:
                 self.parts[a, b] = self.parts.get((a, b), 0) + factors
 
     def add_at(self, point: int, left: Iterable[Quantity], right: Iterable[Quantity], factor: mpf) -> None:
-        """Add at one point."""
+        """Add a factor at one point."""
         factors = np.zeros(self.points, dtype=object)
         factors[point] = fixed([factor])[0]
         self.add(left, right, factors)
 
     def times(self, quantities: Rows) -> Rows:
-        """What multiplies each quantity of the other vectors, shape (points, ...)."""
+        """Compute the factors of each quantity of the other vectors, shape (points, ...)."""
         found: Rows = {}
         for (a, b), factors in self.parts.items():
             shape = (-1, *[1] * (quantities[b].ndim - 1))
@@ -80,7 +80,7 @@ class Space:
 
     @cached_property
     def blocks(self) -> dict[tuple[str, int], slice]:
-        """Places of the functions of each field among all."""
+        """Places of the functions of each field among all functions."""
         starts, found = 0, {}
         for kind, i in self.fields:
             size = self.rows[kind, i, 0].shape[1]
@@ -93,13 +93,14 @@ class Space:
         return max(block.stop for block in self.blocks.values())
 
     def quantities(self, vectors: np.ndarray) -> Rows:
-        """The quantities of vectors (size, k), each of shape (points, k)."""
+        """Compute the quantities of vectors (size, k), each of shape (points, k)."""
         return {key: dot(rows, vectors[self.blocks[key[:2]]]) for key, rows in self.rows.items()}
 
     def known(self, vectors: np.ndarray) -> Rows:
-        """The quantities of vectors that are asked for again: those of the modes."""
+        """Return the quantities of vectors that are asked for repeatedly, which are those of the modes."""
         if id(vectors) not in self._known:
-            self._known[id(vectors)] = vectors, self.quantities(vectors)  # kept, so that its id stays its own
+            # Kept, so that no other object gets the id.
+            self._known[id(vectors)] = vectors, self.quantities(vectors)
         return self._known[id(vectors)][1]
 
     @cached_property
@@ -107,7 +108,7 @@ class Space:
         return {}
 
     def collect(self, factors: Rows) -> np.ndarray:
-        """The vectors (size, k) of a form that multiplies the quantities of the others by factors."""
+        """Collect the vectors (size, k) of a form from its factors of the other vectors' quantities."""
         width = next(iter(factors.values())).shape[1]
         found = np.zeros((self.size, width), dtype=object)
         for key, values in factors.items():
@@ -115,13 +116,13 @@ class Space:
         return found
 
     def apply(self, form: Form, vectors: np.ndarray) -> np.ndarray:
-        """The form's matrix times vectors (size, k)."""
+        """Multiply the form's matrix with vectors (size, k)."""
         if not form.parts:
             return np.zeros_like(vectors)
         return self.collect(form.times(self.quantities(vectors)))
 
     def matrix(self, form: Form) -> np.ndarray:
-        """The form's matrix in double precision."""
+        """Compute the form's matrix in double precision."""
         rows = {key: to_float(table) for key, table in self.rows.items()}
         found = np.zeros((self.size, self.size))
         for (a, b), factors in form.parts.items():
@@ -142,7 +143,7 @@ class Energies:
 
 
 def energies(numbers: Numbers) -> Energies:
-    """The forms of a scene."""
+    """Build the forms of a scene."""
     return _Builder(numbers).build()
 
 
@@ -176,24 +177,24 @@ class _Builder:
     # quantities
 
     def u(self, i: int, order: int = 0) -> list[tuple[str, int, int]]:
-        """Deflection, or slope of the beam's line."""
+        """Return the quantities that add up to a deflection, or a slope of the beam's line."""
         return [(kind, i, order) for kind in ("b", "s")[: 1 + self.shears]]
 
     def over(self, values: np.ndarray) -> np.ndarray:
-        """What is integrated over the beam, with the weights."""
+        """Multiply values along the beam with the weights of the integral."""
         return times(fixed(values), self.weights)
 
     # terms
 
     def _translation(self) -> None:
-        """All mass on the axis: rho A and point masses."""
+        """Add all mass on the axis: rho A and point masses."""
         masses = self.over(self.n.mass)
         for at, mass in self.n.point_masses():
             masses[at] += fixed([mass])[0]
         self._moving(masses, self.u, [("e", 0, 0)] if self.stretches else [])
 
     def _moving(self, masses: np.ndarray, u: Side, stretch: list[Quantity]) -> None:
-        """Mass with deflections u(i) and stretch."""
+        """Add mass that moves with deflections u(i) and stretch."""
         self._pair(masses, u, u)
         self._with_stretch(masses, u, stretch)
         self._stretching(masses, stretch)
@@ -210,7 +211,7 @@ class _Builder:
                 self.spin.add([("b", i, 1)], [("b", j, 1)], self.over(spins[i][j]))
 
     def _spin_of(self, B: list[list]) -> list[list]:
-        """C^2 (n (B n)^T + (B n) n^T)/2 - S^2 B, of numbers or values at points."""
+        """Compute C^2 (n (B n)^T + (B n) n^T)/2 - S^2 B, of numbers or values at points."""
         n = self.normal
         Bn = [B[i][0] * n[0] + B[i][1] * n[1] for i in (0, 1)]
         return [
@@ -234,7 +235,7 @@ class _Builder:
             self.still.add([("e", 0, 1)], [("e", 0, 1)], self.over(axial))
 
     def _tension(self) -> None:
-        """C^2 N_B - C cos(phi) r N_A, of all mass outboard."""
+        """Add the tension C^2 N_B - C cos(phi) r N_A by all mass outboard."""
         mesh = self.n.mesh
         at = fixed(mesh.places)
         masses = fixed(self.n.mass)
@@ -281,7 +282,7 @@ class _Builder:
             self.gyroscopic.add_at(self.last, [("b", 1, 1)], [("b", 0, 1)], -2 * self.S * along)
 
     def _moving_tip(self, mass: mpf, offset: mpf) -> None:
-        """The mass of the tip body, with the deflection u + eps u_b' of its centre of gravity."""
+        """Add the mass of the tip body, with the deflection u + eps u_b' of its centre of gravity."""
         one = np.zeros(self.points, dtype=object)
         one[self.last] = fixed([mass])[0]
         parts = [(mpf(1), self.u), (offset, lambda i: [("b", i, 1)])]
@@ -293,7 +294,7 @@ class _Builder:
         self._stretching(one, stretch)
 
     def _pair(self, masses: np.ndarray, left: Side, right: Side) -> None:
-        """Mass with deflections: inertia, spin softening and Coriolis coupling of planes."""
+        """Add mass with deflections: inertia, spin softening and Coriolis coupling of planes."""
         d, n, S = self.d, self.normal, self.S
         for i in self.planes:
             self.mass.add(left(i), right(i), masses)
@@ -304,12 +305,12 @@ class _Builder:
             self.gyroscopic.add(left(1), right(0), _scaled(masses, -2 * S))
 
     def _stretching(self, masses: np.ndarray, stretch: list[Quantity]) -> None:
-        """Mass with stretch: inertia and spin softening."""
+        """Add mass with stretch: inertia and spin softening."""
         self.mass.add(stretch, stretch, masses)
         self.spin.add(stretch, stretch, -_scaled(masses, self.C**2))
 
     def _with_stretch(self, masses: np.ndarray, u: Side, stretch: list[Quantity]) -> None:
-        """Mass with both: Coriolis coupling, and what precone couples."""
+        """Add what couples deflections with stretch: the Coriolis force, and precone."""
         for i in self.planes:
             self.gyroscopic.add(u(i), stretch, _scaled(masses, -2 * self.d[i] * self.C))
             self.gyroscopic.add(stretch, u(i), _scaled(masses, 2 * self.d[i] * self.C))
@@ -317,7 +318,7 @@ class _Builder:
             self.spin.add(stretch, u(i), _scaled(masses, self.S * self.C * self.normal[i]))
 
     def _twisting(self) -> None:
-        """H(x) = -d B n + int_x^L d R n dx, times C^2 (phi_1' phi_2'' - phi_1'' phi_2') / 2."""
+        """Add H(x) = -d B n + int_x^L d R n dx, times C^2 (phi_1' phi_2'' - phi_1'' phi_2') / 2."""
         d, n, H = self.d, self.normal, np.zeros(self.points, dtype=object)
         if self.n.scene.physics.rotary_inertia:
             R = self.n.tensor("rotary_inertia", self.n.root_mass * self.n.length**2)

@@ -17,7 +17,7 @@ ONE = 1 << BITS
 
 
 def fixed(values: Iterable[mpf | float]) -> np.ndarray:
-    """Numbers as multiples of 2^-200, shape (n,)."""
+    """Convert numbers to multiples of 2^-200, shape (n,)."""
     return np.array([int(mp.floor(mp.ldexp(mpf(v), BITS))) for v in values], dtype=object)
 
 
@@ -26,22 +26,22 @@ def to_mpf(value: int) -> mpf:
 
 
 def to_float(values: np.ndarray) -> np.ndarray:
-    """Double-precision numbers of an array of any shape."""
+    """Convert an array of any shape to double precision."""
     flat = [int(v) / ONE for v in np.ravel(values)]
     return np.array(flat).reshape(np.shape(values))
 
 
 def from_float(values: np.ndarray) -> np.ndarray:
-    """The binary numbers of a real array of any shape, exactly to the unit."""
+    """Convert a real array of any shape, exactly to the unit."""
     flat = [int(mp.ldexp(mpf(float(v)), BITS)) for v in np.ravel(values)]
     return np.array(flat, dtype=object).reshape(np.shape(values))
 
 
 def times(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Product element by element."""
+    """Multiply element by element."""
     return (a * b) >> BITS
 
 
 def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Product of matrices, or of a matrix and a vector."""
+    """Multiply matrices, or a matrix and a vector."""
     return np.asarray(a @ b) >> BITS

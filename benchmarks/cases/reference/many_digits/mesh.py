@@ -14,7 +14,7 @@ from mpmath import mp, mpf
 
 from benchmarks.cases.reference.many_digits.fixed import DIGITS, ONE, dot, fixed, times
 
-_MORE = 8  # Gauss points beyond the number of functions: properties vary, too
+_MORE = 8  # Gauss points beyond the number of functions, as properties vary, too
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Rule:
 
 @lru_cache(maxsize=16)
 def rule(n: int) -> Rule:
-    """The rule for n functions on each segment."""
+    """Return the rule for n functions on each segment."""
     with mp.workdps(DIGITS + 10):
         q = n + _MORE
         t, weights = _gauss(q)
@@ -84,7 +84,7 @@ def _legendre(x: mpf, count: int) -> list[mpf]:
 
 
 def _integral(row: list[mpf], k: int) -> mpf:
-    """Integral of P_k from -1."""
+    """Compute the integral of P_k from -1."""
     return row[1] + 1 if k == 0 else (row[k + 1] - row[k - 1]) / (2 * k + 1)
 
 
@@ -119,7 +119,7 @@ class Mesh:
 
     @property
     def places(self) -> list[mpf]:
-        """The points x/L."""
+        """Points x/L of the mesh."""
         inner = [
             a + (1 + t) / 2 * h for a, h in zip(self.ends, self.lengths, strict=False) for t in self.rule.t
         ]
@@ -127,7 +127,7 @@ class Mesh:
 
     @property
     def segments(self) -> list[int]:
-        """Which segment a point belongs to."""
+        """Index of the segment that each point belongs to."""
         return [0, *(k for k in range(len(self.lengths)) for _ in self.rule.t)]
 
     @property
@@ -136,11 +136,11 @@ class Mesh:
         return fixed([0, *(w * h / 2 for h in self.lengths for w in self.rule.weights)])
 
     def end(self, k: int) -> int:
-        """The point at the right end of a segment."""
+        """Return the point at the right end of a segment."""
         return (k + 1) * len(self.rule.t)
 
     def outboard(self, values: np.ndarray) -> np.ndarray:
-        """Integral from each point to the tip of what has these values at the points."""
+        """Integrate from each point to the tip a function with these values at the points."""
         found, beyond, size = np.zeros(len(values), dtype=object), 0, len(self.rule.t)
         for k in reversed(range(len(self.lengths))):
             start = 1 + k * size
@@ -153,7 +153,7 @@ class Mesh:
         return found
 
     def once(self) -> tuple[np.ndarray, np.ndarray]:
-        """Values and first derivatives of functions given by that, shape (points, segments n)."""
+        """Compute values and first derivatives of functions given by the latter, (points, segments n)."""
         slope, value = self._empty(1), self._empty(1)
         size, n = len(self.rule.t), self.functions
         for k, h in enumerate(self.lengths):
@@ -165,7 +165,10 @@ class Mesh:
         return value, slope
 
     def twice(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Values, first and second derivatives; the last function is x/L, shape (points, segments n + 1)."""
+        """Compute values and two derivatives of functions.
+
+        The last is x/L, shape (points, segments n + 1).
+        """
         bend, slope, value = self._empty(), self._empty(), self._empty()
         size, n, places = len(self.rule.t), self.functions, fixed(self.places)
         for k, h in enumerate(self.lengths):

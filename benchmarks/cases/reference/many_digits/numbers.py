@@ -19,8 +19,8 @@ import beamdyn as bd
 from beamdyn.scene.profile import Profile
 from benchmarks.cases.reference.many_digits.mesh import Mesh
 
-_QUARTER = 2e-16  # cosines below it are those of a quarter turn
-_SAME = 1e-12  # in x/L
+_QUARTER = 2e-16  # size of cosines below which a quarter turn is meant
+_SAME = 1e-12  # difference of x/L below which two points are one
 # Powers of the sides and of the material of a rectangular section in its properties.
 _AREA = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
 _EASY, _STIFF = ("bending_stiffness", "rotary_inertia"), ("second_bending_stiffness", "second_rotary_inertia")
@@ -34,7 +34,7 @@ _POWERS: dict[str, dict[str, int]] = {
 
 @dataclass(frozen=True)
 class Numbers:
-    """The numbers of a scene, of which that of a name is changed.
+    """The numbers of a scene, one of which may be changed.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Numbers:
     change: mpf = mpf(0)
 
     def of(self, name: str, value: float) -> mpf:
-        """A number, with the change if it is the one that changes."""
+        """Return a number, with the change if it is the one that changes."""
         return mpf(value) + (self.change if name == self.name else 0)
 
     @cached_property
@@ -93,7 +93,7 @@ class Numbers:
         return mpf(float(profile.end_values()[0][0])) * self.factor(name)
 
     def factor(self, name: str) -> mpf:
-        """What the changed number multiplies a property by."""
+        """Return the factor by which the changed number multiplies a property."""
         own = self.name.removeprefix("beam.").removeprefix("scale.")
         if own == "poissons_ratio":
             quotient = (12 + 11 * self.value) / (12 + 11 * (self.value + self.change))
@@ -107,7 +107,7 @@ class Numbers:
 
     @cached_property
     def mesh(self) -> Mesh:
-        """Segments between all breakpoints and points, and pieces of these."""
+        """Segments between all breakpoints and points, in a number of pieces each."""
         points = [self.place(kind, k) for kind, k in self._points]
         plain = [mpf(xi) for xi in self.scene.modelled_beam.breakpoints]
         ends = sorted([*points, *(xi for xi in plain if all(abs(xi - at) > _SAME for at in points))])
@@ -124,7 +124,7 @@ class Numbers:
         ]
 
     def place(self, kind: str, k: int) -> mpf:
-        """Position x/L of a point mass or spring."""
+        """Return the position x/L of a point mass or spring."""
         beam = self.scene.beam
         points = beam.point_masses if kind == "point_mass" else beam.point_springs
         if points[k].position == beam.length:
@@ -132,14 +132,14 @@ class Numbers:
         return self.of(f"beam.{kind}[{k}].position", points[k].position) / self.length
 
     def point(self, kind: str, k: int) -> int:
-        """Where it stands among the points of the mesh."""
+        """Return the index of a point mass or spring among the points of the mesh."""
         at = self.place(kind, k)
         return self.mesh.end(
             min(range(len(self.mesh.lengths)), key=lambda j: abs(self.mesh.ends[j + 1] - at))
         )
 
     def along(self, name: str, unit: mpf) -> np.ndarray | None:
-        """A property at the points of the mesh, over a unit; None if it is not modelled."""
+        """Return a property at the points of the mesh, over a unit; None if it is not modelled."""
         profile = getattr(self.scene.modelled_beam, name)
         if profile is None:
             return None
@@ -152,7 +152,7 @@ class Numbers:
         return found
 
     def tensor(self, name: str, unit: mpf) -> list[list[np.ndarray]] | None:
-        """A property of both directions of the section along e1 and e2: values at the points, 2 x 2."""
+        """Return a property of both directions along e1 and e2 at the points, 2 x 2; None if not modelled."""
         first = self.along(name, unit)
         if first is None:
             return None
@@ -170,7 +170,7 @@ class Numbers:
 
     @cached_property
     def inward(self) -> mpf:
-        """Distance of the root from the axis of rotation along the beam, positive if it points inward."""
+        """Compute the distance of the root from the axis of rotation along the beam, positive if inward."""
         mount = self.scene.mount
         exact = self.name != "mount.setting_angle" and abs(math.cos(mount.setting_angle)) < _QUARTER
         cosine = (
@@ -189,7 +189,7 @@ class Numbers:
         return self.of("mount.precone", self.scene.mount.precone)
 
     def root_spring(self, plane: int) -> mpf | None:
-        """Stiffness of the root's spring in a plane; None if it is clamped."""
+        """Return the stiffness of the root's spring in a plane; None if it is clamped."""
         name = ("root_stiffness", "second_root_stiffness")[plane]
         value = getattr(self.scene.mount, name)
         return (
@@ -203,7 +203,7 @@ class Numbers:
         return self.root_mass * self.length
 
     def tip(self) -> dict[str, mpf] | None:
-        """Mass, offset and moments J_n, J_e, J_1 of the tip body."""
+        """Return mass, offset and moments J_n, J_e, J_1 of the tip body; None without one."""
         tip = self.scene.beam.tip
         if tip is None:
             return None
@@ -223,14 +223,14 @@ class Numbers:
         }  # fmt: skip
 
     def point_masses(self) -> list[tuple[int, mpf]]:
-        """Point of the mesh and mass of each."""
+        """Return the point of the mesh and the mass of each."""
         return [
             (self.point("point_mass", k), self.of(f"beam.point_mass[{k}].mass", each.mass) / self._mass_unit)
             for k, each in enumerate(self.scene.beam.point_masses)
         ]
 
     def point_springs(self) -> list[tuple[int, int, mpf]]:
-        """Point of the mesh, plane and stiffness of each."""
+        """Return the point of the mesh, plane and stiffness of each."""
         unit = self.root_stiffness / self.length**3
         return [
             (
@@ -254,7 +254,7 @@ class Numbers:
         return damper * self.length**3 / (self.root_stiffness * self.time)
 
     def ratios(self, modes: int) -> list[mpf]:
-        """Damping ratio of each mode at rest, from the lowest."""
+        """Return the damping ratio of each mode at rest, from the lowest."""
         if self.scene.damping_ratio:
             return [self.of("model.damping_ratio", self.scene.damping_ratio)] * modes
         given = [self.of(f"damping.ratios[{k}]", z) for k, z in enumerate(self.scene.damping.ratios)]
@@ -262,7 +262,7 @@ class Numbers:
 
 
 def turned(first: np.ndarray, second: np.ndarray, angle: np.ndarray) -> list[list[np.ndarray]]:
-    """The tensor along e1, e2 of values along axes turned by an angle, at each point."""
+    """Return the tensor along e1, e2 of values along axes turned by an angle, at each point."""
     cosine = np.array([mp.cos(a) for a in angle], dtype=object)
     sine = np.array([mp.sin(a) for a in angle], dtype=object)
     mixed = (first - second) * cosine * sine
@@ -273,7 +273,7 @@ def turned(first: np.ndarray, second: np.ndarray, angle: np.ndarray) -> list[lis
 
 
 def values_at(profile: Profile, mesh: Mesh) -> np.ndarray:
-    """A piecewise polynomial at the points of a mesh, each by the polynomial of its segment."""
+    """Evaluate a piecewise polynomial at the points of a mesh, each by its segment's polynomial."""
     ends = [float(e) for e in mesh.ends]
     middles = [(a + b) / 2 for a, b in pairwise(ends)]
     parts = np.searchsorted(profile.breakpoints[1:-1], middles, side="right").tolist()
@@ -294,7 +294,7 @@ def _series(coefficients: Sequence[float], t: mpf) -> mpf:
 
 
 def _cosine(value: float, exact: mpf) -> mpf:
-    """Of an angle; a quarter or half turn of 16 digits is meant exactly."""
+    """Compute the cosine of an angle; a quarter or half turn of 16 digits counts as exact."""
     if abs(math.cos(value)) < _QUARTER:
         return -mp.sin(exact - mpf(value)) * (1 if value > 0 else -1)
     if abs(math.sin(value)) < _QUARTER:

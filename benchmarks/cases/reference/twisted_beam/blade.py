@@ -1,4 +1,4 @@
-"""The beam: plain functions and numbers."""
+"""The beam of the second method, as plain functions and numbers."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Body:
     axial: float = 0.0
 
     def moments(self, psi: float) -> tuple[np.ndarray, np.ndarray]:
-        """Kinetic matrix J_t of the rates of p, and the matrix W_t of the spin."""
+        """Compute the kinetic matrix J_t of the rates of p, and the matrix W_t of the spin."""
         c, s = math.cos(psi), math.sin(psi)
         about_2 = self.transverse * c**2 + self.inertia * s**2
         about_3 = self.transverse * s**2 + self.inertia * c**2
@@ -52,7 +52,7 @@ class Body:
         return (self.inertia + self.transverse - self.axial) / 2
 
     def product(self, psi: float) -> float:
-        """E23."""
+        """Compute the product of inertia E23."""
         return (self.inertia - self.transverse) * math.cos(psi) * math.sin(psi)
 
 
@@ -95,7 +95,7 @@ class Blade:
     precone: float = 0.0
 
     def directions(self, x: np.ndarray | float) -> np.ndarray:
-        """Unit vectors of the first and second direction of bending in b2, b3: columns, shape (..., 2, 2)."""
+        """Compute unit vectors of both directions of bending in b2, b3, as columns: shape (..., 2, 2)."""
         psi = self.bending_angle + self.twist(np.asarray(x, dtype=float))
         c, s = np.cos(psi), np.sin(psi)
         return np.stack([np.stack([c, -s], -1), np.stack([s, c], -1)], -2)
@@ -106,6 +106,6 @@ class Blade:
 
     @property
     def basis(self) -> np.ndarray:
-        """Columns: the directions in which the beam may bend."""
+        """Directions in which the beam may bend, as columns."""
         c, s = math.cos(self.bending_angle), math.sin(self.bending_angle)
         return np.eye(2) if self.planes == 2 else np.array([[c], [s]])

@@ -21,20 +21,20 @@ from benchmarks.cases.reference.twisted_beam.equations import (
 from benchmarks.cases.reference.twisted_beam.mesh import Mesh
 
 _NODES = 12
-_AGREEMENT = 1e-11  # of eigenvalues and quotients
-_FINEST = 64  # pieces of each interval between breakpoints
+_AGREEMENT = 1e-11  # largest relative difference of eigenvalues and quotients
+_FINEST = 64  # most pieces of each interval between breakpoints
 
 
 @dataclass(frozen=True)
 class Solution:
-    """Lowest eigenvalues lambda^2, and the same from the quotient of the energies of their modes."""
+    """Lowest eigenvalues lambda^2, and the quotients of the energies of their modes."""
 
     squares: np.ndarray
     quotients: np.ndarray
 
 
 def solve(blade: Blade, gamma: float, count: int = 4, pieces: int = 4, nodes: int = _NODES) -> Solution:
-    """The lowest `count` values of lambda^2 by collocation at Gauss points.
+    """Compute the lowest `count` values of lambda^2 by collocation at Gauss points.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def solve(blade: Blade, gamma: float, count: int = 4, pieces: int = 4, nodes: in
 
 
 def converged(blade: Blade, gamma: float, count: int = 4, rtol: float = 1e-12) -> tuple[np.ndarray, float]:
-    """The lowest lambda^2 on the first mesh that changes none of them by more than `rtol`, and that change.
+    """Return the lowest lambda^2 on the first mesh that changes none by more than `rtol`, and the change.
 
     They are the quotients of the energies; the eigenvalues themselves agree with them to 1e-11.
     """
@@ -73,7 +73,7 @@ def converged(blade: Blade, gamma: float, count: int = 4, rtol: float = 1e-12) -
 
 
 def _places(mesh: Mesh, planes: int) -> np.ndarray:
-    """Where the states at the nodes stand among all unknowns: shape (pieces, nodes, 4 d)."""
+    """Return the places of the states at the nodes among all unknowns: shape (pieces, nodes, 4 d)."""
     size = 4 * planes
     pieces, nodes = mesh.x.shape
     whole = np.arange(pieces * (nodes + 1) * size).reshape(pieces, nodes + 1, size)
@@ -81,7 +81,7 @@ def _places(mesh: Mesh, planes: int) -> np.ndarray:
 
 
 def _assemble(blade: Blade, gamma: float, mesh: Mesh, section: Section) -> tuple[sp.csc_array, sp.csc_array]:
-    """A and B of A y = lambda^2 B y; unknowns: states at each piece's start and nodes, then the tip's."""
+    """Assemble A and B of A y = lambda^2 B y; unknowns are states at starts and nodes, then at the tip."""
     still, moving = rates(section, gamma)
     return assemble(blade, mesh, still, moving, tip_conditions(blade, gamma))
 
@@ -93,10 +93,10 @@ def assemble(
     moving: np.ndarray,
     at_tip: tuple[np.ndarray, np.ndarray],
 ) -> tuple[sp.csc_array, sp.csc_array]:
-    """The same, from rates (pieces, nodes, 4 d, 4 d) and conditions at the tip."""
+    """Assemble A and B from rates (pieces, nodes, 4 d, 4 d) and conditions at the tip."""
     pieces, nodes = mesh.x.shape
     d = 4 * blade.planes
-    to_nodes = np.vstack([mesh.inner, mesh.weights])  # the last: to the end of the piece
+    to_nodes = np.vstack([mesh.inner, mesh.weights])  # the last row integrates to the end of the piece
     identity = np.hstack([np.tile(-np.eye(d), (nodes + 1, 1)), np.eye((nodes + 1) * d)])
     wide = pieces * (nodes + 1) * d + d
     left, right = sp.lil_array((wide, wide)), sp.lil_array((wide, wide))
@@ -114,14 +114,14 @@ def assemble(
 
 
 def _weighted(weights: np.ndarray, rates: np.ndarray) -> np.ndarray:
-    """The matrix of sum_j weights[i, j] rates[j] y_j."""
+    """Compute the matrix of sum_j weights[i, j] rates[j] y_j."""
     rows, columns = weights.shape
     d = rates.shape[-1]
     return np.einsum("ij,jab->iajb", weights, rates).reshape(rows * d, columns * d)
 
 
 def _lowest(left: sp.csc_array, right: sp.csc_array, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lowest eigenvalues and vectors by Arnoldi's method on the inverse, shifted off the zero of hinges."""
+    """Compute lowest eigenvalues and vectors by Arnoldi's method on the inverse, shifted off hinges' 0."""
     shift = -1.0
     inverse = splu(sp.csc_matrix(left - shift * right))
     operator = LinearOperator(left.shape, matvec=lambda y: inverse.solve(right @ y), dtype=float)
@@ -139,7 +139,7 @@ def _lowest(left: sp.csc_array, right: sp.csc_array, count: int) -> tuple[np.nda
 def _refined(
     left: sp.csc_array, right: sp.csc_array, value: float, vector: np.ndarray
 ) -> tuple[float, np.ndarray]:
-    """Inverse iteration with a shift beside the value: Arnoldi's rounding is that of the lowest value."""
+    """Refine by inverse iteration beside the value, as Arnoldi's rounding is that of the lowest value."""
     shift = value + 1e-6 * max(1.0, abs(value))
     inverse = splu(sp.csc_matrix(left - shift * right))
     for _ in range(2):

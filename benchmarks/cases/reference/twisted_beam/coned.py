@@ -27,13 +27,13 @@ from benchmarks.cases.reference.twisted_beam.equations import coriolis, rates, s
 from benchmarks.cases.reference.twisted_beam.mesh import Mesh
 
 _NODES = 12
-_FINEST = 64  # pieces of each interval between breakpoints
+_FINEST = 64  # most pieces of each interval between breakpoints
 
 
 def coned_frequencies(
     blade: Blade, gamma: float, count: int = 4, rtol: float = 1e-10
 ) -> tuple[np.ndarray, float]:
-    """The lowest lambda on the first mesh that changes none of them by more than `rtol`, and that change."""
+    """Return the lowest lambda on the first mesh that changes none by more than `rtol`, and the change."""
     before, pieces, change = solve_coned(blade, gamma, count, 1), 2, np.inf
     while pieces <= _FINEST:
         found = solve_coned(blade, gamma, count, pieces)
@@ -45,7 +45,7 @@ def coned_frequencies(
 
 
 def solve_coned(blade: Blade, gamma: float, count: int, pieces: int) -> np.ndarray:
-    """The lowest lambda on a mesh of so many pieces between breakpoints."""
+    """Compute the lowest lambda on a mesh of equal pieces between breakpoints."""
     mesh = Mesh.make(blade.breakpoints, pieces, _NODES)
     section = sections_at(blade, mesh)
     still, moving = rates(section, gamma)
@@ -57,7 +57,7 @@ def solve_coned(blade: Blade, gamma: float, count: int, pieces: int) -> np.ndarr
 
 
 def _lowest(left: sp.csc_array, turning: sp.csc_array, right: sp.csc_array, count: int) -> np.ndarray:
-    """Lowest lambda of left y + s turning y + s^2 right y = 0, by Arnoldi's method for 1/s."""
+    """Compute the lowest lambda of left y + s turning y + s^2 right y = 0, by Arnoldi's method for 1/s."""
     n, factors = left.shape[0], splu(sp.csc_matrix(left))
 
     def inverse(state: np.ndarray) -> np.ndarray:
@@ -75,7 +75,7 @@ def _lowest(left: sp.csc_array, turning: sp.csc_array, right: sp.csc_array, coun
 def _refined(
     left: sp.csc_array, turning: sp.csc_array, right: sp.csc_array, at: float, y: np.ndarray
 ) -> float:
-    """Newton's method for lambda, with inverse iteration for y: Arnoldi's rounding is that of the lowest."""
+    """Refine lambda by Newton's method with inverse iteration for y."""
     s = 1j * at * (1 + 1e-6)
     for _ in range(4):
         y = y / np.linalg.norm(y)

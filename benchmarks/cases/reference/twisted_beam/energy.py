@@ -40,7 +40,7 @@ def quotient(
     first: np.ndarray,
     last: np.ndarray,
 ) -> float:
-    """Energy of bending, shear, springs and spin over that of the motion, of one mode."""
+    """Compute the energy of bending, shear, springs and spin over that of the motion, for one mode."""
     d = blade.planes
     form = Forms(mesh)
     u, p, moment, total = (states[..., i * d : (i + 1) * d] for i in range(4))
@@ -59,7 +59,7 @@ def quotient(
 
 
 def spin_energy(blade: Blade, gamma: float, mesh: Mesh, section: Section, mode: Deflection) -> float:
-    """Twice the energy of steady rotation, to second order."""
+    """Compute twice the energy of steady rotation, to second order."""
     form, d = Forms(mesh), blade.planes
     tension = section.tension[..., None, None] * np.eye(d)
     spin = form(tension, mode.slope) - form(section.in_plane, mode.u)

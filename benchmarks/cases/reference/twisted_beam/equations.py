@@ -60,12 +60,12 @@ def sections_at(blade: Blade, mesh: Mesh) -> Section:
 
 
 def _pushed(blade: Blade) -> np.ndarray:
-    """P: by how much of a deflection a point leaves the axis of rotation."""
+    """Return P, by which a deflection takes a point away from the axis of rotation."""
     return np.diag([1.0, math.sin(blade.precone) ** 2])
 
 
 def rates(section: Section, gamma: float) -> tuple[np.ndarray, np.ndarray]:
-    """A and B of y' = (A + lambda^2 B) y, y = (u, p, M, Q): shape (pieces, nodes, 4 d, 4 d)."""
+    """Compute A and B of y' = (A + lambda^2 B) y, y = (u, p, M, Q): shape (pieces, nodes, 4 d, 4 d)."""
     one = np.eye(section.mass.shape[-1])
     tension = gamma**2 * section.tension[..., None, None] * one
     by_force = np.linalg.inv(one + tension @ section.flexibility)  # V = by_force (Q - N p)
@@ -90,7 +90,7 @@ def _blocks(rows: list[list[np.ndarray]]) -> np.ndarray:
 
 
 def root_conditions(blade: Blade) -> np.ndarray:
-    """C of C y(0) = 0: shape (2 d, 4 d)."""
+    """Compute C of C y(0) = 0: shape (2 d, 4 d)."""
     basis, d = blade.basis, blade.planes
     c, s = math.cos(blade.bending_angle), math.sin(blade.bending_angle)
     rows = [np.hstack([np.eye(d), np.zeros((d, 3 * d))])]
@@ -102,7 +102,7 @@ def root_conditions(blade: Blade) -> np.ndarray:
 
 
 def tip_conditions(blade: Blade, gamma: float) -> tuple[np.ndarray, np.ndarray]:
-    """C0, C1 of (C0 - lambda^2 C1) y(1) = 0: shapes (2 d, 4 d)."""
+    """Compute C0, C1 of (C0 - lambda^2 C1) y(1) = 0: shapes (2 d, 4 d)."""
     body, basis, d = blade.body, blade.basis, blade.planes
     kinetic, flat = body.moments(blade.tip_angle)
     c, s = math.cos(blade.precone), math.sin(blade.precone)
@@ -121,7 +121,7 @@ def tip_conditions(blade: Blade, gamma: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def coriolis(blade: Blade, section: Section, gamma: float) -> tuple[np.ndarray, np.ndarray]:
-    """What precone adds to the rates, (pieces, nodes, 4 d, 4 d), and the tip's conditions, times s [1/s].
+    """Compute what precone adds to rates (pieces, nodes, 4 d, 4 d) and tip conditions, times s [1/s].
 
     With the velocity v, the Coriolis force on a mass m is -2 gamma sin(precone) m T v in Q.
     """

@@ -32,19 +32,19 @@ class Mesh:
         return np.diff(self.ends)
 
     def outboard(self, values: np.ndarray) -> np.ndarray:
-        """Integral from each node to the tip."""
+        """Integrate from each node to the tip."""
         whole = self.steps * (values @ self.weights)
         beyond = np.append(np.cumsum(whole[::-1])[::-1], 0.0)
         return beyond[:-1, None] - self.steps[:, None] * (values @ self.inner.T)
 
 
-_RATIO = 4.0  # of a property at the ends of a piece, above which the piece is halved
-_WITHIN = 1e-10  # of a piece: where its ends are read, beside a jump there
+_RATIO = 4.0  # ratio of a property at the ends of a piece, above which the piece is halved
+_WITHIN = 1e-10  # share of a piece at which its ends are read, beside jumps
 _HALVINGS = 50
 
 
 def graded(functions: Iterable[Callable[[np.ndarray], np.ndarray]], stops: Sequence[float]) -> list[float]:
-    """The stops and further ones between them, so that no positive function changes fast between two.
+    """Add further stops between stops, so that no positive function changes fast between two.
 
     The reciprocal of a stiffness that falls linearly by a factor r has a pole at 1/(r - 1) of the segment's
     length beyond its end: polynomials over the whole segment resolve that slowly.
@@ -66,7 +66,7 @@ def graded(functions: Iterable[Callable[[np.ndarray], np.ndarray]], stops: Seque
 
 
 def _integration(t: np.ndarray) -> np.ndarray:
-    """Exact integrals from 0 to each node of the polynomials through the nodes."""
+    """Compute exact integrals from 0 to each node of the polynomials through the nodes."""
     legendre = np.polynomial.legendre
     values = legendre.legvander(2 * t - 1, t.size - 1)
     integrals = [legendre.legint(row, lbnd=-1, scl=1) / 2 for row in np.eye(t.size)]

@@ -1,0 +1,127 @@
+"""Pictures of harvested power, voltage and strain: over speed, and over the load resistance."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.common.plots.axes_and_lines import draw_lines, new_axes, panels, set_up_axes, speed_label
+from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
+
+_KM_PER_HOUR = 3.6  # factor from m/s to km/h
+_HEIGHT, _WIDTH, _ABOVE = 2.8, 4.2, 1.2  # of a panel, and room for the names above all [inch]
+_NARROWEST = 3.0  # least width of a panel beside others [inch]
+
+
+@dataclass(frozen=True)
+class HarvestPanel:
+    """Curves of one quantity over speed.
+
+    Parameters
+    ----------
+    label : str
+        The quantity, with its unit.
+    curves : mapping of str to ndarray, shape (S,)
+        Values by name; nan leaves a gap.
+    limit : float
+        What the values should not pass; inf if there is no limit.
+    """
+
+    label: str
+    curves: Mapping[str, np.ndarray]
+    limit: float = np.inf
+
+
+def panel_size(count: int, width: float | None = None) -> tuple[float, float]:
+    """Return width and height of a picture of a number of panels [inch]."""
+    whole = width or _WIDTH * count
+    return whole, _ABOVE + _HEIGHT * -(-count // _columns(whole))
+
+
+def _columns(width: float) -> int:
+    """Return how many panels fit into a row of a picture of a width [inch]."""
+    return max(int(width / _NARROWEST), 1)
+
+
+def plot_harvest_panels(
+    speeds: np.ndarray, shown: Sequence[HarvestPanel], resonances: np.ndarray, radius: float,
+    units: DisplayUnits, ax: Axes | None = None,
+) -> Axes:  # fmt: skip
+    """Draw panels over speed, as many in a row as fit; curves of one name have one colour.
+
+    The arguments are those of `plot_harvest`.
+    """
+    ax = ax or new_axes(*panel_size(len(shown)))
+    columns, named = _columns(ax.bbox.width / ax.figure.dpi), {}
+    ax, places = panels(len(shown), ax, columns)
+    for k, (place, panel) in enumerate(zip(places, shown, strict=True)):
+        plot_harvest(speeds, panel, resonances, radius if k < columns else 0.0, units, place)
+        named |= {label: each for each, label in zip(*place.get_legend_handles_labels(), strict=True)}
+        if (legend := place.get_legend()) is not None:
+            legend.remove()
+        if k + columns < len(shown):
+            place.set_xlabel("")
+    ax.figure.legend(named.values(), named.keys(), loc="outside upper left", fontsize=10, ncols=columns)
+    return ax
+
+
+def plot_harvest(
+    speeds: np.ndarray,
+    panel: HarvestPanel,
+    resonances: np.ndarray,
+    radius: float,
+    units: DisplayUnits,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw curves over speed with a logarithmic scale, their limit, and the speeds of resonance.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (S,)
+        Angular speeds [rad/s].
+    panel : HarvestPanel
+        The curves.
+    resonances : ndarray, shape (r,)
+        Speeds of resonance [rad/s].
+    radius : float
+        Radius of a wheel that rolls [m], whose velocities stand above; 0 if there is none.
+    units : DisplayUnits
+        Units of the axes; the arrays are SI.
+    ax : Axes, optional
+        Where to draw; new axes if not given.
+
+    Returns
+    -------
+    Axes
+    """
+    speed = units.speed_unit()
+    ax = set_up_axes(ax, speed_label(units), panel.label)
+    drawn = [np.where(np.asarray(each) > 0, each, np.nan) for each in panel.curves.values()]
+    draw_lines(ax, speed.of(np.asarray(speeds)), drawn, [*panel.curves])
+    for k, at in enumerate(speed.of(np.asarray(resonances))):
+        label = "" if k else "resonance of the circuit without its load"
+        ax.axvline(at, color="0.6", linestyle=":", linewidth=1.0, label=label)
+    if np.isfinite(panel.limit):
+        ax.axhline(panel.limit, color=COLOURS[1], linestyle="--", linewidth=1.2, label="limit of the layers")
+    if any((each > 0).any() for each in drawn):
+        ax.set_yscale("log")
+    if radius:
+        each = _KM_PER_HOUR * radius / speed.per_si  # km/h in a unit of the axis below
+        above = ax.secondary_xaxis(
+            "top", functions=(lambda v: np.asarray(v) * each, lambda v: np.asarray(v) / each)
+        )
+        above.set_xlabel("velocity of the vehicle [km/h]", fontsize=12)
+    return add_legend(ax)
+
+
+def plot_resistances(resistances: np.ndarray, power: np.ndarray, best: float, ax: Axes | None = None) -> Axes:
+    """Draw power [W] over resistances [ohm], both logarithmic, and mark the best."""
+    ax = set_up_axes(ax, "load resistance [ohm]", "mean power [W]")
+    ax.plot(resistances, power, color=COLOURS[0], linewidth=1.8, marker=".", label="tried")
+    ax.plot(best, power.max(), "o", color=COLOURS[1], label=f"best, {best:.4g} ohm")
+    ax.set_xscale("log")
+    ax.set_yscale("log")
+    return add_legend(ax)

@@ -1,0 +1,315 @@
+"""Functions across the width of a strip, and integrals over its area with functions along it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from beamdyn.common.numerics import gauss_rule
+from beamdyn.equations.discretization import RootConditions, Space, Spaces
+from beamdyn.equations.fields.field import Field
+from beamdyn.scene.profile import ONE, Profile, combine
+from beamdyn.scene.rectangle import Rectangle
+from beamdyn.scene.scene import Scene
+
+_ORDERS = (0, 0), (0, 1), (0, 2), (1, 0), (2, 0), (1, 1)  # orders of the derivatives along and across
+_ZERO = 1e-12  # averages over the width below this fraction of the largest are 0 by symmetry
+
+
+class Derivative(NamedTuple):
+    """Part of a derivative of the deflection: a factor times a derivative of u_k times a function of eta.
+
+    Parameters
+    ----------
+    factor : Profile
+        Factor along the beam.
+    order : int
+        Order of the derivative of u_k by x.
+    across : ndarray, shape (k, q)
+        Functions of eta, for each k, at the Gauss points across.
+    """
+
+    factor: Profile
+    order: int
+    across: np.ndarray
+
+
+class WidthFunctions:
+    """Functions across a strip's width, and the deflection's derivatives as sums of `Derivative` parts.
+
+    Parameters
+    ----------
+    section : Rectangle
+        The section.
+    length : float
+        Length of the beam [m].
+    field : str
+        Name of the field.
+    numbers : sequence of int
+        Numbers k of the field's functions across.
+    conditions : RootConditions
+        Conditions at the root of the field's functions along the beam.
+    points : int
+        Number of Gauss points across.
+    """
+
+    def __init__(
+        self,
+        section: Rectangle,
+        length: float,
+        field: str,
+        numbers: Sequence[int],
+        conditions: RootConditions,
+        points: int,
+    ) -> None:
+        self.field, self.conditions = field, conditions
+        eta, _ = gauss_rule(points)
+        self.tip, (p, dp, ddp) = _polynomials(tuple(numbers), points)
+        half = _inverse(section.width).scaled(2.0)  # d eta/dy
+        self.parts = {  # parts of the deflection and of its derivatives
+            "w": [Derivative(ONE, 0, p)],
+            "w_y": [Derivative(half, 0, dp)],
+            "w_yy": [Derivative(half * half, 0, ddp)],
+            "w_x": [Derivative(ONE, 1, p)],
+            "w_xx": [Derivative(ONE, 2, p)],
+            "w_xy": [Derivative(half, 1, dp)],
+        }
+        if min(numbers) % 2 and not _is_uniform(section.width):
+            self.parts = _parts_over_fixed_width(section.width, tuple(numbers), eta)
+        elif section.width.degree:  # the derivative d/dx is taken at constant y
+            slope, change = _relative_slopes(section.width, length)
+            stretched, turned = eta * dp, dp + eta * ddp
+            self.parts["w_x"].append(Derivative(slope.scaled(-1.0), 0, stretched))
+            self.parts["w_xx"] += [
+                Derivative(slope.scaled(-2.0), 1, stretched),
+                Derivative(change.scaled(-1.0), 0, stretched),
+                Derivative(slope * slope, 0, eta * turned),
+            ]
+            self.parts["w_xy"].append(Derivative((half * slope).scaled(-1.0), 0, turned))
+
+
+@lru_cache(maxsize=64)
+def _polynomials(numbers: tuple[int, ...], points: int) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Evaluate functions across at the corner, and their derivatives of orders 0 to 2 at Gauss points."""
+    edge, series = np.sqrt(2 * np.array(numbers) + 1), np.eye(max(numbers) + 1)[:, [*numbers]]
+    eta, _ = gauss_rule(points)
+    return edge, [edge[:, None] * legendre.legval(eta, legendre.legder(series, order)) for order in range(3)]
+
+
+def _is_uniform(width: Profile) -> bool:
+    """Whether the width is the same along the whole beam."""
+    return not width.degree and len(width.breakpoints) == 2
+
+
+def over_tip(width: Profile) -> Profile:
+    """Divide the width by its value at the tip."""
+    return width.scaled(1 / float(width.end_values()[1][-1]))
+
+
+def _parts_over_fixed_width(
+    width: Profile, numbers: tuple[int, ...], eta: np.ndarray
+) -> dict[str, list[Derivative]]:
+    """Split derivatives of p_k(2 y/b(L)) u_k by powers of 2 y/b and of the width over its tip value."""
+    r, dy = over_tip(width), 2 / float(width.end_values()[1][-1])
+    series = (np.sqrt(2 * k + 1) * legendre.leg2poly(np.eye(k + 1)[k]) for k in numbers)
+    coefficients = np.array([np.pad(c, (0, max(numbers) + 1 - len(c))) for c in series])
+    powers = [ONE]
+    while len(powers) <= max(numbers):
+        powers.append(powers[-1] * r)
+
+    def of(along: int, across: int) -> list[Derivative]:
+        """Split the derivative of given orders along and across."""
+        return [
+            Derivative(
+                powers[m - across].scaled(math.perm(m, across) * dy**across),
+                along,
+                coefficients[:, [m]] * eta ** (m - across),
+            )
+            for m in range(across, max(numbers) + 1)
+            if coefficients[:, m].any()
+        ]
+
+    return {"w" + ("_" + "x" * i + "y" * j if i + j else ""): of(i, j) for i, j in _ORDERS}
+
+
+@lru_cache(maxsize=64)
+def _inverse(b: Profile) -> Profile:
+    """Compute the reciprocal of the width [1/m]."""
+    return combine(lambda width: 1 / width[None], b)[0]
+
+
+@lru_cache(maxsize=64)
+def _relative_slopes(b: Profile, length: float) -> tuple[Profile, Profile]:
+    """Compute the relative slope b'/b of the width [1/m] and its derivative [1/m2], over x/L."""
+    first, second = b.derivative(), b.derivative().derivative()
+    beta, change = combine(lambda b, d, dd: np.stack([d / b, dd / b - (d / b) ** 2]), b, first, second)
+    return beta.scaled(1 / length), change.scaled(1 / length**2)
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A rectangular strip, with integrals over its area.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, whose beam has a rectangular section.
+    spaces : Spaces
+        Function spaces along the beam.
+    """
+
+    scene: Scene
+    spaces: Spaces
+
+    @property
+    def section(self) -> Rectangle:
+        """The section."""
+        assert self.scene.beam.strip is not None, "a scene of a plate has a section"
+        return self.scene.beam.strip
+
+    @property
+    def points(self) -> int:
+        """Number of Gauss points across the width; products of two functions and a parabola are exact."""
+        return self.spaces.across + 3
+
+    @property
+    def rotary_inertia(self) -> Profile:
+        """Rotary inertia of the thickness per length [kg m], which acts when sections twist."""
+        t = self.section.thickness
+        return (self.scene.beam.mass_per_length * t * t).scaled(1 / 12)
+
+    def functions(self, field: Field, numbers: Sequence[int], conditions: RootConditions) -> WidthFunctions:
+        """Build a field's functions across the width that have given numbers k."""
+        return WidthFunctions(
+            self.section, self.scene.beam.length, field.name, numbers, conditions, self.points
+        )
+
+    def integrate(
+        self,
+        weight: Profile,
+        rows: tuple[WidthFunctions, str],
+        columns: tuple[WidthFunctions, str],
+        across: np.ndarray | float = 1.0,
+    ) -> np.ndarray:
+        """Integrate over x a weight times the width mean of two derivatives and a factor across.
+
+        Each derivative is named by the functions and a label such as "w_xx".
+        """
+        (first, a), (second, b) = rows, columns
+        _, of_points = gauss_rule(self.points)
+        L, total = self.scene.beam.length, 0.0
+        for p in first.parts[a]:
+            for q in second.parts[b]:
+                averages = (p.across * (of_points / 2 * across)) @ q.across.T
+                scale = np.abs(p.across).max(initial=0.0) * np.abs(q.across).max(initial=0.0)
+                averages[np.abs(averages) <= _ZERO * scale] = 0.0
+                if averages.any():
+                    of_x = weight * (p.factor * q.factor), first.conditions, second.conditions
+                    along = self.spaces.product(*of_x, (p.order, q.order)) * L ** (1 - p.order - q.order)
+                    of_both = averages[:, None, :, None] * along[:, None, :]
+                    total = total + of_both.reshape(averages.shape[0] * along.shape[0], -1)
+        return np.atleast_2d(total)
+
+    def load(
+        self,
+        weight: Profile,
+        rows: tuple[WidthFunctions, str],
+        along: Space,
+        across: np.ndarray | float = 1.0,
+    ) -> np.ndarray:
+        """Integrate over x a weight times the width mean of one derivative and a factor across."""
+        _, of_points = gauss_rule(self.points)
+        functions, name = rows
+        L, total = self.scene.beam.length, 0.0
+        for p in functions.parts[name]:
+            means = p.across @ (of_points / 2 * across)
+            total = total + np.kron(means, along.load((weight * p.factor).scaled(L)))
+        return np.atleast_1d(total)
+
+    def stiffness(self, rows: WidthFunctions, columns: WidthFunctions, warping: Profile = ONE) -> np.ndarray:
+        """Compute the plate's stiffness [N/m]; `warping` scales its bending along the beam."""
+        section, EI = self.section, self.scene.beam.bending_stiffness
+        D, bend = EI * section.camber_stiffening, self.integrate
+        cross = D * _root(warping) * section.camber_ratio
+        GJ = EI * section.twist_factor
+        return (
+            bend(D * warping, (rows, "w_xx"), (columns, "w_xx"))
+            + bend(D, (rows, "w_yy"), (columns, "w_yy"))
+            + bend(cross, (rows, "w_xx"), (columns, "w_yy"))
+            + bend(cross, (rows, "w_yy"), (columns, "w_xx"))
+            + bend(GJ, (rows, "w_xy"), (columns, "w_xy"))
+        )
+
+
+@lru_cache(maxsize=64)
+def _root(factor: Profile) -> Profile:
+    """Compute the square root of a property."""
+    return combine(lambda values: np.sqrt(values)[None], factor)[0]
+
+
+@dataclass(frozen=True)
+class StackedSpace:
+    """Coordinates of a plate field: each function across, times all functions along the beam.
+
+    Parameters
+    ----------
+    along : Space
+        Functions along the beam.
+    numbers : tuple of int
+        Numbers k of the functions across.
+    fewer : int
+        Number of functions across in the coarser discretization.
+    stretch : Profile
+        Local width over the width that scales y in the functions across.
+    """
+
+    along: Space
+    numbers: tuple[int, ...]
+    fewer: int
+    stretch: Profile = ONE
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates; those of the first function across come first."""
+        return self.along.size * len(self.numbers)
+
+    @property
+    def of_each(self) -> int:
+        """Number of coordinates of each function across, which are consecutive."""
+        return self.along.size
+
+    @property
+    def corner(self) -> np.ndarray:
+        """Deflection per coordinate at the tip's corner in the direction across, shape (n,)."""
+        return np.kron(np.sqrt(2 * np.array(self.numbers) + 1), self.along.end(0))
+
+    def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
+        """Evaluate the deflections at x/L (k,) along and 2 y/b (l,) across: shape (n, k, l)."""
+        numbers = np.array(self.numbers)
+        places = np.multiply.outer(self.stretch(xi), eta)
+        across = legendre.legvander(places, numbers.max())[:, :, numbers] * np.sqrt(2 * numbers + 1)
+        values = self.along.evaluate(xi)[:, :, None] * np.moveaxis(across, 2, 0)[:, None]
+        return values.reshape(self.size, len(xi), len(eta))
+
+    def curvature_across(self, xi: np.ndarray) -> np.ndarray:
+        """Evaluate second derivatives by eta at x/L (k,), averaged over the width: shape (n, k).
+
+        An even Legendre polynomial's second derivative has the mean k(k + 1)/2, its slope at an edge.
+        """
+        numbers = np.array(self.numbers)
+        means = np.where(numbers % 2, 0, numbers * (numbers + 1) / 2) * np.sqrt(2 * numbers + 1)
+        return np.kron(means[:, None], self.along.evaluate(xi))
+
+    @property
+    def coarse(self) -> np.ndarray | None:
+        """Indices of coordinates that span the coarser discretization; None where none do."""
+        kept = self.along.coarse
+        if kept is None:
+            return None
+        return (self.along.size * np.arange(self.fewer)[:, None] + kept).ravel()

@@ -1,0 +1,104 @@
+"""Checks of a beam: which properties must be given together, and where its points may be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue, kind, refuse, set_fields, several
+from beamdyn.scene.names_elsewhere import GIVE_IT, GIVE_OR_COMPUTE
+from beamdyn.scene.points import PointMass, PointSpring
+from beamdyn.scene.profile import Profile
+from beamdyn.scene.section_matrices import SectionMatrices
+
+Beam = Any  # `beamdyn.scene.beam.Beam`, whose module imports this one
+# Positions that differ by less, over the length, differ by rounding only: breakpoints merge.
+_ROUNDING = 1e-12
+_TURNS_BACK = np.pi / 2  # kink [rad] of the axis at which the axis runs back on itself
+_GIVE_RADIANS = "is it in degrees? give math.radians(...)"
+OFFSETS = ("mass_offset", "tension_offset")  # distances of centres from the shear centre
+_MADE = {PointMass: "PointMass(position, mass)", PointSpring: "PointSpring(position, stiffness)"}
+_BEYOND = {PointMass: "a body beyond the tip is a TipMass", PointSpring: "hold the tip itself"}
+
+
+def check_together(beam: Beam) -> None:
+    """Refuse properties given without others that they need, and a tip body that is behind the root."""
+    if beam.twist is not None and beam.second_bending_stiffness is None:
+        bound, other = "it turns two directions of bending, and needs {other}", "second_bending_stiffness"
+        said: dict[str, Any] = {"other": other, "where": " at the tip"}
+        raise InvalidValue("twist", beam.tip_twist, bound, GIVE_OR_COMPUTE, "rad", **said)
+    if beam.torsion_stiffness is None:
+        _check_without_torsion(beam)
+    if beam.tip is not None and beam.length + beam.tip.offset < 0:
+        bound, remedy = "it puts the body behind the root", "give an offset above {limit}"
+        raise InvalidValue("tip.offset", beam.tip.offset, bound, remedy, "m", -beam.length)
+
+
+def _check_without_torsion(beam: Beam) -> None:
+    """Refuse warping stiffness and offsets of a beam without torsional stiffness."""
+    said: dict[str, Any] = {"other": "torsion_stiffness"}
+    if beam.warping_stiffness is not None:
+        value, bound = float(beam.warping_stiffness(np.zeros(1))[0]), "warping needs {other} as well"
+        said |= {"unit": "N m4", "where": " at the root"}
+        raise InvalidValue("warping_stiffness", value, bound, "give both, or neither", **said)
+    bound = "forces beside the shear centre twist the beam, which needs {other}"
+    for name in OFFSETS:
+        if (given := getattr(beam, name)) is not None and (place := first_place(given)) is not None:
+            value, where = float(given(np.array(place))), f" at x/L = {place:.3f}"
+            raise InvalidValue(name, value, bound, GIVE_IT, "m", where=where, **said)
+    if beam.tip is not None and beam.tip.offset_across:
+        raise InvalidValue("tip.offset_across", beam.tip.offset_across, bound, GIVE_IT, "m", **said)
+
+
+def check_matrices(beam: Beam, names: Sequence[str]) -> None:
+    """Refuse properties that differ from those of the beam's 6 x 6 section matrices."""
+    if beam.matrices is None:
+        return
+    kind("matrices", beam.matrices, SectionMatrices, "SectionMatrices.at_stations makes them")
+    for name in names:
+        if not alike(getattr(beam, name), beam.matrices.properties.get(name)):
+            bound = "differs from that of the 6 x 6 section matrices"
+            raise InvalidValue(name, getattr(beam, name), bound, "change the matrices instead")
+
+
+def check_axis(beam: Beam) -> None:
+    """Refuse an axis that turns back on itself at a kink."""
+    for name, angle in (("sweep", beam.sweep), ("prebend", beam.prebend)):
+        if angle is None:
+            continue
+        left, right = angle.end_values()
+        turned = np.abs(left - np.append(0.0, right[:-1]))
+        k = int(turned.argmax())
+        if turned[k] >= _TURNS_BACK:
+            where = f" turns by {turned[k]:.4g} rad at x/L = {angle.breakpoints[k]:.4g}"
+            bound = "the axis turns back on itself: a kink must be below {limit}"
+            said: dict[str, Any] = {"limit": _TURNS_BACK, "where": where}
+            raise InvalidValue(name, float(left[k]), bound, _GIVE_RADIANS, "rad", **said)
+
+
+def check_points(beam: Beam, name: str, wanted: type) -> None:
+    """Store point masses or springs as a tuple; refuse other objects, and positions beyond the tip."""
+    points = several(name, getattr(beam, name), wanted, f"{_MADE[wanted]} makes one")
+    for k, point in enumerate(points):
+        beyond, field = point.position > beam.length * (1 + _ROUNDING), f"{name}[{k}].position"
+        bound = "it must be at most {limit}, the length"
+        refuse(beyond, field, point.position, "m", bound, _BEYOND[wanted], limit=beam.length)
+    set_fields(beam, **{name: points})
+
+
+def alike(given: Profile | None, made: Profile | None) -> bool:
+    """Whether a property equals the one derived from a section, perhaps on more segments."""
+    return given == made or (
+        given is not None and made is not None and given == made.split(given.breakpoints)
+    )
+
+
+def first_place(profile: Profile) -> float | None:
+    """Find the first x/L among ends and middles of segments at which a property is not 0; None if none."""
+    ends = np.array(profile.breakpoints)
+    left, right = profile.end_values()
+    at = np.column_stack([ends[:-1], (ends[:-1] + ends[1:]) / 2, ends[1:]]).ravel()
+    values = np.column_stack([left, profile((ends[:-1] + ends[1:]) / 2), right]).ravel()
+    return float(at[np.flatnonzero(values)[0]]) if values.any() else None

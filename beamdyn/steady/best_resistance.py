@@ -1,0 +1,179 @@
+"""The load resistance with which piezoelectric layers harvest most at a speed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from beamdyn.common.inputs.checks import BeyondModel, InvalidValue, real
+from beamdyn.common.plots.harvests import plot_resistances
+from beamdyn.common.results.one_line import error_at_most, number, states, warned
+from beamdyn.common.results.pictures import Axes
+from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.statements import announced
+from beamdyn.linear.spectra import RoadRoughness
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.steady.harvest import Harvest, HarvestedPowers, electrodes_of, harvest
+from beamdyn.steady.response import steady_response
+from beamdyn.steady.road_harvest import check_road, harvest_on_road
+
+_DECADES, _GRID = 4.0, 33  # decades and number of resistances tried first, on either side of 1/(omega C)
+_WIDTH, _HEIGHT = 7.5, 4.8  # of the picture [inch]
+_TOLERANCE = 1e-6  # relative accuracy to which the best resistance is sought
+
+
+@dataclass(frozen=True, kw_only=True)
+class BestResistance(Harvest):
+    """What is harvested at a speed with the best load resistance, which is that of its scene.
+
+    Parameters
+    ----------
+    resistances : ndarray, shape (R,)
+        Resistances that were tried [ohm], ascending.
+    tried_power : ndarray, shape (R,)
+        Mean power with the tried resistances, that by a random road included [W].
+
+    Examples
+    --------
+    >>> best = bd.best_resistance(bd.load_scene("examples/bimorph.toml"), 50.0, modes=2)
+    >>> bool((best.tried_power <= best.power[0] * (1 + 1e-9)).all())
+    True
+    """
+
+    resistances: np.ndarray
+    tried_power: np.ndarray
+
+    def headline(self) -> Iterator[str]:
+        """Yield the resistance, and the power with its error, parts of a one-line summary.
+
+        See `Result.headline`.
+        """
+        at, most = self.best
+        yield f"best resistance {number(self.resistance, 'ohm')} at {self.say_speed(at)}"
+        yield number(most, "W")
+        yield from (error_at_most(self.total_error), states(self.status, ("stable",)), warned(self.warnings))
+
+    @property
+    def resistance(self) -> float:
+        """The best resistance [ohm]."""
+        return electrodes_of(self.scene).resistance
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the power over the resistances that were tried."""
+        return plot_resistances(self.resistances, self.tried_power, self.resistance, ax)
+
+    plot_panels = plot
+
+    def picture_size(self, width: float | None = None) -> tuple[float, float]:
+        """Return width and height of the picture [inch], for a width if one is given."""
+        return width or _WIDTH, _HEIGHT
+
+
+@announced
+def best_resistance(
+    scene: Scene,
+    speed: float,
+    modes: int | str = "auto",
+    tolerance: float = 1e-5,
+    discretization: DiscretizationChoice = "ritz",
+    road: RoadRoughness | None = None,
+) -> BestResistance:
+    """Find the load resistance of the largest mean power at a speed, by bounded search.
+
+    Resistances are tried over four decades either side of 1/(omega C), with the first natural frequency, and
+    the best is refined by Brent's method, to 1e-6 for the modes that are kept.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene, of a beam with the layers of a `Harvester`; its resistance does not matter.
+    speed : float
+        Speed [rad/s].
+    modes, tolerance, discretization
+        As for `steady_response`.
+    road : RoadRoughness, optional
+        A random road, whose power counts besides, as for `harvest`.
+
+    Returns
+    -------
+    BestResistance
+        At that speed, of the scene with the best resistance.
+
+    Raises
+    ------
+    ValueError
+        As `harvest`; or if there is no steady response at that speed, or no power by any resistance.
+
+    References
+    ----------
+    One mode in closed form: docs/harvester.md.
+
+    Examples
+    --------
+    >>> best = bd.best_resistance(bd.load_scene("examples/bimorph.toml"), 50.0, modes=2)
+    >>> 1e3 < best.resistance < 1e7  # ohm
+    True
+    """
+    start = perf_counter()
+    check_scene(scene)
+    electrodes = electrodes_of(scene)
+    speed = real("speed", speed, "rad/s")
+    if road is not None:
+        check_road(scene, road)
+    loaded = with_resistance(scene, 1.0)
+    response = steady_response(loaded, [speed], modes, None, tolerance, discretization)
+    if not response.stable[0]:
+        raise BeyondModel("speed", speed, f"{response.status[0]}: no steady response", "", "rad/s")
+    request = response.request
+    request = replace(request, discretization=request.model.discretization)
+    first = math.sqrt(request.model.solver.lowest_at_rest)
+    middle = math.log10(1 / (first * electrodes.capacitance(scene.beam.length)))
+
+    tried: dict[float, float] = {}
+
+    def lost(decade: float) -> float:
+        resistance = 10.0 ** float(decade)
+        other = replace(request, scene=with_resistance(request.scene, resistance))
+        tried[resistance] = float(HarvestedPowers.of(other).power[0])
+        if road is not None:
+            asked = other.scene, electrodes_of(other.scene), other.speeds, response.stable, road
+            on_road, _ = harvest_on_road(*asked, request.basis.modes, discretization, response.amplitude)
+            tried[resistance] += float(on_road.power[0])
+        return -tried[resistance]
+
+    grid = np.linspace(middle - _DECADES, middle + _DECADES, _GRID)
+    lowest = [lost(each) for each in grid]
+    k = int(np.argmin(lowest))
+    if not lowest[k] < 0:
+        bound, remedy = "nothing vibrates at this speed", "give gravity, or a wavy road"
+        if electrodes.coupling == 0:
+            bound, remedy = "the layers do not couple: no voltage follows", "give e31 or d31"
+        raise InvalidValue("speed", speed, bound, remedy, "rad/s")
+    bounds = grid[max(k - 1, 0)], grid[min(k + 1, _GRID - 1)]
+    best = minimize_scalar(lost, bounds=bounds, method="bounded", options={"xatol": _TOLERANCE / 3})
+    chosen = with_resistance(scene, 10.0 ** float(best.x))
+    found = harvest(chosen, [speed], modes, tolerance, discretization, road)
+    resistances, power = np.array(sorted(tried.items())).T
+    values: dict[str, Any] = {each.name: getattr(found, each.name) for each in fields(found)}
+    values["provenance"] = Provenance.since(start, found.provenance.method, found.provenance.compared_with)
+    made = BestResistance(
+        **values,
+        resistances=resistances,
+        tried_power=power,
+    )
+    vars(made)["again"] = vars(found)["again"]  # the model error is that with this resistance
+    return made
+
+
+def with_resistance(scene: Scene, resistance: float) -> Scene:
+    """Return the scene with another load resistance [ohm] of its harvester."""
+    electrodes = electrodes_of(scene)
+    loaded = replace(electrodes, harvester=replace(electrodes.harvester, resistance=resistance))
+    return replace(scene, beam=replace(scene.beam, electrodes=loaded))

@@ -1,0 +1,144 @@
+"""What a harvester yields on a random road, beside what its steady motion yields."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import kind
+from beamdyn.common.results.statements import LIMITS, Statement
+from beamdyn.linear.inputs_outputs import DeflectionAt, HarvestedCurrent, HarvestedVoltage, LayerStrain
+from beamdyn.linear.mean_square import check_damped, parametric_term
+from beamdyn.linear.random_response import root_mean_squares
+from beamdyn.linear.spectra import RoadRoughness, random_input, warn_of_band
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.scene.harvester import Electrodes
+from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import list_speeds, warn_of_deflection
+
+SEVERAL = 3.0  # standard deviations that a random response rarely passes
+_LARGE = 0.01  # relative change of the root mean square by the parametric term that is worth a warning
+_TOLERANCE = 1e-5  # tolerance of the linear model that gives the root mean squares
+
+
+@dataclass(frozen=True)
+class RoadHarvest:
+    """What a random road adds to a `Harvest` at its S speeds, over which the wheel rolls.
+
+    Mean power adds to that of steady motion, as the two are not correlated; root mean squares are those by
+    the road alone, about the steady motion.  The parametric term is left out, as in `random_response`.
+
+    Parameters
+    ----------
+    roughness : RoadRoughness
+        The road.
+    power : ndarray, shape (S,)
+        Mean power into the load [W]; 0 at rest, nan where there is no steady response.
+    voltage, current : ndarray, shape (S,)
+        Root mean square of the voltage across the load [V], and of the current through it [A].
+    strain : ndarray, shape (S,)
+        Root mean square of the bending strain where the layers begin.
+    deflection : ndarray, shape (S,)
+        Root mean square of the tip deflection [m].
+    error : ndarray, shape (S,)
+        Estimated relative error of the power, or without a load twice that of the voltage or current.
+    strain_error, deflection_error : ndarray, shape (S,)
+        Estimated errors of the strain, and of the deflection [m].
+
+    Examples
+    --------
+    >>> scene = bd.load_scene("examples/bimorph.toml")
+    >>> found = bd.harvest(scene, [50.0], modes=2, road=bd.RoadRoughness("A", highest=10.0))
+    >>> bool(found.road.power[0] > found.power[0])
+    True
+    """
+
+    roughness: RoadRoughness
+    power: np.ndarray
+    voltage: np.ndarray
+    current: np.ndarray
+    strain: np.ndarray
+    deflection: np.ndarray
+    error: np.ndarray
+    strain_error: np.ndarray
+    deflection_error: np.ndarray
+
+
+def check_road(scene: Scene, road: object) -> None:
+    """Refuse what is no roughness of a road, and a scene without a rolling wheel or without damping."""
+    kind("road", road, RoadRoughness, 'RoadRoughness("C")')
+    random_input(scene, 1.0, cast("RoadRoughness", road), None)
+    check_damped(scene)
+
+
+def harvest_on_road(
+    scene: Scene,
+    electrodes: Electrodes,
+    speeds: np.ndarray,
+    stable: np.ndarray,
+    roughness: RoadRoughness,
+    modes: int | None,
+    discretization: DiscretizationChoice,
+    amplitude: np.ndarray,
+) -> tuple[RoadHarvest, list[str]]:
+    """Compute the harvest on a random road at the speeds (S,) where motion is stable, and its warnings.
+
+    Raises
+    ------
+    InvalidValue
+        If the scene has no rolling wheel, or a mode is not damped.
+    """
+    R = electrodes.resistance
+    outputs = (HarvestedVoltage() if R else HarvestedCurrent(), LayerStrain(), DeflectionAt())
+    rms, error = np.full((2, len(outputs), len(speeds)), np.nan)
+    rms[:, speeds == 0], error[:, speeds == 0] = 0.0, 0.0
+    change, missed = np.zeros(len(speeds)), np.zeros(len(speeds), dtype=bool)
+    for k in np.flatnonzero(stable & (speeds != 0)).tolist():
+        speed = float(speeds[k])
+        drive, density = random_input(scene, speed, roughness, None)
+        found = root_mean_squares(
+            scene, speed, drive, density, outputs, modes or "auto", _TOLERANCE, discretization
+        )
+        rms[:, k], error[:, k] = found.value, found.error
+        change[k] = parametric_term(found.model, drive, density).rms_change
+        missed[k] = any(warn_of_band(density, drive, found.model))
+    flowing, strain, deflection = rms
+    relative = np.divide(2 * error[0], flowing, out=np.zeros(len(speeds)), where=flowing != 0)
+    voltage = flowing if R else 0 * flowing
+    current = voltage / R if R else flowing
+    road = RoadHarvest(
+        roughness, voltage * current, voltage, current, strain, deflection, relative, *error[1:]
+    )
+    return road, [*_warnings(scene, road, speeds, change, missed, amplitude)]
+
+
+def _warnings(
+    scene: Scene,
+    road: RoadHarvest,
+    speeds: np.ndarray,
+    change: np.ndarray,
+    missed: np.ndarray,
+    amplitude: np.ndarray,
+) -> Iterator[str]:
+    """Yield what limits the answer: deflection, the parametric term, resonances that the road misses."""
+    reached = np.nan_to_num(amplitude + SEVERAL * road.deflection)
+    yield from warn_of_deflection(reached, scene.beam.length, speeds)
+    if change.max() > _LARGE:
+        most = "without limit" if np.isinf(change.max()) else f"by up to {change.max():.0%}"
+        said = "on the road the parametric term that is left out would raise the root mean square "
+        where = list_speeds(speeds, change > _LARGE)
+        yield Statement(
+            f"{said}{most}, at ",
+            where,
+            kind=LIMITS,
+            quantity="rms by the parametric term",
+            value=change.max(),
+        )
+    if missed.any():
+        where = list_speeds(speeds, missed)
+        lacking = "the road lacks a spatial frequency that excites the first resonance, at "
+        said = lacking, where, "; give it a wider range of them"
+        yield Statement(*said, kind=LIMITS, quantity="range of spatial frequencies")

@@ -1,0 +1,66 @@
+"""Recognition of frequencies that were measured in another unit than they are read in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import inf, pi
+
+import numpy as np
+
+from beamdyn.common.results.digits import percent
+from beamdyn.common.results.statements import INPUT, Statement
+from beamdyn.studies.beside_data.pairing import NO_MODE, pair
+
+_UNITS: Mapping[str, tuple[float, str]] = {  # factor from the unit to hertz, and the words for the unit
+    "2 pi": (2 * pi, "in rad/s, and read as Hz"),
+    "60": (60.0, "in 1/min, and read as Hz"),
+    "1000": (1e3, "in mHz, or in Hz and read as kHz"),
+    "1/(2 pi)": (1 / (2 * pi), "in Hz, and read as rad/s or divided by 2 pi"),
+    "1/60": (1 / 60, "in Hz, and read as 1/min"),
+    "1/1000": (1e-3, "in kHz, and read as Hz"),
+}
+_ALIKE = 0.1  # largest deviation that remains once the unit is right: models are hardly further off
+_LESS = 0.5  # largest scatter that remains with the right unit, over the scatter as read
+_FEWEST = 2  # least number of values that are needed to recognize a common factor
+
+
+def wrong_unit(
+    measured: Sequence[np.ndarray], computed: Sequence[np.ndarray], likeness: Sequence[np.ndarray | None]
+) -> Iterator[Statement]:
+    """Yield a statement if all values are off by one factor, and that is the ratio of two units.
+
+    The values over the factor are paired as all are.  It is said where each then has a mode within 10 %, and
+    the ratios of measured to computed values differ by less than half of what they do as they are read.
+
+    Parameters
+    ----------
+    measured : sequence of ndarray, each of shape (m,)
+        Frequencies at each speed [Hz]; nan where none was measured.
+    computed : sequence of ndarray, each of shape (n,)
+        Those of the model [Hz].
+    likeness : sequence of ndarray, each of shape (m, n), or None
+        Likeness of the shapes, as `pair` takes it.
+    """
+    if sum(int(np.isfinite(each).sum()) for each in measured) < _FEWEST:
+        return
+
+    def logarithms(factor: float) -> np.ndarray:
+        """Compute logarithms of measured over computed values for a factor, inf where a value has no mode."""
+        found = []
+        for values, modes, alike in zip(measured, computed, likeness, strict=True):
+            place, known = pair(values / factor, modes, alike), np.isfinite(values)
+            of_mode = np.where(place == NO_MODE, 1.0, modes[place])
+            found.append(np.where(place == NO_MODE, inf, np.log(values / factor / of_mode))[known])
+        return np.concatenate(found)
+
+    def scatter(logs: np.ndarray) -> float:
+        return float(np.ptp(logs)) if np.isfinite(logs).all() else inf
+
+    as_read = scatter(logarithms(1.0))
+    for name, (factor, words) in _UNITS.items():
+        logs = logarithms(factor)
+        if np.abs(logs).max() <= np.log1p(_ALIKE) and scatter(logs) < _LESS * as_read:
+            off = percent(float(np.abs(np.expm1(logs)).max()))
+            said = f"all measured frequencies are {name} times those of the scene, within {off}: they may be "
+            yield Statement(f"{said}{words}; give them in Hz or rad/s, with the unit", kind=INPUT)
+            return

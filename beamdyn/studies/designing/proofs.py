@@ -1,0 +1,216 @@
+"""Proofs that no design in the bounds meets its targets, or comes nearer to them than the one found.
+
+Two arguments hold for all designs, computed or not, within the stated errors of those that are computed.
+A number that raises an answer (`beamdyn.studies.designing.quotients`) rules out all smaller values where the
+answer is too low, and all larger ones where it is too high.  And designs that are similar to each other
+(`beamdyn.studies.similar`) differ by one factor of all their answers, which is known without solving.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from beamdyn.common.inputs.designs import Designs
+from beamdyn.common.results.statements import joined
+from beamdyn.common.words import Words
+from beamdyn.scene.numbers import with_numbers
+from beamdyn.scene.physics import Physics
+from beamdyn.studies.designing.quotients import QUOTIENTS, is_bare, is_clamped, ways
+from beamdyn.studies.designing.search import Search
+from beamdyn.studies.designing.target import Target, say_number
+from beamdyn.studies.similar import POWERS, SimilarDesigns, differ_in_numbers_only
+
+_SURE = 2.0  # errors of an answer by which it misses a target, or more, where a proof rests on that
+_EXACT = 1e-10  # relative margin of bounds and targets, which are met at least so exactly
+_AT = 1e-13  # share of a range within which a design lies at its end
+_VERBS = {1: "raises", -1: "lowers", 0: "does not change"}
+
+
+class _RuledOut(NamedTuple):
+    """Designs between two, of shares (p,), all of which miss a target: by too low or too high an answer."""
+
+    low: np.ndarray
+    high: np.ndarray
+    target: int
+    is_too_low: bool
+
+
+class _Limits(NamedTuple):
+    """Logarithms of the least and the largest factor from one design to others, by a target or by bounds."""
+
+    says: str
+    least: float
+    most: float
+
+
+@dataclass(frozen=True)
+class Proofs:
+    """What is proven of all designs in the bounds, by those that a search has computed.
+
+    Parameters
+    ----------
+    search : Search
+        The search.
+    x : ndarray, shape (p,)
+        Shares of the design that it has found.
+    """
+
+    search: Search
+    x: np.ndarray
+
+    @cached_property
+    def no_nearer(self) -> str:
+        """Why no design comes nearer to any target that the one found misses; empty if that is not proven."""
+        excess, met = self.search.excess(self.x[None])[0], self.search.met(self.x[None])[0]
+        value, error = (each[0] for each in self.search.known(self.x[None]))
+        missed = np.flatnonzero(~met).tolist()
+        for k in missed:
+            is_known = not np.isnan(value[k]) and np.isfinite(error[k])
+            if not is_known or (helps := self._helps(k, excess[k])) is None:
+                return ""
+            if not np.where(helps > 0, self.x >= 1 - _AT, (self.x <= _AT) | (helps == 0)).all():
+                return ""
+        return joined("; ", dict.fromkeys(map(self._argument, missed))) if missed else ""
+
+    @cached_property
+    def none(self) -> str:
+        """Why no design meets all targets; empty if that is not proven."""
+        if self.search.met(self.x[None]).all():
+            return ""
+        parts = [*self._ruled_out()]
+        return next(
+            (said for j in range(len(self.x)) for said in self._covered(parts, j)), self._one_factor()
+        )
+
+    # By numbers that raise or lower an answer -------------------------------------------------------
+
+    @property
+    def _names(self) -> list[str]:
+        return [each.name for each in self.search.ranges.inputs]
+
+    @cached_property
+    def _ways(self) -> list[np.ndarray | None]:
+        """Ways (p,) in which the numbers change each target's answer, 1, -1 or 0; None where not known."""
+        search = self.search
+        corners = [with_numbers(search.scene, each) for each in Designs(search.ranges.inputs).extremes()]
+        known = {what: [ways(corner, what) for corner in corners] for what in QUOTIENTS}
+        return [_common(known[t.what], self._names) if _is_quotient(t) else None for t in search.targets]
+
+    def _is_too_low(self, k: int, excess: float) -> bool:
+        """Whether an answer that misses target k is too low, and not too high."""
+        return bool(excess < 0) == (self.search.targets[k].at_most is None)
+
+    def _helps(self, k: int, excess: float) -> np.ndarray | None:
+        """The way in which each number (p,) brings an answer nearer to target k that it misses, if known."""
+        ways = self._ways[k]
+        return ways if ways is None or self._is_too_low(k, excess) else -ways
+
+    def _argument(self, k: int) -> str:
+        """Say how the numbers change the answer of target k."""
+        ways, what = self._ways[k], self.search.targets[k].what
+        assert ways is not None
+        told = (f"{name} {_VERBS[way]}" for name, way in zip(self._names, ways.tolist(), strict=True))
+        return f"{' and '.join(told)} {QUOTIENTS[what]}"
+
+    def _ruled_out(self) -> Iterator[_RuledOut]:
+        """Yield all designs that are no better for a target than one computed, which surely misses it."""
+        designs = self.search.designs
+        (value, error), missed = self.search.known(designs), self.search.missed(designs)
+        sure, excess = np.isfinite(value) & (missed > _SURE * error), self.search.excess(designs)
+        for i, k in np.argwhere(sure).tolist():
+            if (helps := self._helps(k, excess[i, k])) is not None:
+                low, high = np.where(helps < 0, designs[i], 0.0), np.where(helps > 0, designs[i], 1.0)
+                yield _RuledOut(low, high, k, self._is_too_low(k, excess[i, k]))
+
+    def _covered(self, parts: Sequence[_RuledOut], j: int) -> Iterator[str]:
+        """Yield why one part, or two that meet in number j, are all designs."""
+        others = np.arange(len(self.x)) != j
+        wide = [each for each in parts if not ((each.low > _AT) | (each.high < 1 - _AT))[others].any()]
+        below = max(
+            (each for each in wide if each.low[j] <= _AT), key=lambda each: each.high[j], default=None
+        )
+        above = min(
+            (each for each in wide if each.high[j] >= 1 - _AT), key=lambda each: each.low[j], default=None
+        )
+        if below and below.high[j] >= 1 - _AT:
+            yield self._says(below, " for all designs")
+        elif below and above and below.high[j] >= above.low[j]:
+            ends = self._at(j, below.high), self._at(j, above.low)
+            says = (self._says(*each) for each in ((below, " up to ", ends[0]), (above, " from ", ends[1])))
+            yield joined("; ", says)
+
+    def _at(self, j: int, shares: np.ndarray) -> Words:
+        """Word the value of number j of a design that is given by its shares of the ranges."""
+        value = float(self.search.ranges.values(shares)[j])
+        return Words(f"{self._names[j]} = ", say_number(value, self.search.ranges.inputs[j].unit))
+
+    def _says(self, part: _RuledOut, *where: str) -> Words:
+        name, word = self.search.targets[part.target].name, "low" if part.is_too_low else "high"
+        return Words(self._argument(part.target), ", so that the ", name, f" is too {word}", *where)
+
+    # By similarity ----------------------------------------------------------------------------------
+
+    def _one_factor(self) -> str:
+        """Say why no one factor of the answers of the design found meets all targets; empty if one may."""
+        if not self._are_similar:
+            return ""
+        limits = [self._in_the_bounds(), *self._by_targets()]
+        least, most = max(limits, key=lambda each: each.least), min(limits, key=lambda each: each.most)
+        if least.least <= most.most:
+            return ""
+        said = (
+            "all designs are similar: one factor leads from the answers of each to those of any other, and "
+        )
+        apart = f" is {100 * np.expm1(least.least - most.most):.3g} % above the largest by "
+        return Words(f"{said}the least factor by ", least.says, apart, most.says)
+
+    @property
+    def _are_similar(self) -> bool:
+        """Whether stiffness and mass of all sections change by one factor each, and with them all else."""
+        scene, names = self.search.scene, {*self._names}
+        alone = names <= POWERS.keys() and is_bare(scene.beam) and is_clamped(scene)
+        return alone and scene.physics == Physics() and differ_in_numbers_only(scene, names)
+
+    def _in_the_bounds(self) -> _Limits:
+        """The factors of designs in the bounds, by powers of the numbers: between those at the corners."""
+        ranges = self.search.ranges
+        corners = [*Designs(ranges.inputs).extremes()]
+        columns = {name: np.array([each[name] for each in corners]) for name in self._names}
+        own = dict(zip(self._names, ranges.values(self.x).tolist(), strict=True))
+        factors = -np.log(SimilarDesigns(self.search.scene, own, columns).time)
+        return _Limits("the bounds", float(factors.min()) - _EXACT, float(factors.max()) + _EXACT)
+
+    def _by_targets(self) -> Iterator[_Limits]:
+        """Yield the factors with which the answers meet each target, within their errors."""
+        value, error = (each[0] for each in self.search.known(self.x[None]))
+        for target, own, of_own in zip(self.search.targets, value.tolist(), error.tolist(), strict=True):
+            # Frequencies at rest of similar designs differ by the factor alone.  Critical speeds do only if
+            # the length is fixed, as they depend on the radius over the length.
+            scales = target.what == "frequencies" or "beam.length" not in self._names
+            if _is_quotient(target) and scales and 0 < own < np.inf and np.isfinite(of_own):
+                at_least, at_most = target.equals or target.at_least or 0.0, target.equals or target.at_most
+                margin = _SURE * of_own + _EXACT
+                least = np.log(at_least / own) - margin if at_least else -np.inf
+                yield _Limits(target.says, least, np.log(at_most / own) + margin if at_most else np.inf)
+
+
+def _is_quotient(target: Target) -> bool:
+    """Whether a target is a value or a limit of an answer that is a quotient."""
+    return target.what in QUOTIENTS and not target.speed and target.best is None
+
+
+def _common(known: Sequence[dict[str, int]], names: Sequence[str]) -> np.ndarray | None:
+    """The ways of some numbers (p,) in several scenes; None where two are opposite, or one is not known.
+
+    A number without effect in some of the scenes raises or lowers as in the others.
+    """
+    if not all(name in each for each in known for name in names):
+        return None
+    found = np.array([[each[name] for name in names] for each in known])
+    opposite = (found.min(axis=0) < 0) & (found.max(axis=0) > 0)
+    return None if opposite.any() else np.sign(found.sum(axis=0))

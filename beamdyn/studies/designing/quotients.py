@@ -1,0 +1,137 @@
+"""Answers that are the least or a mean of quotients, and the numbers that raise or lower each of these.
+
+By the minimum-maximum principle a plain undamped beam has
+
+    (2 pi f)^2 = V(w)/T(w) for a frequency f at rest,    Omega^2 = V(w)/G(w) for the critical speed Omega,
+
+of certain deflections w, where V is twice the elastic energy, T the mass times the squared deflection, and G
+twice the work of the centrifugal forces at unit speed.  A number that raises the quotient of every deflection
+raises the answer, of any mode; one that lowers it lowers the answer.
+
+G is a sum over masses m.  With R = r cos(beta) of radius r and setting angle beta, and the cosine d of the
+bending angle, one at a distance x from the root has the share
+
+    m (R - x) int_0^x w'^2 + m d^2 w(x)^2,
+
+a body at the tip with its centre of mass at L + e
+
+    m (R - L - e) (int_0^L w'^2 + e w'(L)^2) + m d^2 (w(L) + e w'(L))^2,
+
+and what its inertia adds has either sign.  Derivation: docs/conventions.md, section Equations.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.mount import NO_DAMPING, exact_cos_sin
+from beamdyn.scene.numbers import SCALE
+from beamdyn.scene.physics import Physics
+from beamdyn.scene.scene import Scene
+
+QUOTIENTS = {
+    "frequencies": "the Rayleigh quotient of every deflection at rest",
+    "critical_speed": "the elastic energy of every deflection over the work of the centrifugal forces on it",
+}
+_STIFFNESS: dict[str, int] = dict.fromkeys(
+    ("beam.youngs_modulus", "beam.bending_stiffness", f"{SCALE}bending_stiffness", "mount.root_stiffness"), 1
+)
+_MASS = dict.fromkeys(("beam.density", "beam.mass_per_length", f"{SCALE}mass_per_length"), -1)
+_THICKNESS: dict[str, int] = dict.fromkeys(("beam.thickness", f"{SCALE}thickness"), 1)
+_WIDTH = "beam.width", f"{SCALE}width"
+_TIP_MASS, _TIP_INERTIA, _LENGTH = {"beam.tip.mass": -1}, {"beam.tip.inertia": -1}, {"beam.length": -1}
+_NO_EFFECT = dict.fromkeys(("mount.radius", "mount.setting_angle", "mount.bending_angle"), 0)
+_FAR = 1.5  # R over the length from which on a longer beam buckles earlier: see `_of_buckling`
+_ROUNDING = 4 * np.finfo(float).eps  # relative, of distances that are equal but for it
+
+
+def ways(scene: Scene, what: str) -> dict[str, int]:
+    """Find which numbers raise (1), lower (-1) or do not change (0) the quotient of every deflection.
+
+    Each does so whatever the values of the others, as long as what the scene must be for it remains true.
+    That is linear in each number: it holds in all bounds if it holds at all corners.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene.
+    what : str
+        An answer of a study; of "frequencies", those at rest.
+
+    Returns
+    -------
+    dict of str to int
+        By the names of the numbers in scene files; empty where the answer is no such quotient.
+    """
+    undamped = scene.damping == NO_DAMPING and scene.beam.electrodes is None
+    if what not in QUOTIENTS or not undamped or scene.physics != Physics() or scene.mount.precone:
+        return {}
+    return _at_rest(scene) if what == "frequencies" else _of_buckling(scene)
+
+
+def is_bare(beam: Beam) -> bool:
+    """Whether the sections are all the mass of a beam."""
+    tip = beam.tip or TipMass(0.0)
+    return not (beam.point_masses or tip.mass or _has_inertia(tip))
+
+
+def is_clamped(scene: Scene) -> bool:
+    """Whether the root is clamped and no springs hold the beam, so that sections have all elastic energy."""
+    return bool(np.isinf(scene.mount.root_stiffness)) and not scene.beam.point_springs
+
+
+def _sides(beam: Beam) -> dict[str, int]:
+    """Find those among sides of sections that have all elastic energy: as h^3 b by thickness h and width b.
+
+    What divides it is as h b of sections, and as it was of bodies, whose share must not be negative.
+    """
+    return _THICKNESS | dict.fromkeys(_WIDTH, 0 if is_bare(beam) else 1)
+
+
+def _at_rest(scene: Scene) -> dict[str, int]:
+    """Find those of V/T.
+
+    With a clamped root and no springs V is as 1/L^3 by length L, over w(x/L).  T is as L of sections, and
+    falls by the square of L at most, of what turns a body, unless that has an offset.
+    """
+    beam, tip = scene.beam, scene.beam.tip or TipMass(0.0)
+    found = _STIFFNESS | _MASS | _TIP_MASS | _TIP_INERTIA | _NO_EFFECT
+    if is_clamped(scene):
+        found |= _sides(beam)
+        if not (beam.point_masses or tip.offset):
+            found |= _LENGTH
+    return found
+
+
+def _of_buckling(scene: Scene) -> dict[str, int]:
+    """Find those of V/G.
+
+    G rises with R.  Where R is at least the distance of all masses from the root, no share of G is negative,
+    and G rises with each mass; else it does if sections are all the mass, with which it is in proportion.
+    Over w(x/L), with a clamped root and no springs, the shares in G/V of sections and of a tip mass are
+
+        L^3 R a - L^4 b + d^2 L^4 c  with b <= a,    L^2 R a - L^3 a + d^2 L^3 c,
+
+    times what does not depend on L; they rise with L where R is at least 4/3 L, and 3/2 L.
+    """
+    beam, tip = scene.beam, scene.beam.tip or TipMass(0.0)
+    inward = exact_cos_sin(scene.mount.setting_angle)[0]
+    distance, turns = inward * scene.mount.radius * (1 + _ROUNDING), _has_inertia(tip)
+    if tip.offset < 0:
+        return _STIFFNESS
+    found = _STIFFNESS | {"mount.radius": -int(np.sign(inward))}
+    all_load, bare = distance >= beam.length + tip.offset, is_bare(beam)
+    if all_load:
+        found |= _TIP_MASS
+    if all_load or bare:
+        found |= _MASS
+    if is_clamped(scene) and (bare or (all_load and not turns)):
+        found |= _sides(beam)
+        if distance >= _FAR * beam.length and not (beam.point_masses or tip.offset or turns):
+            found |= _LENGTH
+    return found
+
+
+def _has_inertia(tip: TipMass) -> bool:
+    return bool(tip.inertia or tip.inertia_about_bending_direction or tip.axial_inertia)

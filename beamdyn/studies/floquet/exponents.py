@@ -1,0 +1,255 @@
+"""The largest Lyapunov exponent of free motion whose coefficients have two rates that do not meet again.
+
+There is no period and no monodromy matrix.  Over a period T of the faster phase, a state is mapped by a
+matrix A that depends on the slower phase theta there, smoothly and periodically.  The map over m such periods
+is
+
+    B_m(theta) = A(theta + (m - 1) alpha) ... A(theta),    B_2m(theta) = B_m(theta + m alpha) B_m(theta),
+
+with the advance alpha of the slower phase in T, and the largest exponent lies between two bounds:
+
+- it is at most the mean over theta of log |B_m| / (m T), for every m (logarithms of norms are subadditive);
+- let p_k be the product of the first k singular values, and mu the least ratio of the k-th and the next.
+  Where log p_k of B_2m is that of its two factors within log(mu)/2 at every theta, the mean of
+  log p_k(B_2m) - log p_k(B_m), over m T, is the sum of the k largest exponents, with an error of the order of
+  1/mu (the avalanche principle); a k-th of it is no more than the largest.  With all singular values it is
+  the mean of log |det A|, without error.
+
+Without damping a stable motion has the exponent 0, which no bound separates from a small one: it stays
+undecided, with a bound on the rate.
+
+References
+----------
+Goldstein and Schlag (2001), Annals of Mathematics 154, 155-203; of matrices of any size: Duarte and Klein
+(2016), Lyapunov Exponents of Linear Cocycles, chapter 2.  Their constants are not computed: 10 stands for the
+constant of the error, which is negligible where the ratio is large.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import reduce
+
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.scene.scene import Scene
+from beamdyn.studies.floquet.monodromy import COARSER_STEPS, count_steps, scaled_states
+from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED, UNSTABLE
+from beamdyn.studies.floquet.period import rates_of
+from beamdyn.transient.gauss import step_maps, tableau
+from beamdyn.transient.system import ModalSystem
+
+_STAGES = 8
+_FIRST, _MOST = 8, 128  # harmonics of the slower phase at the first attempt, and at the last
+# Most periods of the faster phase that are integrated, so that their ends cover the circle of the slower
+# phase.
+_PERIODS = 4096
+# Condition number of the harmonics at these ends, above which the ends do not cover the circle.
+_SPREAD = 30.0
+_RESOLVED = 1e-12  # size of the last harmonics, over that of the matrix, at which they count as resolved
+_GRID = 4  # values of the slower phase for each harmonic
+_FINEST = 2048  # largest number of values of the slower phase on a grid for maps over several periods
+_SMOOTH = 1e-8  # difference of two means of a logarithm over the grid, above which it counts as unresolved
+# Least norm of a map over the slower phase, relative to the largest norm, for which its Fourier series
+# resolves it.
+_EVEN = 1e-6
+_DOUBLINGS = 18
+_APART = 1e3  # least ratio of neighbouring singular values that count as apart
+_KNOWN = 1e-9  # least singular value, over the largest, that rounding does not hide
+_CONSTANT = 10.0  # constant of the error of the avalanche principle, times 1/mu
+_ROUNDING = 1e-13  # rounding error of the logarithm of a norm, per step
+
+
+@dataclass(frozen=True)
+class LargestExponent:
+    """The largest Lyapunov exponent as a growth rate with its error, from two bounds.
+
+    Parameters
+    ----------
+    rate, error : float
+        The growth rate and its error [1/s].
+    status : {"stable", "unstable", "undecided"}
+        Verdict on the motion, by the growth rate and its error.
+    period : float
+        Period of the faster phase [s].
+    """
+
+    rate: float
+    error: float
+    status: str
+    period: float
+
+
+def largest_exponent(scene: Scene, equations: Equations) -> LargestExponent:
+    """Bound the largest exponent of free motion in modal coordinates of unit mass.
+
+    Raises
+    ------
+    InvalidValue
+        If the motion has more than two rates, or one of them hardly advances in 4096 periods of the other.
+    """
+    assert scene.motion is not None
+    rates = rates_of(scene)
+    if len(rates) > 2:
+        bound = "its phases have more than two rates, and do not all meet again"
+        raise InvalidValue("scene.motion", scene.motion, bound, "give at most two, or make all meet")
+    slow, fast = sorted(rates)
+    system, T = ModalSystem(equations, scene.motion), 2 * math.pi / fast
+    _, K, _ = system.coefficients(np.linspace(0, 16 * T, 257))
+    steps, alpha = count_steps(K, T, scene.motion.rates), 2 * math.pi * slow / fast
+    fine = Cocycle.of(system, T, alpha, steps)
+    rough = Cocycle.of(system, T, alpha, math.ceil(COARSER_STEPS * steps))
+    (low, high), coarse = fine.bounds(), rough.bounds()
+    error = max(abs(low - coarse[0]), abs(high - coarse[1])) + (fine.tail + _ROUNDING * steps) / T
+    rate, error = (low + high) / 2, abs(high - low) / 2 + error
+    verdict = UNSTABLE if rate > error else STABLE if rate < -error else UNDECIDED
+    return LargestExponent(rate, error, verdict, T)
+
+
+@dataclass(frozen=True)
+class Cocycle:
+    """The map over a period [s], as harmonics -M to M of the slower phase (2 M + 1, m, m), and their tail."""
+
+    harmonics: np.ndarray
+    period: float
+    alpha: float
+    tail: float
+
+    @classmethod
+    def of(cls, system: ModalSystem, T: float, alpha: float, steps: int) -> Cocycle:
+        """Integrate as many periods as resolve the dependence of the map on the slower phase."""
+        nothing = np.zeros((0, 2 * system.size, 2 * system.size))
+        maps, most = scaled_states(system.equations, T, nothing), _FIRST
+        while True:
+            count, basis = _cover(alpha, most)
+            more = [_over_period(system, T, steps, k) for k in range(len(maps), count)]
+            maps = (
+                np.concatenate([maps, scaled_states(system.equations, T, np.array(more))]) if more else maps
+            )
+            found = np.linalg.lstsq(basis, maps[:count].reshape(count, -1), rcond=None)[0]
+            found = found.reshape(-1, *maps.shape[1:])
+            size = np.abs(found).max(axis=(1, 2))
+            tail = float(size[[0, 1, -2, -1]].max() / size.max())
+            if tail <= _RESOLVED or 2 * most > _MOST:
+                return cls(found, T, alpha, tail)
+            most *= 2
+
+    def bounds(self) -> tuple[float, float]:
+        """Compute two bounds [1/s] between which the largest exponent lies."""
+        M, size = len(self.harmonics) // 2, self.harmonics.shape[1]
+        count = _GRID * (M + 1)
+        padded = np.zeros((count, size, size), dtype=complex)
+        padded[np.arange(-M, M + 1)] = self.harmonics
+        B = np.fft.ifft(padded, axis=0).real * count
+        of_all = np.linalg.slogdet(B)[1]  # -inf where rounding hides what decays within a period
+        mean, doubt = _mean(of_all) if np.isfinite(of_all).all() else (-math.inf, 0.0)
+        low = float(max(mean - doubt, of_all.min())) / size / self.period
+        high = float(np.log(np.linalg.norm(B, 2, axis=(1, 2)).max())) / self.period
+        p, log_scale, m, k = _products(B), 0.0, 1, np.arange(1, size)
+        for _ in range(_DOUBLINGS):
+            if (fine := _fine_enough(B)) is None:
+                break
+            if len(fine) > len(B):
+                B, p = fine, _products(fine)
+            after = _turned(B, m * self.alpha)
+            C = after @ B
+            scale = float(np.linalg.norm(C, axis=(1, 2)).max())
+            C, log_twice = C / scale, 2 * log_scale + math.log(scale)
+            q, time = _products(C), m * self.period
+            mean, doubt = _mean(q[:, 0])
+            high = min(high, float(mean + doubt + log_twice) / (2 * time))
+            mu = np.exp(_apart(p).min(axis=0))
+            lost = np.abs((_products(after) + p - q)[:, :-1] - k * math.log(scale))
+            known = (mu > _APART) & (lost.max(axis=0) < np.log(mu) / 2)
+            known &= _over_first(q).min(axis=0) > math.log(_KNOWN)
+            if known.any():
+                gained, doubt = _mean((q - p)[:, :-1])
+                gained, error = gained + k * (log_twice - log_scale), _CONSTANT / mu + doubt
+                low = max(low, float(((gained - error) / k)[known].max()) / time)
+                high = min(high, float(gained[0] + error[0]) / time) if known[0] else high
+            B, p, log_scale, m = C, q, log_twice, 2 * m
+        return low, high
+
+
+def _products(B: np.ndarray) -> np.ndarray:
+    """Compute logarithms (P, m) of the products of the first singular values of matrices (P, m, m)."""
+    values = np.linalg.svd(B, compute_uv=False)
+    return np.cumsum(np.log(np.maximum(values, np.finfo(float).tiny)), axis=1)
+
+
+def _values(p: np.ndarray) -> np.ndarray:
+    """Compute logarithms (P, m) of singular values from the logarithms of their products."""
+    return np.diff(p, axis=1, prepend=0.0)
+
+
+def _apart(p: np.ndarray) -> np.ndarray:
+    """Compute logarithms (P, m - 1) of the ratio of each singular value to the next."""
+    return -np.diff(_values(p), axis=1)
+
+
+def _over_first(p: np.ndarray) -> np.ndarray:
+    """Compute logarithms (P, m - 1) of all singular values but the last, over the first."""
+    return (_values(p) - p[:, :1])[:, :-1]
+
+
+def _turned(B: np.ndarray, angle: float) -> np.ndarray:
+    """Interpolate matrices on a grid of phases (P, m, m) to phases larger by an angle, by Fourier series."""
+    orders = np.fft.fftfreq(len(B), 1 / len(B))
+    factor = np.exp(1j * orders * angle)[:, None, None]
+    return np.fft.ifft(np.fft.fft(B, axis=0) * factor, axis=0).real
+
+
+def _mean(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Compute means over a grid of phases, and their errors from means over every other phase.
+
+    Inf if unresolved.
+    """
+    even, odd = values[::2].mean(axis=0), values[1::2].mean(axis=0)
+    apart = np.abs(even - odd)
+    return (even + odd) / 2, np.where(apart > _SMOOTH, np.inf, apart)
+
+
+def _fine_enough(B: np.ndarray) -> np.ndarray | None:
+    """Refine matrices to a grid that resolves a product of two of them; None if the finest grid does not.
+
+    The product has twice the harmonics of its factors: these are negligible in the upper half of the grid's.
+    """
+    norms = np.linalg.norm(B, axis=(1, 2))
+    if norms.min() < _EVEN * norms.max():
+        return None
+    series, count = np.fft.fft(B, axis=0) / len(B), len(B)
+    size = np.abs(series).max(axis=(1, 2))
+    orders = np.abs(np.fft.fftfreq(count, 1 / count))
+    used = int(orders[size > _RESOLVED * size.max()].max())
+    finer = count
+    while 4 * used >= finer:
+        finer *= 2
+    if finer > _FINEST:
+        return None
+    padded = np.zeros((finer, *B.shape[1:]), dtype=complex)
+    padded[np.fft.fftfreq(count, 1 / count).astype(int)] = series
+    return B if finer == count else np.fft.ifft(padded, axis=0).real * finer
+
+
+def _cover(alpha: float, most: int) -> tuple[int, np.ndarray]:
+    """Return a number of periods whose ends cover the circle, and the harmonics at these ends."""
+    count = min(3 * (2 * most + 1), _PERIODS)
+    while True:
+        basis = np.exp(1j * np.outer(alpha * np.arange(count), np.arange(-most, most + 1)))
+        if np.linalg.cond(basis) < _SPREAD:
+            return count, basis
+        if count == _PERIODS:
+            break
+        count = min(2 * count, _PERIODS)
+    bound = "the phase of one of its rates does not cover the circle in 4096 periods of the other"
+    raise InvalidValue("scene.motion", alpha / (2 * math.pi), bound, "take rates that meet, nearby")
+
+
+def _over_period(system: ModalSystem, T: float, steps: int, k: int) -> np.ndarray:
+    """Integrate the map (2 n, 2 n) of the state over the k-th period of the faster phase."""
+    starts = T * (k + np.arange(steps) / steps)
+    maps = step_maps(system, starts, T / steps, tableau(_STAGES)).step[:, :, 1:]
+    return reduce(lambda before, step: step @ before, maps)

@@ -1,0 +1,93 @@
+"""What a screen shows first, while the whole answer is on its way: a picture, few digits, nothing fitted."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("nicegui")
+
+from beamdyn.analyses.about_motion import harvest
+from beamdyn.app.program import BEAMDYN
+from beamdyn.common.edge.rendering import in_haste
+from beamdyn.common.results.display_units import ShownUnit
+from beamdyn.common.results.one_line import few_digits, number
+from beamdyn.common.results.pictures import new_figure
+from beamdyn.common.screens import page_tasks
+from beamdyn.common.screens.open_document import ShownAnswer
+from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
+from beamdyn.studies.beside_data.identification import Identification
+
+SCREENS = {screen.name: (document, screen) for document in BEAMDYN.documents for screen in document.screens}
+
+
+def first_of(name):
+    document, screen = SCREENS[name]
+    found = page_tasks.solve_for_drawing(document, screen, document.base_entries)
+    assert isinstance(found, ShownAnswer), found
+    return found
+
+
+def test_digits_are_those_of_a_preliminary_result():
+    mm = ShownUnit("mm", 1e3)
+    assert (number(66.0234, "Hz"), number(1234.4), mm.say(1.2344, 5)) == ("66.02 Hz", "1234", "1234.4 mm")
+    with few_digits():
+        assert (number(66.0234, "Hz"), number(1234.4), mm.say(1.2344, 5)) == ("66 Hz", "1230", "1230 mm")
+    assert number(66.0234, "Hz") == "66.02 Hz"
+
+
+@pytest.mark.parametrize("name", ["Compare", "Identify"])
+def test_data_stand_beside_the_model_before_anything_is_fitted(name):
+    found = first_of(name)
+    assert found.is_rough and not found.is_whole
+    assert isinstance(found.answer.result, FrequencyComparison) and found.answer.result.explanations == ()
+    assert found.picture.startswith('<img class="drawing"')
+
+
+def test_a_preliminary_answer_is_completed_by_the_one_that_was_asked_for():
+    document, screen = SCREENS["Identify"]
+    whole = page_tasks.solve(document, screen, document.base_entries, first_of("Identify"))
+    assert isinstance(whole, ShownAnswer) and whole.is_whole and not whole.is_rough
+    assert isinstance(whole.answer.result, Identification)
+
+
+def test_screens_of_charts_have_no_other_picture():
+    found = first_of("Frequencies")
+    assert found.is_rough and found.picture == ""
+    assert all(len(words.value.split()[0]) <= 4 for words in found.headline[:2])  # "66.1 Hz"
+
+
+def test_a_preliminary_harvest_is_at_few_of_the_speeds_and_at_the_ends():
+    asked = np.linspace(10.0, 20.0, 101)
+    few = []
+
+    def at(_, **options):
+        few.append(options["speeds"])
+
+    assert harvest.sooner is not None
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("beamdyn.analyses.about_motion.harvest", SimpleNamespace(function=at))
+        harvest.sooner(None, speeds=asked, modes=3, tolerance=1e-5)
+    assert len(few[0]) == 11 and few[0][0] == 10.0 and few[0][-1] == 20.0 and np.isin(few[0], asked).all()
+
+
+def test_a_picture_in_haste_has_the_layout_of_the_last_one():
+    def drawn(highest, label):
+        figure = new_figure(4.0, 3.0)
+        ax = figure.subplots()
+        ax.loglog([1.0, 10.0], [1.0, highest])
+        ax.set_ylabel(label)
+        return in_haste(figure)
+
+    first, second = drawn(1e6, "layout"), drawn(1e6, "layout")
+    places = [figure.axes[0].get_position().bounds for figure in (first, second)]
+    assert places[0] == places[1] and second.get_layout_engine() is None
+    assert len(second.axes[0].yaxis.get_minorticklocs()) == 0
+    assert len(second.axes[0].xaxis.get_minorticklocs()) > 0  # a decade keeps its small ticks
+    with_label = drawn(1e6, "two lines\nof a label").axes[0].get_position()
+    assert with_label.x0 > second.axes[0].get_position().x0
+
+
+def test_a_picture_that_another_process_makes_comes_first_in_haste():
+    found = first_of("Loads")
+    assert found.picture.startswith('<img class="drawing"') and not found.is_whole
