@@ -26,12 +26,13 @@ from beamdyn.equations.beam_in_space.moving_beam import Carrier, MovingBeam
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses
 from beamdyn.equations.beam_in_space.tip_forces import TipForces, forces_at_tip
 from beamdyn.equations.discretization import CLAMPED, FIXED, ArcQuadrature, Discretization, RootConditions
-from beamdyn.equations.equations_of_motion import Equations, Shape
+from beamdyn.equations.equations_of_motion import Equations, Shape, SteadyPencil
 from beamdyn.equations.fields.bending_and_shear import Bending, SecondBending, SecondShear, Shear
 from beamdyn.equations.fields.field import Deflection, Load, Term
 from beamdyn.equations.ritz import Ritz
-from beamdyn.equations.root_motion import Quantity, RootMotion
+from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
 from beamdyn.scene.beam import Beam, TipMass
+from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.section_matrices import split_mass
@@ -276,9 +277,22 @@ class RotatingBeam(FieldsOnly):
         return self.beam.stiffness
 
     @cached_property
+    def turning(self) -> dict[Quantity, float]:
+        """Quantities of the root's motion per squared speed of steady rotation, but for those that are 0."""
+        root = root_motion(self.linear.mount, MotionSample.steady(1.0))
+        values = ((quantity, float(getattr(root, quantity))) for quantity in self.quantities)
+        return {quantity: value for quantity, value in values if value}
+
+    @cached_property
     def about_straight(self) -> Equations:
         """Equations of small motions about the straight beam, without a load at its tip."""
-        return replace(self, load=None).at(np.zeros(self.size)).linearized()
+        return self.straight.linearized()
+
+    @cached_property
+    def straight(self) -> BentState:
+        """State of the straight beam, without a load at its tip."""
+        unloaded = self if self.load is None else replace(self, load=None)
+        return unloaded.at(np.zeros(self.size))
 
     def reduced(self, modal: Equations) -> RotatingBeam:
         """Return the beam in the coordinates to which equations about the straight beam were reduced."""
@@ -417,6 +431,14 @@ class BentState(FieldsOnly):
         """Gyroscopic matrix per speed at this state, shape (n, n)."""
         euler = self.stiffness_of("acceleration")
         return euler - euler.T
+
+    def steady(self) -> SteadyPencil:
+        """Return the equations of small motions at steady speed, as those of `linearized` are there."""
+        linear, none = self.of.linear, np.zeros((self.of.size, self.of.size))
+        K0, C = (of_order.get("unity", none) for of_order in linear.matrices[:2])
+        K0 = K0 if self._loaded is None else K0 - self._loaded.work_change
+        K2, f2 = self.inertia_change(self.of.turning), -self.force_at_rest - self.inertia(self.of.turning)
+        return SteadyPencil(self.bent.mass, C, self.gyroscopic, K0, K2, f2, linear.shift, linear.planes)
 
     def linearized(self) -> Equations:
         """Return the equations of small motions about this state, whose elastic force is among the loads."""

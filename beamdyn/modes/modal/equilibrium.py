@@ -14,7 +14,7 @@ from scipy.linalg import eigh
 from beamdyn.equations.beam_in_space.rotating_beam import BentState, RotatingBeam
 from beamdyn.equations.beam_in_space.tip_forces import LoadedBeam
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.equations.root_motion import Quantity, root_motion
+from beamdyn.equations.root_motion import Quantity
 from beamdyn.modes.modal.continuation import (
     NotConverged,
     Point,
@@ -27,7 +27,6 @@ from beamdyn.modes.modal.continuation import (
     start_curve,
 )
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, LoadedSolver, Solver
-from beamdyn.scene.motion import MotionSample
 
 Branch = Literal["straight", "bent"]
 _SAME = 1e-6  # difference of slope angles below which two equilibria count as the same one [rad]
@@ -81,10 +80,9 @@ class SteadyLoad:
     @cached_property
     def values(self) -> dict[Quantity, float]:
         """Quantities of the root's motion per squared speed."""
-        root = root_motion(self.elastica.linear.mount, MotionSample.steady(1.0))
-        quantities = self.elastica.quantities
-        values: dict[Quantity, float] = {quantity: float(getattr(root, quantity)) for quantity in quantities}
-        values["root_transverse"] += self.push
+        values = dict(self.elastica.turning)
+        if self.push:
+            values["root_transverse"] = values.get("root_transverse", 0.0) + self.push
         return {quantity: value for quantity, value in values.items() if value}
 
     @property
@@ -344,7 +342,7 @@ class DeflectedSolver(Eigensolver):
     """
 
     def __init__(self, elastica: RotatingBeam, branch: Branch, guide: DeflectedSolver | None = None) -> None:
-        super().__init__(elastica.about_straight.steady())  # equations about the straight beam
+        super().__init__(elastica.straight.steady())
         self.elastica, self.guide = elastica, guide
         self.branch: Branch = branch
         self._straight = Solver(self.pencil)
@@ -399,8 +397,8 @@ class DeflectedSolver(Eigensolver):
             An ArithmeticError: if the branch of equilibria does not reach a speed.
         """
         missing = np.array([v for v in np.unique(speeds) if (v, count) not in self._solved])
-        for v, equations in zip(missing.tolist(), self.equations(missing), strict=True):
-            pencil = equations.steady()
+        for v, q in zip(missing.tolist(), self.equilibria(missing), strict=True):
+            pencil = self.elastica.at(q).steady()
             solver = Solver(pencil) if self.elastica.load is None else LoadedSolver(pencil)
             self._solved[v, count] = solver.solve(np.array([v]), count)
         each = [self._solved[v, count] for v in speeds.tolist()]
