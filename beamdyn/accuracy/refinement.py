@@ -107,7 +107,7 @@ THREE_DISCRETIZATIONS = ErrorMargin(
     "the rate of convergence, by which they do, varies from one discretization to the next",
     "stated_answer_errors",
 )
-# Least share of the distance before that counts: the distance may be small by chance.
+# Least share of the distance before the last that counts, as the last may be small by chance.
 _LEAST_SHARE = 0.0015
 
 
@@ -136,8 +136,8 @@ def error_of_finest(
     Returns
     -------
     ndarray
-        Estimated error: the margin times the distances that remain, of which at most one counts; at least
-        the margin times 0.0015 of the distance before.
+        Estimated error: the margin times the sum of the distances that remain, which is at most the last
+        distance and at least 0.0015 of the distance before.
 
     Examples
     --------

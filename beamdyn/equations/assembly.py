@@ -36,7 +36,7 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
     Returns
     -------
     Equations
-        Without the terms whose factor or matrix is zero in the scene.
+        Equations of motion, without the terms whose factor or matrix is zero in the scene.
     """
     fields = {f.name: f.assemble(scene, spaces) for f in FIELDS if f.is_modelled(scene)}
     blocks = place_blocks({name: field.space.size for name, field in fields.items()})
@@ -103,11 +103,10 @@ def damping_terms(equations: Equations, scene: Scene) -> Iterator[Term]:
 
 
 def _damping_of_modes(equations: Equations, scene: Scene) -> Iterator[tuple[tuple[str, ...], np.ndarray]]:
-    """Yield coupled sets of blocks with the matrix that gives their modes at rest the scene's damping ratios.
+    """Yield each set of coupled blocks with the damping matrix of its modes at rest.
 
-    The damping ratio is 1, to be scaled, or each mode's own, in order of all frequencies together.
-
-    Own ratios are given in order of the frequencies of all sets together.
+    If all modes have one ratio, the matrix is that of the ratio 1, which the caller scales.  Ratios mode by
+    mode follow the order of the frequencies of all sets together.
     """
     pencil, sets = equations.steady(), equations.coupled
     parts = [pencil.part(equations.places(names)) for names in sets]
@@ -135,7 +134,7 @@ def _modal_damping(part: SteadyPencil, ratios: np.ndarray | None = None) -> np.n
     compliance = solve_lower(L, solve_lower(L, M).T)
     mu, U = np.linalg.eigh((compliance + compliance.T) / 2)
     unshifted: np.ndarray | float = 1.0
-    if shift:  # v^T K v is 0 within rounding: the form 1 - shift mu would lose digits on soft springs
+    if shift:  # 1 - shift mu, as v^T K v, which keeps its digits on soft springs; 0 within rounding
         v = solve_lower_transposed(L, U)
         quotient = np.einsum("nk,nk->k", v, K @ v)
         lost = BACKWARD * np.einsum("nk,nk->k", np.abs(v), np.abs(K) @ np.abs(v))

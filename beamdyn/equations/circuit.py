@@ -1,7 +1,7 @@
 """The electric circuit of a harvester in the equations of motion: electrodes, capacitance and resistance.
 
-With the voltage v, the coordinates q and theta per coordinate, the moment of the electrodes times the change
-of slope between their ends,
+With the voltage v and the coordinates q, and theta the moment of the electrodes by a unit voltage times the
+change of slope between their ends per coordinate,
 
     M q'' + C q' + K q = f + theta v,    Cp v' + v/R + theta^T q' = 0.
 
@@ -48,7 +48,7 @@ class Circuit:
     resistance : float
         Load resistance R [ohm].
     bent : dict of str to ndarray
-        Residual flexibility g: deflection by a unit voltage beyond that of the coordinates, by field.
+        Residual flexibility g of each field: deflection by a unit voltage beyond that of the coordinates.
     """
 
     coupling: np.ndarray
@@ -74,10 +74,10 @@ def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
 def coupling_of(
     beam: Beam, deflections: Mapping[str, Deflection], sections: Iterable[tuple[str, SectionFunctions]]
 ) -> dict[str, np.ndarray]:
-    """Return Theta over the functions of each field: the moment by a unit voltage on both curvatures.
+    """Return theta of each field: the work of the moment by a unit voltage, per function of the field.
 
-    Along the beam its work is that on the slopes at the ends of the electrodes.  Where sections camber, it
-    acts on the mean curvature across the width, too.
+    In bending, the moment works on the slopes at the ends of the electrodes.  Where sections camber, it also
+    works on the mean curvature across the width.
     """
     electrodes, L = beam.electrodes, beam.length
     assert electrodes is not None, "electrodes couple"

@@ -119,7 +119,7 @@ def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
     return legendre.legvander(t, points) @ integrals @ legendre_series(points)
 
 
-_OF_TENSION = 3  # polynomial degree of the moment of a mass per length that is linear in x
+_OF_TENSION = 3  # polynomial degree of the tension by a mass per length that is linear in x
 
 
 class Sampler:
@@ -214,7 +214,7 @@ class SampledSpace(FieldsOnly, ABC):
 def product_of(
     rows: SampledSpace, columns: SampledSpace, weight: Profile, orders: tuple[int, int]
 ) -> np.ndarray:
-    """Integrate a weight times derivatives of functions of two spaces on one rule, in rows and columns."""
+    """Integrate a weight times derivatives of function i of `rows` and j of `columns` on one rule: (n, m)."""
     return (rows.samples[orders[0]] * rows.weights(weight)) @ columns.samples[orders[1]].T
 
 
@@ -228,7 +228,7 @@ class RootConditions(NamedTuple):
     derivatives : int
         Highest order of a derivative that must be square-integrable.
     stiffness : str
-        Property of the sections that resists that derivative, to which functions may be adapted.
+        Property of the sections that resists the highest derivative; functions may be adapted to it.
     direction : int
         Direction of the displacement across the beam, 0 or 1.
     """

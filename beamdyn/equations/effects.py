@@ -94,9 +94,9 @@ class Effect:
         return Words(Setting("physics", **{self.switch: self.value}), " includes it", data, without)
 
     def _why_refused(self, scene: Scene) -> str | None:
-        """Say why no model has the effect even with all data.
+        """Say why the scene's model cannot have the effect, whatever data are given.
 
-        None if some model can have it, or if only data are missing; with large deflection it is not asked.
+        None if it can have it, or lacks only data; also with large deflection, where this is not checked.
         """
         if scene.physics.large_deflection or self is LARGE_DEFLECTION:
             return None
@@ -216,7 +216,7 @@ def effects_left_out(scene: Scene) -> Iterator[Effect]:
 def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
     """List the effects that the model of a scene leaves out, with what it assumes and how to include them.
 
-    Where the physics is "auto", the model is that of the plain beam, and analyses choose what they add: all
+    Where the physics is "auto", the model is that of the plain beam, to which an analysis may add any effect
     but torsion, which only adds modes.
     """
     modelled = replace(scene, physics=Physics()) if scene.chooses_physics else scene
@@ -238,7 +238,7 @@ _ACROSS = "across the direction of bending", "across"
 
 
 def check_direction(direction: int) -> int:
-    """Refuse an invalid direction of deflection: 0 is the one of bending at the root, 1 the one across."""
+    """Check that a direction of deflection is 0 (that of bending at the root) or 1 (that across)."""
     if direction not in (0, 1):
         bound = "give 0 for the direction of bending at the root, or 1 for the direction across"
         raise InvalidValue("direction", direction, bound)

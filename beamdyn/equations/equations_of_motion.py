@@ -117,7 +117,7 @@ class Equations:
         Squared first angular frequency with a clamped root [1/s2], 0 if clamped: see `SteadyPencil`.
     coarse : ndarray or None
         Indices of the coordinates whose functions span those of the coarser discretization; None where no
-        few do, and after a reduction.
+        subset does, and after a reduction.
     sections : tuple of (str, SectionFunctions)
         Names of the fields that deform the sections of a strip, and their functions.
     circuit : Circuit or None
@@ -183,7 +183,7 @@ class Equations:
         return values
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate the second derivative by eta = 2 y/b per coordinate at xi (k,), width mean: (n, k)."""
+        """Evaluate the width mean of the deflection's second derivative by eta = 2 y/b at xi (k,): (n, k)."""
         values = np.zeros((self.size, len(xi)))
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -232,7 +232,7 @@ class Equations:
     def _over_coordinates(
         self, quantity: Callable[[Deflection], np.ndarray], direction: int, shape: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """Gather a quantity of trial functions over all coordinates; 0 for fields without the direction."""
+        """Gather a quantity of trial functions over all coordinates; 0 for fields of the other direction."""
         values = np.zeros((self.size, *shape))
         for name, deflection in self.deflections.items():
             if deflection.direction == direction:
@@ -316,7 +316,7 @@ class Equations:
 
     @cached_property
     def coupled(self) -> tuple[tuple[str, ...], ...]:
-        """Sets of blocks that are coupled by mass or stiffness, but for terms of angular acceleration."""
+        """Sets of blocks that are coupled by mass or stiffness, without terms of angular acceleration."""
         return self._connected(t for t in self.terms if t.order != 1 and t.quantity != "acceleration")
 
     @cached_property

@@ -16,7 +16,7 @@ from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import centrifugal_inertia, section_tensor
 
-_ROUNDING = 1e-15  # rounding error of pi, relative to the largest acceleration of the root
+_ROUNDING = 1e-15  # rounding error of accelerations, as by that of pi in angles, relative to the largest one
 _SAMPLES = 501  # sampled times before the speed is steady, and as many at steady speed
 _TURNS = 10  # number of revolutions that are sampled at steady speed
 _MOST_PLACES = 6  # largest number of point masses whose places are listed

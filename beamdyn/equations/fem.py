@@ -198,7 +198,7 @@ class FemSpace(FieldsOnly):
     """Finite-element functions that satisfy the conditions at the root.
 
     A slope at a hinged root is a rotation of the whole beam, x/L, not bending of the first element:
-    the rotation has no curvature, not even by rounding, beside which a soft spring would be lost.
+    the rotation has no curvature, not even by rounding, which could hide a soft spring.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ class FemSpace(FieldsOnly):
         return None
 
     def weights(self, weight: Profile) -> np.ndarray:
-        """Evaluate a property of the beam at the quadrature points, as weight of integrals."""
+        """Evaluate a property of the beam at the quadrature points, as the weight of integrals."""
         return weight(self.points)
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:

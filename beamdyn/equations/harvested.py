@@ -8,7 +8,7 @@ from beamdyn.equations.circuit import BENDS, Voltage, coupling_of, strain_of
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.scene.beam import Beam
 
-_FACES = 9  # places along the layers at which strains are compared
+_FACES = 9  # number of places along the layers at which strains are compared
 
 
 def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Voltage, Voltage]:

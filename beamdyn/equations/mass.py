@@ -1,7 +1,6 @@
 """Integrals over the mass along the beam, and the axial force by its acceleration, as piecewise polynomials.
 
-A body at the tip is not included: it has an offset and moments of inertia, and enters with the
-fields.
+A body at the tip is not included: it has an offset and moments of inertia, and the fields add its terms.
 """
 
 from __future__ import annotations
@@ -43,7 +42,7 @@ class PiecewisePolynomials:
         xi : ndarray, shape (N,)
             Places within the parts.
         counts : sequence of int
-            Number of polynomials on each part; of continuous functions at least those that are linear.
+            Number of polynomials on each part; continuous functions include the linear ones in any case.
         continuous : bool
             Whether the functions are continuous from part to part, or may jump.
         """

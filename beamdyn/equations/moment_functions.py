@@ -6,16 +6,16 @@ its bending moment M is smooth.  Trial functions with the curvature
     w'' = M(x) / EI(x)
 
 thus need no more functions for a hundred segments than for one.  The moments are polynomials over the whole
-beam, and those that inertia and tension cause where the first of these functions vibrate,
+beam, and the moments by inertia and tension while the beam vibrates in the first of these functions,
 
     int_x^1 int_s^1 rho A w,  int_x^1 N w',
 
-which have the small roughness of M that polynomials lack: as one step of inverse iteration would.  Of a
-deflection by shear and of a stretch, it is the slope that is a force over a stiffness.  Twisted sections bend
-in both directions under a moment in one: curvatures are products with entries of their compliance.
+as in a step of inverse iteration: they have the small kinks of M, which polynomials lack.  In deflection by
+shear and in stretch, the slope is a force over a stiffness.  Twisted sections bend in both directions under a
+moment in one: curvatures are moments times entries of the sections' compliance.
 
-At a point mass the moment has a kink, and the shear force a jump: polynomials are those on each part of the
-beam between point masses, of moments such that they are continuous.
+At a point mass the moment has a kink, and the shear force a jump: each part of the beam between point masses
+has its own polynomials, and those of moments are continuous from part to part.
 
 The quotients are interpolated by polynomials on cells.  The functions are thus piecewise polynomials, of
 which integrals are exact, and eigenvalues are upper bounds as those of other assumed modes.
@@ -79,8 +79,8 @@ class MomentSpaces(FieldsOnly):
     beam : Beam
         The beam, with the modelled properties.
     forces : int
-        Number of forces or moments in each direction; with point masses, by the square root of its share of
-        the length on each part between them.
+        Number of forces or moments in each direction; with point masses, each part between them has this
+        number times the square root of the part's share of the length.
     coarse : int
         Number of forces that the coarser discretization has.
     """
@@ -110,7 +110,7 @@ class MomentSpaces(FieldsOnly):
         return self.coarse
 
     def shares_functions(self, other: MomentSpaces) -> bool:
-        """Whether other spaces have the same beam and sizes; cells and forces follow every stiffness."""
+        """Whether other spaces have the same beam and sizes, as cells and forces need all stiffnesses."""
         return self == other
 
     @cached_property
@@ -231,10 +231,10 @@ def _interpolation(points: int) -> np.ndarray:
 def _build_forces(
     spaces: MomentSpaces, stiffness: str, derivatives: int, direction: int
 ) -> tuple[np.ndarray, np.ndarray | None]:
-    """Compute forces or moments in one direction at the nodes, shape (n, N), and which are coarse (n,).
+    """Compute forces or moments in one direction at the nodes, (n, N), and mark those of the coarser basis.
 
-    The first are polynomials; displacements by them cause the others by inertia and by tension.  The second
-    result tells which forces the coarser discretization has, too; None if it has others.
+    The first forces are polynomials; displacements by them cause the others by inertia and by tension.  The
+    marks (n,) tell which forces the coarser basis has, too; they are None if it has different ones.
     """
     beam, parts, causes = spaces.beam, spaces.polynomials, []
     # Loads: stiffness against the displacement, order of the displacement's derivative, and weight.
@@ -277,8 +277,8 @@ def _polynomials(spaces: MomentSpaces, counts: tuple[int, ...], continuous: bool
 def _share(counts: Sequence[int], causes: int) -> tuple[list[int], list[int]]:
     """Divide counts of forces per part into polynomials that cause others, and polynomials in total.
 
-    Each of `causes` adds one force for each causing polynomial.  The division only affects which space the
-    trial functions span; its error is estimated with fewer of them.
+    Each of the `causes`, such as inertia, adds one force for each causing polynomial.  The division only
+    affects which space the trial functions span; its error is estimated with fewer of them.
     """
     causing = [count // (1 + causes) for count in counts]
     return causing, [count - causes * n for count, n in zip(counts, causing, strict=True)]

@@ -21,7 +21,7 @@ from beamdyn.scene.sections import weight_degree
 _MOST_ACROSS = 16  # number of functions across the width of a plate
 MOST_FUNCTIONS = 200  # largest accepted number of functions on each segment
 _POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
-_POINTS_OF_MOMENTS = 8  # Gauss points on each of the many cells of moments, which are small
+_POINTS_OF_MOMENTS = 8  # Gauss points on each cell of the basis "moments", whose cells are many and small
 
 # Number of functions of the coarser basis, over that of the basis: smaller where the basis converges slowly.
 _COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}

@@ -10,9 +10,8 @@ with the loads f and the forms m, g, k of mass, gyroscopic terms and stiffness. 
 the rigid rotation x/L minus as much of the kept shapes as makes it orthogonal to them in the mass: neither
 the accelerations nor modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) work on it.  What remains is
 the moment of the kept shapes and the static one of all others, as in the mode-acceleration method: Craig
-and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4.  Where a spring holds the root, it is
-its moment that works on w, and what the kept shapes contribute to the rotation works against the spring that
-they bend.
+and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4.  Where a spring holds the root, M is
+the moment of the spring, which also works on the part of the kept shapes in w, as they turn the root.
 """
 
 from __future__ import annotations

@@ -135,7 +135,7 @@ def terms(scene: Scene) -> Terms:
     ----------
     scene : Scene
         The scene; without a motion, steady rotation at 1 rad/s is assumed.  Physics "auto" is the plain
-        beam, and what is left out says that analyses choose.
+        beam; the effects left out then say that analyses choose them.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Convergence of linear models: the number of modes they need, and the error of what they give."""
+"""Convergence of linear models: the number of modes they need, and the errors of their results."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def evaluate_accurately(
     scene, speed, discretization
         As for `model_at_speed`.
     top : float
-        Highest angular frequency at which the beam answers [rad/s], which the functions resolve.
+        Highest angular frequency at which the beam responds [rad/s], which the functions resolve.
     modes : int, "auto" or None
         Number of modes; "auto": all functions up to `most`, else the fewest modes with which the error meets
         the tolerance; None: all functions.

@@ -1,12 +1,12 @@
 """Free motion of linear equations, M q'' + C q' + K q = 0, independent of the units of coordinates.
 
 Coordinates u are chosen in which K + z^2 M is the unit matrix and M = diag(r^2), and the states are u and
-w = r u'.  Then all that remains is times, and for the poles s the eigenvalues of T are 1 / (s - z), where
+w = r u'.  Then all quantities are times, and for the poles s the eigenvalues of T are 1 / (s - z), where
 
     T (u, w) = (v, r (u + z v)),    v = -(I + z C)^-1 ((C + z r^2) u + r w).
 
-A stiffness that is positive definite needs no shift z: T = [-C, -r; r, 0] is skew without damping, and falls
-apart into blocks of two by modal damping, so that eigenvalues and vectors are as accurate as those of
+A stiffness that is positive definite needs no shift z: T = [-C, -r; r, 0] is skew without damping, and has
+blocks of two with modal damping, so that eigenvalues and vectors are as accurate as those of
 symmetric matrices.  The lowest poles belong to the largest eigenvalues, which keep all digits; coordinates
 without mass have r = 0, and infinite poles.
 """
@@ -108,7 +108,7 @@ class FreeMotion:
 
 
 def free_motion(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> FreeMotion:
-    """Solve M q'' + C q' + K q = 0 for symmetric M, not negative, and symmetric K.
+    """Solve M q'' + C q' + K q = 0 for positive semidefinite M and symmetric K.
 
     Parameters
     ----------

@@ -98,7 +98,7 @@ class FrequencyResponse(JudgedByRepeating):
 
     @property
     def response_frequencies(self) -> np.ndarray:
-        """Frequencies of the response [Hz], shape (F, k); negative ones turn backwards."""
+        """Frequencies f + h n of the response [Hz], which may be negative: shape (F, k)."""
         return self.frequencies[:, None] + self.harmonics * self.speed / _TURN
 
     @property
@@ -144,7 +144,7 @@ def frequency_response(
 ) -> FrequencyResponse:
     """Compute the response to a harmonic excitation at a steady speed, over frequency.
 
-    The straight beam moves little, in the modes at the speed and with the static deflection of all others.
+    Motions of the straight beam are small, in its modes at the speed, with the static deflection of others.
     The parametric term is not included: an acceleration along the beam varies its stiffness, which causes
     responses at other frequencies, too; `random_response` states its size.
 

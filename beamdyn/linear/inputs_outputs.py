@@ -243,8 +243,8 @@ class DeflectionAt:
 class AccelerationAt(DeflectionAt):
     """Acceleration of a point of the beam in space [m/s2], along a direction that turns with the carrier.
 
-    The acceleration of the root is included, and what rotation adds to a deflection.  The constant
-    acceleration towards the axis of rotation is left out, as by accelerometers that measure no constant part.
+    The acceleration of the root is included, and what rotation adds: centripetal and Coriolis accelerations.
+    The constant acceleration towards the axis is left out, as by accelerometers that lack a constant part.
     Divided by the acceleration of the base, this is the transmissibility.
 
     Parameters
@@ -315,7 +315,7 @@ class HarvestedVoltage:
     label: ClassVar[str] = "voltage"
 
     def rows(self, electrodes: Electrodes, length: float) -> LayerRows:
-        """Return the rows of the voltage; a ValueError for a short circuit, which has none."""
+        """Return how the voltage follows from the coordinates; a ValueError for a short circuit."""
         if not electrodes.resistance:
             raise InvalidValue("output", "voltage", "a short circuit has none", "give harvester.resistance")
         return LayerRows(electrodes.is_loaded, 0, -1 / electrodes.capacitance(length))
@@ -336,7 +336,7 @@ class HarvestedCurrent:
     label: ClassVar[str] = "current"
 
     def rows(self, electrodes: Electrodes, length: float) -> LayerRows:
-        """Return the rows of the current; a ValueError for an open circuit, which has none."""
+        """Return how the current follows from the coordinates; a ValueError for an open circuit."""
         if math.isinf(electrodes.resistance):
             remedy = "give a finite harvester.resistance"
             raise InvalidValue("output", "current", "an open circuit has none", remedy)
@@ -384,7 +384,7 @@ class LayerStrain:
 
 @dataclass(frozen=True)
 class LayerRows:
-    """Voltage or current of layers, per circuit coordinate, or per coupling theta^T q and its rate."""
+    """Voltage or current of layers: a factor times the circuit's coordinate or theta^T q, or their rate."""
 
     of_circuit: bool
     order: int

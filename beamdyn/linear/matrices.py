@@ -266,7 +266,7 @@ def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
 
 
 def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
-    """Compute the load of an excitation; refuse rotating ones, for which matrices are not constant."""
+    """Compute the load of an excitation; refuse one that turns against the beam: its matrix would vary."""
     drives = model.drives(excitation)
     bound = "as the beam turns, it acts at its frequency plus and minus the speed, not by a constant matrix"
     remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response has it'

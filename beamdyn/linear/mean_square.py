@@ -19,7 +19,8 @@ kappa = |phi K_GA phi| / omega^2 for its shape phi of unit mass.  For an oscilla
 
     q'' + 2 zeta omega q' + omega^2 (1 + xi) q = w,
 
-with xi and w of a wide band the equations of the second moments give the variance over that without xi
+the equations of the second moments give, with xi and w of a wide band, the ratio of variances with and
+without xi
 
     1 / (1 - x),    x = omega G(2 f) / (8 zeta),
 

@@ -322,7 +322,7 @@ class ModelAtSpeed(FieldsOnly):
 
 _UNRESOLVED = 0.01  # relative error of a pole beyond which it may be paired with the pole of another mode
 # Relative distance of the coarser poles below which they converge, and least ratio of two distances that is
-# believed: several fields, segments or elements do not converge as steadily as one.
+# used: several fields, segments or elements do not converge as steadily as one.
 _STEADY, _LEAST_RATIO = 0.01, 0.2
 _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the matrices
 
@@ -332,8 +332,8 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
 
     The error by modes left out, through damping and gyroscopic terms, is a pole's distance from its partner
     among the poles of all functions; these are compared with those of two coarser discretizations.  An
-    infinite pole, of a coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved, and so
-    are those of larger magnitude than such a one above a resolved one: inf.
+    infinite pole, of a coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved: inf; the
+    first unresolved pole above a resolved one makes all poles of larger magnitude unresolved, too.
     """
     kept, fine, coarse = model.free_motion, model.model, model.model.coarser
     whole, *coarser = (
@@ -350,7 +350,7 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
         resolved = (truncation + LINEAR_MESHES.factor * apart) / np.abs(poles) < _UNRESOLVED
     error += rounding + _ROUNDING + LINEAR_MESHES.factor * model.discretization.rounding
     resolved &= (error < _UNRESOLVED) & fine.exceeds_coarser
-    # Poles ascend: one above the first that is unresolved may be paired with that of another mode.
+    # Poles ascend: those above the first unresolved one may be paired with poles of other modes.
     ended = np.maximum.accumulate(~resolved & np.maximum.accumulate(resolved))
     found = np.full(len(kept.poles), np.nan)
     found[: len(poles)] = np.where(resolved & ~ended, error, np.inf)

@@ -268,7 +268,7 @@ def root_mean_squares(
 def _frequencies(
     spectrum: spectra.PowerSpectrum | float, model: ModelAtSpeed, drive: inputs_outputs.Excitation
 ) -> np.ndarray:
-    """Choose frequencies of the response [Hz] at which straight lines between densities have its area.
+    """Choose frequencies of the response [Hz] so that lines between its densities enclose its mean square.
 
     For white noise they end at ten times the lowest resonance.
     """

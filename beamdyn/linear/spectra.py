@@ -35,7 +35,7 @@ from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 from beamdyn.scene.scene import Scene
 
 BetweenPoints = Literal["linear", "log"]
-# Largest ratio of the ends of a power law's piece on which polynomials of some degree are exact.
+# Largest ratio of the ends of a piece of a power law on which the power law is nearly a polynomial.
 _WIDEST = 1.5
 
 REFERENCE = 0.1  # spatial frequency n0 of ISO 8608 [1/m]

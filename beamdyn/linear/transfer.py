@@ -1,6 +1,6 @@
 """Transfer functions of a linear model at a steady speed, and a check that its free motion decays.
 
-For many frequencies, a transfer function is a sum over the free motions of a model, which is fast.
+For many frequencies, a transfer function is evaluated as a sum over a model's free motions, which is fast.
 
 Each free motion adds one term over 1 - s t_k, with its inverse pole t_k = 1/p_k: see
 `beamdyn.linear.free_motion`.  The lowest poles belong to the largest t_k, which are the accurate ones;

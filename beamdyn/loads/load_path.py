@@ -37,7 +37,8 @@ class LoadPath(FieldsOnly):
     stations : SpanStations
         The stations, S of them.
     given : StationOutputs, optional
-        The K outputs at each station; None if only forces and moments are wanted.
+        The K outputs at each station; None if only forces and moments are wanted: 1 + 2 d loads, with d
+        planes of bending.
     """
 
     run: Transient
@@ -184,7 +185,7 @@ class LoadPath(FieldsOnly):
             error = estimate_time_error(system, path.segments, np.diag(largest))
             contributions = np.empty(system.size)
             contributions[rank] = error.modes
-            # Fraction of the largest load at each station.
+            # Bounds by each coordinate at each station, relative to those at the station with the largest.
             shares = sizes[:, k] / np.where(largest > 0, largest, 1.0)
             totals = shares @ contributions + shares.max(axis=1) * error.interpolation
             errors[:, k] = [TimeError(np.array([total]), 0.0, error.unresolved).total for total in totals]
@@ -196,7 +197,7 @@ def largest_per_coordinate(
 ) -> np.ndarray:
     """Bound each load (stations S, outputs K) over the run per unit amplitude of each of n coordinates.
 
-    Each coordinate vibrates at its frequency [rad/s]; shape (S, K, n), sums of the largest contributions.
+    Each coordinate vibrates at its frequency [rad/s]; the bounds (S, K, n) sum the largest contributions.
     """
     # There are several samples in each step, and steps are short where a shock acts.
     root = system.root(path.samples[0])

@@ -89,7 +89,7 @@ class LoadFractions:
         return _EPSILON * (constant + 2 * np.abs(by_pole).sum(axis=-1))
 
     def _parts(self, spectrum: PowerSpectrum, order: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the mean square's terms by pole (S, K, m), with real parts to be doubled, and constant."""
+        """Compute the mean square's terms by pole (S, K, m), whose real parts count twice, and a constant."""
         between = 1 / (-self.poles - np.conj(self.poles)[:, None])
         conjugate = np.conj(self.direct)[..., None] + np.conj(self.residues) @ between
         integrals = pole_integrals(spectrum, self._mu, self.shift, order)
@@ -284,13 +284,13 @@ class RandomStatistics:
 
 
 def expected_factor(count: np.ndarray) -> np.ndarray:
-    """Compute the mean of the largest of a number of crossings, over the root mean square."""
+    """Compute the mean largest value in a number of zero crossings, over the root mean square."""
     root = np.sqrt(2 * np.log(count))
     return root + np.euler_gamma / root
 
 
 def safe_factor(count: np.ndarray, probability: float) -> np.ndarray:
-    """Compute a quantile of the largest of a number of crossings, over the root mean square."""
+    """Compute a quantile of the largest value in a number of zero crossings, over the root mean square."""
     return np.sqrt(2 * np.log(np.maximum(count / -math.log(probability), 1.0)))
 
 

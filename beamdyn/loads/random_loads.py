@@ -256,7 +256,7 @@ def random_loads(
     )
     drive, spectrum = random_input(scene, speed, psd, input)
     check_damped(scene)
-    if not isinstance(spectrum, PowerSpectrum):  # loads follow the input at once: infinite for white noise
+    if not isinstance(spectrum, PowerSpectrum):  # loads by white noise are infinite
         bound = "mean squares of loads by white noise are not finite"
         raise InvalidValue("psd", psd, bound, "give a PowerSpectrum, which ends at some frequency")
     asked = AskedLoads.of(scene, at, points, youngs_modulus)

@@ -122,8 +122,8 @@ def static_loads(
     ValueError
         If an argument is out of its range, a point lies outside the section, or large deflection is modelled.
     NoEquilibrium
-        An ArithmeticError: if rotation or its weight buckles the straight beam, or turns freely about its
-        root.
+        An ArithmeticError: if rotation or its weight buckles the straight beam, or the beam turns freely
+        about its root.
 
     References
     ----------
@@ -214,7 +214,7 @@ def _solve(
 def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarray:
     """Solve equilibrium coordinates (C, n); refuse stiffnesses (C, n, n) that are not positive definite."""
     size = np.sqrt(np.einsum("cii->ci", np.abs(K)))
-    size[size == 0] = 1.0  # sizes of functions that nothing holds
+    size[size == 0] = 1.0  # functions without stiffness are not scaled
     scaled = K / (size[:, :, None] * size[:, None, :])
     least = np.linalg.eigvalsh((scaled + scaled.swapaxes(1, 2)) / 2)[:, 0]
     if (lost := least <= _SINGULAR).any():

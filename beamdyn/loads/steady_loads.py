@@ -259,7 +259,7 @@ def lines_of_response(
 def _solve(
     response: SteadyResponse, equations: Equations
 ) -> tuple[list[periodic_system.Pair], np.ndarray, np.ndarray]:
-    """Solve for the coordinates with one more interaction's harmonics than the response has.
+    """Solve for the coordinates with the harmonics of one more coupling by the periodic coefficients.
 
     Lines of the tip that are within rounding error at all speeds are left out.
 
@@ -267,7 +267,7 @@ def _solve(
     -------
     harmonics : list of pair, length H
     coordinates, truncated : ndarray of complex, shape (C, H, n)
-        Coordinates with all harmonics, and without the further interaction's, to estimate the error.
+        Coordinates with all harmonics, and without the further ones, to estimate the error.
     """
     request = response.request
     vibration = vibration_of(request.model, request.basis, request.scene.motion, response.speeds)

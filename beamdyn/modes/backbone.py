@@ -3,7 +3,7 @@
 A free vibration x = eps w + eps^2 z of an undamped beam, w = Re(v exp(i tau)) a mode, has the angular
 frequency omega + eps^2 omega_2 (Lindstedt and Poincare).  The forces that are even in w give the steady part
 and the second harmonic z, the odd ones omega_2 by the condition that they do no work on the mode.  All forces
-are those of the full equations at a small eps, from two of which the limit eps = 0 follows.
+are those of the full equations at small amplitudes, two of which give the limit eps = 0.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ def backbone(
 def _coarser_coefficients(model: Model, speeds: np.ndarray, mode: int) -> tuple[float, float]:
     """Compute the coefficient by the two coarser models; nan if the coarsest has no such mode.
 
-    The coarser of the two has the mode, as its frequency has an error.
+    The finer of the two has the mode, because the error of the frequency was estimated from it.
     """
     coarse, coarsest = model.coarser, model.coarser.coarser
     found = FreeVibration.of(coarse, float(speeds[0]), mode).coefficient(SMALL / 2)
@@ -181,9 +181,9 @@ def _coarser_coefficients(model: Model, speeds: np.ndarray, mode: int) -> tuple[
 # Amplitude of the tip over the length: the change of frequency is found at half of it, and its error by the
 # difference from that at the whole.
 SMALL = 0.02
-_OF_AMPLITUDE = 2.0  # the difference may be rounding, of which it is a single sample
+_OF_AMPLITUDE = 2.0  # factor of that difference in the error, as it may be one sample of rounding errors
 _STEADY = 1e-3  # relative distance of coefficients below which bases converge steadily
-_ROUNDED = 1e-7  # relative distance of coefficients up to which it may be that of rounding, over eps^2
+_ROUNDED = 1e-7  # relative distance of coefficients that may be due to rounding, divided by eps^2
 _SAMPLES = 16  # samples of a period, which separate harmonics up to the seventh
 _RESONANT = 1e-3  # condition of the dynamic stiffness below which a second harmonic resonates with a mode
 
@@ -226,7 +226,7 @@ class FreeVibration:
     def warnings(self) -> list[str]:
         """List a warning if the second harmonic is near a mode, which then vibrates, too."""
         values = np.abs(np.linalg.eigvals(np.linalg.solve(self._dynamic(0), self._dynamic(2))))
-        near = values.min() < _RESONANT * 3  # the factor 3 is that of the mode itself, |1 - 2^2|
+        near = values.min() < _RESONANT * 3  # the mode itself has the value 3 = |1 - 2^2|
         return ["twice the frequency is near that of another mode: the two exchange energy"] if near else []
 
     def _dynamic(self, harmonic: int) -> np.ndarray:

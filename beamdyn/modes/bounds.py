@@ -32,7 +32,7 @@ from beamdyn.scene.validity import check_speeds, warn_of_static_deflection
 _EPS = float(np.finfo(float).eps)
 _NARROW = 1e-11  # relative width of the bounds of squares below which the basis is not enlarged
 # Relative width of the bounds of squares below which the basis is not enlarged, for two coupled planes: their
-# Ritz parts are twice as large, and this is some times the rounding allowances.
+# Ritz parts are twice as large, and this width is a few times the allowances for rounding.
 _RESOLVED = 1e-8
 _PROOF_SIZES = (24, 48, 96)  # sizes of bases, on all segments, tried for a bound of the critical speed
 _CLOSE = 1 - 1e-6  # fraction of the squared Ritz value at which a bound is close enough
@@ -225,8 +225,8 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
 def bound_critical_speed(scene: Scene) -> float:
     """Compute a guaranteed lower bound of the critical speed of bending [rad/s]; 0 if none is proved.
 
-    The theorem with z = 0 and k = 1 proves the stiffness at that speed, and so at every slower
-    one, is positive.
+    The theorem with z = 0 and k = 1 proves that the stiffness is positive definite at that speed, and so at
+    every slower one.
     """
     scaled, time = _nondimensional(scene)
     if (flexibility := bound_flexibility(scaled.beam.bending_stiffness)) is None:
@@ -278,7 +278,7 @@ def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.nda
     return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, ritz
 
 
-# Bounds, size of the basis, and the width before.
+# Lower and upper bounds, size of the basis, and width of the bounds from the basis before.
 _Found: TypeAlias = tuple[np.ndarray, np.ndarray, int, np.ndarray]
 
 
@@ -289,7 +289,7 @@ def _narrow(
 
     def finer(found: _Found) -> _Found | None:
         lower, upper, _, _ = found
-        # So many functions may fail by rounding at such a speed.
+        # With so many functions, the eigensolution may fail by rounding at this speed.
         with suppress(StopIteration, np.linalg.LinAlgError):
             size = next(sizes)
             low, high = enclosure(size).bounds(modes)

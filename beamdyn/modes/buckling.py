@@ -8,7 +8,7 @@ with the tension N = N_B - a N_A per squared speed, a = r cos(phi), t = u(L) + e
 in docs/conventions.md.  Bending stiffness is not in F.  So any deflection counts that is 0 at the root,
 whatever its slope there, and D does not depend on it: a short bend at the tip gives any D.
 
-rho A dx is the mass, that of point masses along the beam with it; N is less beyond each of them.
+rho A dx includes the point masses along the beam; N is smaller beyond each of them.
 
 **Tension.**  Where N < 0, short waves make F negative.  As N' = -rho A (x - a), N is least at an end.
 
@@ -46,14 +46,14 @@ of the beam has passed 1 %, where linear theory ends.
 **String.**  Else, least over D, F is the form of a string with a mass at its end.  Its lowest eigenvalue
 decides; it converges fast, as without bending stiffness there are no thin layers.
 
-**Toppling.**  Let F0 be the form of above for a slender beam, and E twice the energy of bending and of
+**Toppling.**  Let F0 be the form F above for a slender beam, and E twice the energy of bending and of
 the springs at the root.  With the tilt theta of the sections (theta2 in the plane of rotation, theta3 out of
 it), the tensor I of their rotary inertia and that of the tip body, B, rotation adds to F0
 
     -int (I33 theta3^2 + I23 theta2 theta3) + B23 theta2 theta3 at the tip
     + int g (theta2 theta3' - theta3 theta2'),    g(x) = int_x^L I23 - B23,
 
-in which B33 theta3^2 at the tip counts to F0.  With the compliance C(x), the integral of the sections' from
+where B33 theta3^2 at the tip is a part of F0.  With the compliance C(x), the integral of the sections' from
 the root to x plus that of the springs, theta_i^2 <= C_ii E.  So what rotation adds is at least -r E per
 squared speed, with
 
@@ -62,7 +62,7 @@ squared speed, with
 with the smaller EI at x.  **If F0 >= 0, no speed below r^(-1/2) is critical.**  For a uniform beam that is
 2^(1/2) times the speed of sound in its material, over the length.
 
-At a hinge C is infinite.  If it turns out of the plane only, where F0 >= int N u'^2, split theta3 into its
+A hinge has an infinite C.  If it turns out of the plane only, where F0 >= int N u'^2, split theta3 into its
 mean with the weight N and the rest, at most (e E)^(1/2) with e = int 1/EI.  If S = int N - 2 int I33 > 0,
 
     r = 2 e int I33 + A^2 / (4 S) + A e^(1/2) + G,    G = (int g^2 C22 / EI)^(1/2),
@@ -139,7 +139,7 @@ def decide_buckling(scene: Scene) -> Buckling:
         return Buckling(True, "the rotation turns the beam about its hinge", speed=0.0)
     beam, tip = scene.modelled_beam, scene.beam.tip or TipMass(0.0)
     cosine, sine = exact_cos_sin(scene.mount.precone)
-    slope2, a = (sine / cosine) ** 2, _inward(scene) / cosine  # both are 0 without precone
+    slope2, a = (sine / cosine) ** 2, _inward(scene) / cosine  # tan^2 eta, which is 0 without precone, and a
     if scene.physics.planes == 1:
         cos2, sin2 = (v**2 for v in aligned_cos_sin(scene.mount.bending_angle))
         tilt = (sin2 - slope2) * (tip.inertia_about_bending_direction - tip.axial_inertia)
@@ -223,7 +223,7 @@ def _inward(scene: Scene) -> float:
 def _least_turning(scene: Scene) -> float:
     """Compute the minimum of this module's form F over unit turns about a hinge [kg m2]; inf if clamped."""
     springs = scene.mount.root_stiffnesses[: scene.physics.planes]
-    # Springs along the beam hold it in these directions.
+    # Whether springs along the beam hold it, in each direction.
     held = [scene.beam.springs(direction)[1].size > 0 for direction in range(len(springs))]
     hinges = np.flatnonzero((np.array(springs) == 0) & ~np.array(held))
     if not hinges.size:
@@ -268,7 +268,7 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
     bending = _tensor(beam, "bending_stiffness", xi, planes)
     springs = np.array(mount.root_stiffnesses)[:planes]
     flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # flexibility from the smaller bending stiffness
-    root = np.diag([1 / k if k else 0.0 for k in springs])  # with hinges that matter there is no bound
+    root = np.diag([1 / k if k else 0.0 for k in springs])  # hinges count as rigid: see the conditions below
     by_bending = np.cumsum(np.linalg.inv(bending) * width[:, None, None], axis=0)
     C = components @ (root + by_bending) @ components.T
     torque, slope = np.cumsum((width * products)[::-1])[::-1] - body, np.sqrt(C[:, 0, 0])
@@ -308,7 +308,7 @@ def _tilting_inertia(
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Compute I33 (all of it in one plane) and I23 of sections (n,) [kg m], and B23 of the tip body [kg m2].
 
-    Products of inertia within rounding are set to 0.  With precone, B23 is at least the factor of its work.
+    Products of inertia within rounding are set to 0.  With precone, B23 includes a factor above 1.
     """
     if scene.physics.planes == 1:
         return rotary[:, 0, 0] * bool(components[1, 0]), np.zeros(len(rotary)), 0.0

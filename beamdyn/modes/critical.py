@@ -58,7 +58,7 @@ _BENT = Words(
 )
 _LOST = "the beam that {} has no stiffness against a further bend or twist"
 _KEPT = "the beam that {} was followed so far, and stays stable"
-_FUNCTIONS = 5  # functions of a model of which only the loads are read
+_FUNCTIONS = 5  # number of functions of a model that only tells whether rotation loads the beam
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class CriticalPoint(StatesModelError):
     provenance : Provenance
         How it was found.
     of_bent_beam : bool
-        Whether the beam has bent before, by the rotation or by a load at its tip.
+        Whether the rotation, or a load at its tip, bends the beam before it loses stability.
 
     Examples
     --------
@@ -179,9 +179,9 @@ def critical_point(
     sought with finer and finer discretizations, because it may belong to a short bend at the tip; if these
     end without one, guaranteed bounds say up to which speed there is none.
 
-    Where rotation bends the beam in space from rest on, it is the speed at which the equilibrium that follows
-    from rest loses its stability: a deep section buckles sideways, or the branch turns back.  So it is with a
-    dead load at the tip; one under which a beam may flutter is refused.
+    Where rotation bends the beam in space from rest on, the critical speed is that at which the equilibrium
+    that follows from rest loses its stability: a deep section buckles sideways, or the branch turns back.
+    The same holds with a dead load at the tip; a load under which a beam may flutter is refused.
 
     Parameters
     ----------
@@ -234,7 +234,7 @@ def _of_straight_beam(
     models = partial(critical_search.models_of_critical_speed, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):
-        # A model buckles at a strain below 1 %, of which the argument knows only the order of magnitude.
+        # The argument, which knows only the order of magnitude of the strain, missed buckling below 1 %.
         buckling = replace(buckling, speed=None)
     # The search is for buckling by bending, within reach of the theory.
     sought = buckling.exists is not False and buckling.speed is None
@@ -252,7 +252,7 @@ def _of_straight_beam(
             found = bending
         else:
             reason = "the rotation softens the stretch by more than the axial stiffness"
-    none_below = found.speed  # otherwise planes of a slender beam bound the speed
+    none_below = found.speed  # replaced by bounds of slender planes where the speed is not resolved
     if np.isinf(found.error):
         by_plane = () if scene.physics.stretch else map(bound_critical_speed, separate_planes(scene))
         none_below = min(by_plane, default=0.0 if scene.physics.stretch else buckling.none_below)

@@ -20,9 +20,7 @@ _SIZED_FOR = 5
 _NEAR_TIP = 0.5  # x/L beyond which the deflection is so large that rounding of short elements shows
 # Rounding error times the cubed relative length of the shortest element.
 _OF_SHORTEST = 4 * float(np.finfo(float).eps)
-_ROUNDING_OF_BENT = (
-    1e-10  # relative error: the sought stiffness is small compared with the terms that add up to it
-)
+_ROUNDING_OF_BENT = 1e-10  # relative rounding error: the stiffness is a small sum of large terms
 # Smallest error at which meshes of a bent beam aim: each mesh costs as much as all before.
 _MESHES_OF_BENT = 1e-5
 _TO_HALF = 4  # number of steps from a basis to one of about half its size
@@ -104,7 +102,7 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
 def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, bool]:
     """Refine the speed at which a beam that rotation bends loses stability; also return whether it does.
 
-    Where it does not, the returned speed is the largest that was tried.
+    Where it stays stable, the returned speed is the largest that was tried.
     """
     found, is_lost = compare_bent(next(models))
     if found.model.discretization.order is not None:
@@ -115,7 +113,7 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
 
 
 def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
-    """Compute the speed of loss of stability, its error from the coarser model, and whether it is lost."""
+    """Find the speed of loss of stability, its error by the coarser model, and whether it was found."""
     solver, coarse = model.solver, model.compared.solver
     assert isinstance(solver, DeflectedSolver) and isinstance(coarse, DeflectedSolver)
     (squared, is_lost), (of_coarse, also) = (find_loss_of_stability(s.load) for s in (solver, coarse))

@@ -26,7 +26,7 @@ def bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:
 
     The slope at x under unit energy is at most sqrt(int_0^x 1/EI), the deflection
     sqrt(int_0^x (x - s)^2 / EI).  Exchanging the integrals leaves outboard integrals of the loads:
-    int_s^1 (x - s)^2 rho A dx is twice the threefold one.
+    int_s^1 (x - s)^2 rho A dx is twice the threefold outboard integral of rho A.
     """
     tip = beam.tip or TipMass(0.0)
     n_a, n_b = axial_tension(beam)

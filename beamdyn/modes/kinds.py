@@ -14,7 +14,7 @@ _TIE = 1e-9  # relative difference of kinetic energies below which the first kin
 
 
 def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | None:
-    """Name the kind of each of modes (S, n, k) by the largest part of its kinetic energy: words (S, k).
+    """Name the kind (S, k) of each mode, of vectors (S, n, k), by the largest part of its kinetic energy.
 
     Bending in both directions, torsion and camber are compared, and ties within 1e-9 go to the first; the
     energy of stretch is not compared.  None where a model has neither torsion nor camber.

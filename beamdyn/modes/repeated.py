@@ -39,8 +39,8 @@ class JudgedByRepeating(StatesModelError):
     Attributes
     ----------
     again : callable or None
-        Function that repeats the analysis with these arguments for another scene; None in a result that was
-        loaded from a file without its model error.
+        Function that repeats the analysis with the same arguments for another scene; None in a result that
+        was loaded from a file without its model error.
     follows_stiffness : bool
         Whether values grow as the compliance of the first mode does, so that their change by large deflection
         can be estimated where the analysis is for straight beams.
@@ -116,7 +116,7 @@ class JudgedByRepeating(StatesModelError):
 
 
 def _with_change(found: LeftOutEffects, name: str, own: np.ndarray, bent: SolvedValues) -> LeftOutEffects:
-    """Add to the changes that of an effect that was unknown before, if it is known now."""
+    """Add the change by an effect to the others, if it was unknown before and is known now."""
     with np.errstate(divide="ignore", invalid="ignore"):
         change = bent.values / own - 1
     if not np.isfinite(change).all():
@@ -157,6 +157,6 @@ def _repeat(
 ) -> Any:
     """Repeat an analysis for another scene, with some options changed.
 
-    An analysis of a result gets that result repeated for the scene.
+    If the analysis takes the result of another one, that one is repeated for the scene first.
     """
     return analysis(scene if isinstance(source, Scene) else source.again(scene), **options | others)

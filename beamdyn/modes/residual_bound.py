@@ -24,7 +24,7 @@ determinate, has in closed form.  Hence Q_z >= q a on the tail with q = 1 - sum_
 **The coupling.**  For v of the Ritz part and w of the tail, integrating from the tip inwards,
 sum_j c_j P_j(v, w) = int F w'', where F is the moment that the loads of v cause; and as int EI p w'' = 0 for
 curvatures p of the Ritz part, it is int (F - EI p) w'' <= sqrt(R(v, v) a(w, w)), R = int (F - EI p)^2 / EI.
-All this for any p; the best is the Ritz part's answer to the loads.  On cells where F and EI p are
+This holds for any p; the best is the response of the Ritz part to the loads.  On cells where F and EI p are
 polynomials, R is integrated exactly with an upper bound of 1/EI on each.
 
 **The theorem.**  Q_z(v + w) >= Q_z(v) - 2 sqrt(R a(w, w)) + q a(w, w) >= (Q_z - R / q)(v).  So, if q > 0
@@ -310,7 +310,7 @@ class CoupledEnclosure(Enclosure):
         self._direction, self._slope = d, self.part.slope[..., -1]
         tilts = [self._slope @ T @ self._slope.T for T in self._tensors]
         self.forms = np.concatenate([self.part.forms(d), tilts, self.part.twisting[None]])
-        # There are two products at a point; the stiffness of the Ritz part is exact to the misfit.
+        # Each point has two products, one a direction; `misfit` is the relative error of the stiffness.
         products = 2 * self.part.quadrature.xi.size
         self.unit = 4 * _EPS * (products + len(self.stiffness)) + self.part.misfit
 

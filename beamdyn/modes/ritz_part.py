@@ -230,8 +230,8 @@ class PlaneRitzPart(RitzPart):
     def residuals(self, compliance: np.ndarray) -> np.ndarray:
         """Integrate products of unbalanced moments with a compliance of cells (c,): shape (4, n, 4, n).
 
-        The moment for the load j of the function i is F_ji - EI p, where the curvature p of the functions is
-        the best answer if they are orthonormal.
+        The moment for the load j of the function i is F_ji - EI p, where p is the curvature of the Ritz
+        response to the load, by functions that are orthonormal in energy.
         """
         own = self.at(self.beam.bending_stiffness) * self.bending
         left = (self.moments - self.forms @ own).reshape(-1, own.shape[1])
@@ -401,11 +401,11 @@ class CoupledRitzPart(RitzPart):
     def unbalanced(
         self, answer: np.ndarray, tension: np.ndarray, inertia: np.ndarray, tilt: np.ndarray, twisting: float
     ) -> np.ndarray:
-        """Compute loads' bending moments in section axes minus those of the answer's curvature: (n, 2, N).
+        """Compute bending moments by loads minus those by the Ritz response, in section axes: (n, 2, N).
 
         Loads are parts of the tensions N_B, N_A (2,), a tensor (2, 2) times the mass, another times the slope
-        at the tip, and a part of the twisting by inertia.  The answer has the curvatures that the functions
-        combine, by columns (n, n).
+        at the tip, and a part of the twisting by inertia.  Row i of `answer` (n, n) has the coefficients of
+        the functions in the response to the loads of function i.
         """
         (tension_b, tension_a, mass), rule, at_tip = self.loads, self.quadrature, self.slope[..., -1]
         shear = self.from_tip(mass * (inertia @ self.deflection[..., :-1]))

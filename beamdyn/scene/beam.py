@@ -134,7 +134,7 @@ class Beam(FieldsOnly, OneLine):
             made = self.section.properties.items()
             if not all(beam_checks.alike(getattr(self, name), profile) for name, profile in made):
                 set_fields(self, section=None)  # replacing a property detaches the beam from its section
-        if self.has_offsets:  # the centres of a rectangle coincide: offsets exclude it
+        if self.has_offsets:  # offsets exclude a rectangle, whose centres coincide
             set_fields(self, section=None)
         along = (name for name in (*_REQUIRED, *OPTIONAL_PROPERTIES) if name != "outer_fibre")
         beam_checks.check_matrices(self, [name for name in along if name in PROPERTY_UNITS])
@@ -149,7 +149,7 @@ class Beam(FieldsOnly, OneLine):
 
     @property
     def strip(self) -> Rectangle | None:
-        """The rectangle whose deflections may vary across the width, that of layers where it carries them."""
+        """The rectangle, with its layers if it has some, whose deflections may vary across the width."""
         return self.section if self.electrodes is None else self.electrodes.laminate
 
     def with_section(self, section: Rectangle) -> Beam:
@@ -299,7 +299,7 @@ class Beam(FieldsOnly, OneLine):
             length: towards the direction across, and in the plane of bending.  A jump is a kink of the axis.
         mass_offset, tension_offset : float, Polynomial, Table or callable, optional
             Distance of the centre of mass, and of that of tension, from the shear centre in the direction
-            across [m], of either sign; 0 without it.  Torsion reads them, and they need its stiffness.
+            across [m], of either sign; 0 without it.  They matter for torsion, whose stiffness they need.
             Bending stiffnesses are about the centre of tension.
 
         Returns

@@ -67,8 +67,8 @@ class Harvester(FieldsOnly):
     e31, c11e, eps33s : float, optional
         Piezoelectric stress constant [C/m2], of either sign, modulus at constant field [Pa] and permittivity
         at constant strain [F/m], of a layer that is free across and through its thickness: the reduced
-        constants of a beam, d31/s11E, 1/s11E and eps33T - d31^2/s11E.  Those of a data sheet's matrices of
-        stiffness, of a layer held in both, differ: of PZT-5A c11E is twice as large, and e31 half as large.
+        constants of a beam, d31/s11E, 1/s11E and eps33T - d31^2/s11E.  Entries of a data sheet's stiffness
+        matrix, for a layer held in both, differ: of PZT-5A c11E is twice as large, and e31 half as large.
         A wide strip is held across near its clamp, which follows from `poissons_ratio`.
     d31, s11e, eps33t : float, optional
         In their place the strain constant [m/V], compliance at constant field [1/Pa] and permittivity at
@@ -205,8 +205,8 @@ class Harvester(FieldsOnly):
     ) -> tuple[Laminate, Coupled | None]:
         """Return the strip with layers as a plate, and what its electrodes do where it is held flat.
 
-        The second is None, and the first has no Poisson's ratio, where one of the two is not known; the
-        stiffness per width is that of the beam [N m].
+        If Poisson's ratio of the strip or of the layers is not known, the plate has none, and None stands for
+        the electrodes.  The stiffness per width is that of the beam [N m].
         """
         (b, h), t, nu = sides, self.thickness, self.poissons_ratio
         count = 1 if self.connection == "unimorph" else 2
@@ -222,7 +222,7 @@ class Harvester(FieldsOnly):
         return replace(strip, along=along, free=free), flat
 
     def _span_on(self, beam: Any) -> tuple[float, float]:
-        """Begin and end as x/L; refused where the beam cannot carry the layers."""
+        """Find where the layers begin and end, as x/L; refuse a beam that cannot carry them."""
         if not hasattr(beam, "electrodes"):
             raise InvalidValue("beam", beam, "layers stand on a Beam", Words(RECTANGULAR, " makes one"))
         if beam.electrodes is not None:
@@ -298,7 +298,7 @@ class Electrodes(FieldsOnly):
 
     @property
     def held_flat(self) -> Electrodes:
-        """The electrodes of sections that are held flat all along."""
+        """The electrodes with the constants of sections that are held flat, over their whole length."""
         assert self.flat is not None, "both Poisson's ratios are given"
         return replace(self, coupling=self.flat.moment, capacitance_per_length=self.flat.capacitance)
 

@@ -8,9 +8,9 @@ and across, and the voltage v, its moments and charge per area are
 Sum and difference of the two directions do not couple.  They are beams of the moduli E/(1 - nu) and
 E/(1 + nu): D11 + D12 and D11 - D12 are the stiffnesses of these, each about its own neutral axis, and the
 voltage bends the first alone, by the stress e/(1 - nu).  A section that cambers freely, M2 = 0, has the
-bending stiffness D11 - D12^2/D11 and the coupling theta (1 - D12/D11), those of a beam where the two ratios
-are one, and the capacitance C + theta^2/D11, less than the beam's: the strip hinders what a voltage does
-across.  A section that is held flat, k2 = 0, has D11, theta and C.
+bending stiffness D11 - D12^2/D11 and the coupling theta (1 - D12/D11), as a beam has if strip and layers have
+one Poisson's ratio, and the capacitance C + theta^2/D11, less than the beam's: the strip hinders the bending
+across that a voltage causes.  A section that is held flat, k2 = 0, has D11, theta and C.
 
 Bending strains a layer unevenly through its thickness t, and its field then varies: with the electric
 displacement the same all through, it is E = -v/t - e (S - mean of S)/eps, S the sum of both strains.  That
@@ -39,7 +39,7 @@ class Material(NamedTuple):
     permittivity: float
 
     def held_across(self, ratio: float) -> Material:
-        """Return constants for equal strains in both directions, by Poisson's ratio: sums of the two."""
+        """Return constants of each direction where both have the same strain, by Poisson's ratio."""
         coupled = self.coupling**2 / self.stiffness
         permittivity = self.permittivity - coupled * (1 + ratio) / (1 - ratio)
         return Material(self.stiffness / (1 - ratio), self.coupling / (1 - ratio), permittivity)
@@ -129,7 +129,7 @@ def couple(connection: str, width: float, t: float, arm: float, layer: Material,
 def laminate(
     bare: Rectangle, layer: Material, ratio: float, sides: tuple[float, float, int], beam: float
 ) -> tuple[float, float, Composite]:
-    """Compute D12/D11, the stiffness of free camber over `beam` [N m], and the beam of both directions' sum.
+    """Compute D12/D11, the stiffness with free camber over `beam` [N m], and the composite of D11 + D12.
 
     The sides are the thickness of the strip, that of a layer, and the number of layers. Symbols as in this
     module.

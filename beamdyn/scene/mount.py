@@ -247,7 +247,7 @@ def exact_cos_sin(angle: float, least: float = ROUNDED_ANGLE) -> tuple[float, fl
 def aligned_cos_sin(angle: float) -> tuple[float, float]:
     """Compute cosine and sine of an angle [rad], 0 within `RIGHT_ANGLE` of a multiple of a quarter turn.
 
-    Used for bending angles, whose square affects frequencies, and for verdicts: no beam is
-    mounted more exactly, and whether directions are coupled, or loaded across, hangs on no last digit.
+    Used for bending angles, whose square affects frequencies, and for verdicts: no beam is mounted more
+    exactly, and whether directions are coupled, or loaded across, must not depend on a last digit.
     """
     return exact_cos_sin(angle, RIGHT_ANGLE)

@@ -30,7 +30,7 @@ SPEED = "speed"  # key of the speed at which the scene is analysed, which is not
 # Prefix of properties of the beam that are multiplied by a factor, however they vary along it.
 SCALE = "beam.scale."
 _HARVESTER = "harvester."  # prefix of the numbers of piezoelectric layers
-# Numbers that a beam with layers has itself.
+# Prefixes of numbers of the beam that stay those of the beam with layers; others are of the bare beam.
 _ON_ANY_BEAM = "beam.tip.", "beam.point_mass[", "beam.point_spring["
 _POINTS = {"point_mass": PointMass, "point_spring": PointSpring}
 # Exponents with which the sides of a section enter its properties, whatever its form.

@@ -24,7 +24,7 @@ from beamdyn.common.words import Named, Words
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
 _SHORTEST_SEGMENT = 1e-12  # length in x/L below which breakpoints differ by rounding only
 _FIT_TOLERANCE = 1e-13  # rounding error of the user's function, relative to its largest value
-_ZERO = 5e-13  # a property is 0 below this fraction of its largest value on a segment: results depend on less
+_ZERO = 5e-13  # a property counts as 0 below this fraction of its largest value on a segment
 _NOISE = 8 * float(np.finfo(float).eps)  # noise of the coefficients of a fit, relative to the largest
 _SPACING = 2.5e-5  # distance in x/L of the samples of a user's function: no wider feature is missed
 _FEW = 513  # number of samples, denser towards the ends of a segment, at which a fit is compared first
@@ -276,7 +276,7 @@ def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
             raise ValueError(
                 f"{name}: the polynomial {value} has coefficients that are complex or not finite"
             )
-        _check_largest(name, value.coef)  # a small coefficient may be beside larger ones
+        _check_largest(name, value.coef)  # small coefficients are allowed beside larger ones
         t, w = legendre.leggauss(value.degree() + 1)
         profile = Profile((0.0, 1.0), (_project(value, 0.0, 1.0, t, w),))
     elif callable(value):

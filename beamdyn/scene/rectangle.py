@@ -54,7 +54,7 @@ class Rectangle:
     def __post_init__(self) -> None:
         modulus = size("youngs_modulus", self.youngs_modulus, "Pa")
         set_fields(self, youngs_modulus=modulus, density=size("density", self.density, "kg/m3"))
-        for name in SIDES:  # each side enters the bending stiffness with this power
+        for name in SIDES:  # the third power of each side enters a bending stiffness
             set_fields(self, **{name: as_profile(name, getattr(self, name), power=3)})
 
     @cached_property
@@ -91,7 +91,7 @@ class Rectangle:
 
     @cached_property
     def twist_factor(self) -> Profile:
-        """Factor of E I in the stiffness of a plate against twist, 4 G I by the torsional constant."""
+        """Stiffness of the plate against twist over E I: 4 G/E times `torsion_factor`."""
         return self.torsion_factor.scaled(2 / (1 + (self.poissons_ratio or 0.0)))
 
     @cached_property
@@ -124,10 +124,10 @@ class Rectangle:
         return _REACH_OF_WIDTH * b + _REACH_OF_THICKNESS * t
 
     def stiffening_across(self, length: float) -> Profile:
-        """Compute the ratio of stiffness along the width near a clamped root to a free section's.
+        """Compute the bending stiffness along the width near a clamped root over that of free sections.
 
-        The ratio is 1 + nu^2 (1 - x/c)^2 within the clamp's reach c, at most 0.7 of the length [m] of the
-        beam, by the sides at the root.  The profile is one over x/L.
+        The ratio is 1 + nu^2 (1 - x/c)^2 within the clamp's reach c, which follows from the sides at the root
+        and is at most 0.7 of the length [m] of the beam.
         """
         nu, reach = self.poissons_ratio or 0.0, min(self.reach_of_clamp / length, _LONGEST_REACH)
         within = tuple(nu**2 * part for part in (1 / 3, -1 / 2, 1 / 6))  # Legendre series of (1 - x/c)^2
@@ -135,7 +135,7 @@ class Rectangle:
 
     @cached_property
     def warping_factor(self) -> Profile:
-        """Warping constant over its thin-section value b^3 t^3/144, and over 1 + 7 (t/b)^2 (fitted)."""
+        """Warping constant over that of a thin section, b^3 t^3/144, divided by 1 + 7 (t/b)^2 (fitted)."""
         return combine(_warping_factor, self.width, self.thickness)[0]
 
     def kinks_of_width(self, length: float) -> np.ndarray:

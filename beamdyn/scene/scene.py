@@ -133,7 +133,7 @@ class Scene(OneLine):
             set_fields(self, physics_choice=None)  # the choice was made for another physics
         _check_layers(self.beam, self.physics)
         electrodes = self.beam.electrodes
-        # Camber decides which constants hold.
+        # Whether camber is modelled decides which constants of the electrodes hold.
         if electrodes is not None and electrodes.across != self.physics.camber:
             beam = replace(self.beam, electrodes=replace(electrodes, across=self.physics.camber))
             set_fields(self, beam=beam)

@@ -52,7 +52,7 @@ def refuse_bending_in_space(scene: Scene) -> None:
 
 
 def refuse_tip_load(scene: Scene) -> None:
-    """Refuse a load at the tip in an analysis that knows only what rotation does: an `InvalidValue`."""
+    """Refuse a load at the tip in an analysis that models rotation alone (an `InvalidValue`)."""
     if scene.tip_load.acts:
         bound = "this analysis knows loads by the motion of the carrier alone"
         remedy = "equilibria, modes, loci and transients have it"

@@ -20,7 +20,7 @@ _STRAIGHT = ONE.scaled(0.0)
 
 
 def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the curvature (3, N) [1/m] at points, and kinks before cells, as unit quaternions (c, 4)."""
+    """Compute the axis' curvature (3, N) [1/m] at the rule's points, and kinks (quaternions) before cells."""
     cells, sweep, prebend = quadrature.cells, beam.sweep or _STRAIGHT, beam.prebend or _STRAIGHT
     at_points = Sampler.on_cells(cells)
     a = at_points(sweep)
@@ -34,7 +34,7 @@ def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np
 
 
 def _at_ends(angle: Profile, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Evaluate an angle just inside both ends of each cell, where cells may differ at a jump."""
+    """Evaluate an angle just inside both ends of each cell, so that jumps between cells are kept."""
     return angle.split(tuple(ends)).end_values()
 
 

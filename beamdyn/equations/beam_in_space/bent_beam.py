@@ -6,7 +6,7 @@ rotation R of the sections and the position r of the axis,
 
     R' = R skew(k),   r' = R (e1 + g),
 
-any strains are possible, so that they need satisfy no condition, and the elastic energy is a quadratic form
+the six strains may be chosen without any condition between them, and the elastic energy is a quadratic form
 of the coordinates.  Fibres off the axis become helices by the twist and so pull the ends together (trapeze
 effect): with the mean strain e of the fibres, i^2 the mean square of their distance from the axis, and t the
 twist of the unloaded sections against the axes in which strains are given,
@@ -79,7 +79,8 @@ class BeamInSpace(FieldsOnly):
     hinges : ndarray, shape (n, 3), optional
         Vector of the turn of the root per coordinate [rad]; None where the root is clamped.
     slopes : ndarray, shape (n, N + 1), optional
-        Integrals of the curvature, with the turn of the root, as exact as they are known.
+        Slopes by bending at the Gauss points and the tip per coordinate, more exact than integrals of the
+        curvature from the Gauss points; None if they are not known.
     """
 
     stations: BeamStations
@@ -111,7 +112,10 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def angles(self) -> np.ndarray:
-        """Strains integrated from the root per coordinate, a measure of changes of the shape: (n, k)."""
+        """Measure of changes of the shape per coordinate, shape (n, k): strains integrated from the root.
+
+        The k columns are the components of strain that are not 0, at each Gauss point and at the tip.
+        """
         if self.is_planar and self.slopes is not None:
             return self.slopes
         used, turned = self.functions.any(axis=(0, 2)), self.stations.to_sections(self.functions)
@@ -175,7 +179,7 @@ def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.nda
 class BentBeam(FieldsOnly):
     """A deformed beam at given coordinates.
 
-    All but the matrices is also computed at several sets of coordinates at once, of shape (..., n).
+    All properties but the matrices can be computed at several sets of coordinates (..., n) at once.
 
     Parameters
     ----------
@@ -244,7 +248,7 @@ class BentBeam(FieldsOnly):
         return turn(self._within, strains[..., :3, :]), turn(self._within, strains[..., 3:, :])
 
     def shortening_rate(self, rates: np.ndarray) -> np.ndarray:
-        """Compute the second rate (..., 3, N) of the stretch by twist rates, as twist shortens the beam."""
+        """Compute the second rate (..., 3, N) of the stretch by squared twist rates (trapeze effect)."""
         twist_rate = rates @ self.beam.functions[:, 3]
         return -(self.beam.fibres * twist_rate**2)[..., None, :] * self._within[..., 0, :]
 
@@ -256,7 +260,7 @@ class BentBeam(FieldsOnly):
         return None if self.beam.hinges is None else TurnedRoot(self.beam.hinges, self.q)
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Compute angular velocities (..., 3, N + 1) of sections by rates of coordinates and curvatures."""
+        """Compute angular velocities (..., 3, N + 1) of sections from rates of coordinates and curvatures."""
         turning = self.beam.stations.to_sections(bending)
         if self._root is not None:
             turning += self._root.turning(rates)[..., None]
@@ -314,7 +318,7 @@ class BentBeam(FieldsOnly):
     def resultants(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Compute the forces n and moments m that act beyond each point, and the moment at the root.
 
-        Both (..., 3, N) are times the weights of the rule; the moment at the root is of shape (..., 3).
+        n and m (..., 3, N) are multiplied by the weights of the rule; the moment at the root is (..., 3).
         """
         stations = self.beam.stations
         n = stations.from_all(force[..., :3, :])
@@ -354,7 +358,7 @@ class BentBeam(FieldsOnly):
         return change
 
     def of_stations(self, matrices: np.ndarray) -> np.ndarray:
-        """Compute the matrix (n, n) of the coordinates from those of the stations (6, 6, N + 1 + k)."""
+        """Transform matrices of the stations (6, 6, N + 1 + k) to a matrix (n, n) of the coordinates."""
         acting = np.flatnonzero(matrices.any(axis=(1, 2)) | matrices.any(axis=(0, 2)))
         motions = self.motions[:, acting]
         return _product(motions, np.einsum("abj,nbj->naj", matrices[np.ix_(acting, acting)], motions))
@@ -421,5 +425,5 @@ class ForcedBeam(FieldsOnly):
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Compute the products (n, n) of vectors (n, ..., N), summed over components and points."""
+    """Compute the inner products (n, n) of vectors (n, ..., N), summed over components and points."""
     return a.reshape(len(a), -1) @ b.reshape(len(b), -1).T

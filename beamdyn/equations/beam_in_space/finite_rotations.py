@@ -37,7 +37,7 @@ def _products_of_quaternions() -> np.ndarray:
 
 
 _PRODUCT = _products_of_quaternions()
-_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # y -> y (0, a), per component of a
+_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # linear map y -> y (0, a), per component of a
 _TURNING = np.einsum(  # rotation matrices a -> y (0, a) y*, per product of two components of a quaternion y
     "ajc,b,cbi->abij", _PRODUCT[:, 1:], [1.0, -1.0, -1.0, -1.0], _PRODUCT[..., 1:]
 ).reshape(16, 9)
@@ -98,7 +98,8 @@ def integrate_curvature(
     Quaternions of a curve: standard.  Gauss methods keep quadratic invariants: Cooper (1987), IMA Journal of
     Numerical Analysis 7, 1-13.
     """
-    halves, shape = np.diff(cells.ends) / 4, curvature.shape[:-2]  # half the angle
+    # A quaternion has half the angle of its rotation; cells are mapped to [-1, 1].
+    halves, shape = np.diff(cells.ends) / 4, curvature.shape[:-2]
     rates = np.moveaxis(curvature.reshape(-1, 3, len(halves), cells.points) * halves[:, None], 1, -1)
     within, across = _collocate(rates, integrals_between_points(cells.points), gauss_rule(cells.points)[1])
     root = np.broadcast_to(root, (*shape, 4)).reshape(-1, 4)
@@ -114,8 +115,8 @@ def _collocate(rates: np.ndarray, A: np.ndarray, b: np.ndarray) -> tuple[np.ndar
     """Solve y = 1 + A (y rates) for quaternions (S, c, p, 4) at points of cells, and (S, c, 4) at their ends.
 
     Picard iteration starts from the turn about the integral of the rates (S, c, p, 3), which is exact where
-    their direction stays.  It converges as the powers of half the angle over their factorials; where a cell
-    turns so far that it takes many steps, the linear equations are solved instead.
+    their direction is constant.  After j steps its error is of the order h^j / j!, with h half the angle of a
+    cell; where this needs too many steps, the linear equations are solved instead.
     """
     operators, turns = (rates @ _FROM_RIGHT).reshape(*rates.shape[:-1], 4, 4), A @ rates
     angle = np.sqrt((turns * turns).sum(axis=-1, keepdims=True))

@@ -6,11 +6,11 @@ the velocity v,
     w' = R k.,                            v' = w x r' + R g.,
     (w.)' = R k.. + w x R k.,             (v.)' = w. x r' + w x v' + w x R g. + R g..,
 
-and in axes that turn with the carrier at the rate W a centre of mass c has the acceleration of the root and
+and in axes that turn with the carrier at the rate W a centre of mass c has the acceleration of the root plus
 
     c.. + 2 W x c. + W. x c + W x (W x c),
 
-a section of inertia I the rate of angular momentum I (w. + W. + W x w) + (w + W) x I (w + W).
+and a section of inertia I has the rate of angular momentum I (w. + W. + W x w) + (w + W) x I (w + W).
 
 Arrays over N + 1 + k stations have the N Gauss points of the strains, the tip and the k point masses: see
 `station_forces`.

@@ -47,7 +47,7 @@ _ROOT: tuple[Quantity, ...] = "root_axial", "root_transverse", "root_across"
 
 
 class _Strain(NamedTuple):
-    """The strain that a field of the straight beam causes: name, order of derivative by x, root, and sign."""
+    """The strain that a field causes: name, order of derivative by x, conditions at the root, and sign."""
 
     name: str
     order: int
@@ -144,16 +144,17 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
 
 
 def _with_blocks_of(linear: Equations, size: int) -> Equations:
-    """Replace the coordinates of equations by blocks of the same names, each of the given size."""
+    """Return equations without terms and loads, whose blocks have the same names and a given size each."""
     blocks = {name: slice(k * size, (k + 1) * size) for k, name in enumerate(linear.blocks)}
     shapes = {name: Shape(name, np.eye(size)) for name in blocks}
     return replace(linear, blocks=blocks, terms=(), loads=(), shapes=shapes, sections=(), coarse=None)
 
 
 def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
-    """Compute strains (6, n, 6, N) under forces and moments that are n polynomials over the whole beam each.
+    """Compute the strains (6, n, 6, N) by each of six forces and moments that varies as one of n polynomials.
 
-    Those in space are smooth; their components in the axes of the sections turn with the axis of the beam.
+    The polynomials, over the whole beam, are components in space, which are smooth; components in the axes of
+    the sections turn with the axis of the beam.
     """
     xi, unloaded = model.stations.quadrature.xi, model.at(np.zeros(model.size)).rotations[..., :-1]
     back = np.zeros_like(law)
@@ -268,7 +269,7 @@ class RotatingBeam(FieldsOnly):
 
     @property
     def angles(self) -> np.ndarray:
-        """Strains integrated from the root per coordinate, a measure of changes of the shape: (n, k)."""
+        """Measure of changes of the shape per coordinate, shape (n, k): see `BeamInSpace.angles`."""
         return self.beam.angles
 
     @property
@@ -412,7 +413,7 @@ class BentState(FieldsOnly):
         return self.inertia_change({quantity: 1.0})
 
     def work(self, rates: np.ndarray, accelerations: np.ndarray, root: RootMotion) -> np.ndarray:
-        """Compute the residual (..., n) of the equations of motion, for rates and accelerations like q."""
+        """Compute the residual (..., n) of the equations of motion; the arguments have the shape of q."""
         carrier = Carrier.of_root(self.of.axis, root)
         return MovingBeam(self.bent, rates, carrier, self.of.load).residual(accelerations)
 
@@ -502,7 +503,7 @@ class DeflectedFunctions(FieldsOnly):
 
     @property
     def size(self) -> int:
-        """Number of functions: of the block's coordinates."""
+        """Number of functions, one for each coordinate of the block."""
         return self.place.stop - self.place.start
 
     def end(self, order: int) -> np.ndarray:

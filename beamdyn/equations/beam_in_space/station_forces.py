@@ -88,7 +88,7 @@ class Masses:
     mass : ndarray, shape (N + 1 + k,)
         Masses [kg].
     centre : ndarray, shape (3, N + 1)
-        Centres of mass from the axis [m].
+        Vectors from the axis to the centres of mass [m].
     inertia : ndarray, shape (3, 3, N + 1)
         Tensors of inertia about the centres of mass [kg m2].
     """
@@ -186,8 +186,8 @@ class MassesInSpace:
     ) -> StationForces:
         """Compute the inertial forces on a carrier that rotates about an axis (3,) and moves the root.
 
-        With B = speed_squared axis x + acceleration, masses are accelerated by B (axis x c) and the root's
-        acceleration (3,), and the angular momentum I axis about their centres changes by B (I axis).
+        With B v = speed_squared axis x v + acceleration v, a mass has the acceleration B (axis x c) plus that
+        of the root (3,), and the angular momentum I axis about its centre has the rate B (I axis).
         """
         about = skew(axis)
         B = speed_squared * about + acceleration * np.eye(3)

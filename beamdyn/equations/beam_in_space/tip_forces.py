@@ -1,4 +1,4 @@
-"""Forces at the tip of a beam in space, which keep their direction or follow the tip, and the way to them."""
+"""Forces at the tip of a beam in space, of fixed direction or following, and equilibria under them."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class LoadedBeam:
 
     @property
     def angles(self) -> np.ndarray:
-        """Strains integrated from the root per coordinate, a measure of changes of the shape: (n, k)."""
+        """Measure of changes of the shape per coordinate, shape (n, k): see `BeamInSpace.angles`."""
         return self.beam.angles
 
     def residual(self, q: np.ndarray, p: float) -> np.ndarray:

@@ -1,11 +1,11 @@
 """Rotation of a root on springs, modelled as an infinitely short and soft piece of beam bent to an arc.
 
-The point s of the arc, from 0 to 1, has turned by the vector s f, the root by f.  As of a beam with the
-curvature f, its rotation R, and the rotation W that a change of f adds, follow from
+At s along the arc, from 0 to 1, the piece has turned by the vector s f, and the root by f.  The rotation R,
+and the rotation W that a change of f adds, are those of a beam with the curvature f,
 
     R' = R skew(f),   W' = R df,
 
-so that the root turns to its direction by the shortest rotation, whichever axis is named first.
+so that the root turns to its direction by the shortest rotation, whatever the order of the axes.
 """
 
 from __future__ import annotations

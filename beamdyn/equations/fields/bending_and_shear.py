@@ -53,7 +53,7 @@ class Bending(TransverseField):
         return at_root._replace(stiffness="bending_stiffness", direction=self.direction)
 
     def stiffening(self, section: Rectangle, length: float) -> Profile:
-        """Compute the ratio of the bending stiffness of sections that keep their shape to cambering ones."""
+        """Compute the bending stiffness of sections that keep their shape over that of cambering ones."""
         return section.camber_stiffening
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
@@ -80,7 +80,7 @@ class SecondBending(Bending):
     partners = (*Bending.partners, Bending())
 
     def stiffening(self, section: Rectangle, length: float) -> Profile:
-        """Compute the ratio of bending stiffness near a clamped root, which keeps shape, to free."""
+        """Compute the bending stiffness near a clamped root, which hinders camber, over that elsewhere."""
         return section.stiffening_across(length)
 
 

@@ -158,7 +158,7 @@ class Field(ABC):
 
     1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it.
     2. `requires` has the values of `Physics` with which a scene has the field, or `is_modelled` says whether
-       it has.  A scene without it has no cost of it.
+       it has.  A scene without the field does not pay for it.
     3. `assemble` takes functions that satisfy the conditions at the root from the discretization, by
        ``spaces.functions(conditions)``, and returns the terms, the loads and, for a field that deflects
        the beam transversely, the `Deflection`; for one that deforms its sections, the functions over them
@@ -170,7 +170,7 @@ class Field(ABC):
     6. `explanations` has, by the name of each term and load, its symbol, the reason for its presence and its
        conditions, for `beamdyn.terms`.
     7. Damping is added to all fields (`beamdyn.equations.assembly`), under the name `damping_name`.
-    8. `complete` returns a scene in which every term of the field is present, for the same list.
+    8. `complete` returns a scene in which every term of the field is present, for `beamdyn.terms`.
 
     Discretizations, modal reductions, integrators, harmonic balance and results read the list of terms
     and do not depend on which fields there are.

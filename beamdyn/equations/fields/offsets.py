@@ -8,7 +8,7 @@ tilts by p = (v', w') and turns by theta (from e2 to e1) moves a point y of it, 
 
 u being the displacement of the axis along the beam, w that across it.  The line of centres of tension keeps
 its length, so that u' = t.p' - p.p/2 - theta t.K p', and w' = p + p (t.p').  The section also turns by
--(v' w'' - v'' w')/2, integrated from the root, as no bend in both directions is without that.
+-(v' w'' - v'' w')/2, integrated from the root, as always when a beam bends in both directions.
 
 In the frame of the root a point at r has the acceleration g + r'' + 2 omega B r' + omega' B r - omega^2 P r,
 with B = -[a x] and P = 1 - a a^T, a being the axis of rotation and g the acceleration of the root.  The terms
@@ -72,7 +72,7 @@ class SectionMotion:
 
     @property
     def order(self) -> int:
-        """Order of the derivative of the functions by x that the motion is: 1 for a tilt, else 0."""
+        """Order of the derivative by x that turns functions into the motion: 1 for a tilt, else 0."""
         return int(self.rotation in (0, 1))
 
     @cached_property
@@ -122,7 +122,7 @@ def _moment(beam: Beam, component: int, power: int) -> Profile | None:
 
 @lru_cache(maxsize=64)
 def _pulled(beam: Beam) -> list[list[Profile | None]]:
-    """Compute the mass outboard, and its first moment, times offsets of the tension centre [kg m, kg m2]."""
+    """Compute tensions (see `axial_tension`) times offsets of the tension centre [kg m, kg m2]."""
     return [[t and outboard * t for t in offset_components(beam)[_T:]] for outboard in axial_tension(beam)]
 
 
@@ -227,7 +227,7 @@ class Offsets:
 
     @cached_property
     def _tip(self) -> tuple[TipMass, np.ndarray]:
-        """Tip body, and the offsets there of the centres of mass, its own, and of tension (4,) [m]."""
+        """Tip body, with the offsets (4,) [m] of its own centre of mass and of the tension centre there."""
         beam = self.scene.modelled_beam
         tip, twist = beam.tip or TipMass(0.0), beam.tip_twist
         of_tension = [
@@ -237,7 +237,7 @@ class Offsets:
         return tip, np.array([*of_mass, *of_tension])
 
     def _of_tip(self, coefficients: np.ndarray, power: int) -> float:
-        """Compute the tip body's mass times coefficients of c and t (4,) and a power of its position."""
+        """Compute the tip body's mass times x^power and the sum of coefficients (4,) times c and t."""
         (tip, components), length = self._tip, self.scene.beam.length
         if not tip.mass:
             return 0.0
@@ -260,7 +260,7 @@ class Offsets:
     def _integrate(
         self, rows: SectionMotion, columns: SectionMotion, coefficients: np.ndarray, power: int
     ) -> np.ndarray | None:
-        """Integrate products of two motions over mass, offsets c and t, and a power of x; None if 0."""
+        """Integrate two motions times mass, x^power and coefficients (4,) times c and t; None if 0."""
         orders = rows.order, columns.order
         found = [
             value * self._along(moment, rows.conditions, columns.conditions, orders)
@@ -307,8 +307,8 @@ class Offsets:
             moved = one_way + mirrored * one_way.swapaxes(0, 1)
             for a, b in zip(*np.nonzero(np.triu(moved.any(axis=2), 1)), strict=True):
                 rows, columns = self.motions[a], self.motions[b]
-                if mirrored < 0 and rows.order + columns.order:  # the mirrored matrix couples a tilt
-                    continue
+                if mirrored < 0 and rows.order + columns.order:
+                    continue  # Coriolis and Euler forces of a tilt are left out
                 if (found := self._integrate(rows, columns, moved[a, b], 0)) is not None:
                     for quantity, order, factor in uses:
                         yield _CoupledMatrix(
@@ -338,7 +338,7 @@ class Offsets:
                     yield _CoupledMatrix(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
 
     def _sheared(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of shear forces as bending moves the axis along its slope."""
+        """Yield the work of shear forces on the displacement of the axis along the slope of bending."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for rows, columns in product(self.tilting, repeat=2):

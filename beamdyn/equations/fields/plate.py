@@ -10,9 +10,9 @@ a Kirchhoff plate of the stiffness D per width, with D b = E I/(1 - nu^2), is
     1/2 int int D [w_xx^2 + w_yy^2 + 2 nu w_xx w_yy + 2 (1 - nu) c w_xy^2] dy dx.
 
 The factor c = 3 J/(b t^3) makes torsion that of a rectangle of finite width, whose constant J is
-Saint-Venant's.  Of the odd part w_xx^2 has the factor g, and 2 nu w_xx w_yy its root, by which the warping
-constant of the section is less than that of a thin one; in thick sections nu is a smaller ratio
-(`Rectangle`), and torsion also has the rotary inertia of the thickness.  Rotation at the speed omega about
+Saint-Venant's.  In torsion, w_xx^2 has the factor g, the ratio of the section's warping constant to that of a
+thin one, and 2 nu w_xx w_yy has the root of g; in thick sections nu is a smaller ratio (`Rectangle`), and
+torsion also has the rotary inertia of the thickness.  Rotation at the speed omega about
 the unit vector a adds
 
     omega^2/2 int int [T w_x^2 + N_y w_y^2 - (1 - a1^2) rho t w^2] dy dx,
@@ -133,7 +133,7 @@ class SectionField(Field):
         return iter(())
 
     def _of_body(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Term]:
-        """Yield the terms of a tip body; by default none, as the mean over the width does not twist."""
+        """Yield the terms of a tip body, which the mean twist of the section turns; by default none."""
         return iter(())
 
     def _loads(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Load]:
@@ -226,7 +226,7 @@ class Torsion(SectionField):
         eta, _ = gauss_rule(strip.points)
         lever = (strip.scene.beam.mass_per_length * strip.section.width).scaled(1 / 2)
         vector = strip.load(lever, (own, "w"), along, eta)
-        # The rotary inertia of the thickness resists.
+        # The rotary inertia of the thickness reduces the load.
         vector = vector - strip.load(strip.rotary_inertia, (own, "w_y"), along)
         yield Load("twisting by rotation", self.name, vector, "speed_squared", -c1 * c2)
 

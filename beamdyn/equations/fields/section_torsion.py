@@ -13,9 +13,9 @@ rotation (propeller moment): with the components a1, a2 of the axis of rotation 
 omega^2/2 int [(a1^2 - a2^2) (R22 - R11) - 4 a1 a2 R12] theta^2 dx, and the load per length
 -omega^2 [a1 a2 (R22 - R11) + (a1^2 - a2^2) R12].
 
-The tension pulls fibres straight that the twist makes helices; those of a twisted beam are so at rest.  A
-body at the tip turns with it.  A root without warping holds theta', where a stiffness against warping is
-given.  What couples torsion with bending is in `beamdyn.equations.fields.offsets`.
+The tension straightens fibres that the twist makes helices; in a twisted beam they are helices at rest.  A
+body at the tip turns with the section there.  Where a warping stiffness is given, the root cannot warp:
+theta' = 0.  The coupling of torsion with bending is in `beamdyn.equations.fields.offsets`.
 """
 
 from __future__ import annotations

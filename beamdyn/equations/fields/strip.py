@@ -124,7 +124,7 @@ def _parts_over_fixed_width(
         powers.append(powers[-1] * r)
 
     def of(along: int, across: int) -> list[Derivative]:
-        """Split the derivative of given orders along and across."""
+        """List the parts of the derivative of w of given orders by x (along) and y (across)."""
         return [
             Derivative(
                 powers[m - across].scaled(math.perm(m, across) * dy**across),

@@ -15,8 +15,8 @@ twist, bending in both planes turns them about the beam by int (u2' u3'' - u3' u
 of inertia works.  Derivation: docs/conventions.md and tests/invariants/test_two_planes_derivation.py.
 
 **Precone** eta turns the beam out of the plane of rotation.  With C, S = cos eta, sin eta the axis of
-rotation is S b1 + C b3: tension has C^2, spin softening d_i d_j + S^2 n_i n_j, that energy C^2, beside
--S^2 u'^T B u', and there are Coriolis forces between the two directions and a load by rotation along b3.
+rotation is S b1 + C b3: tension has the factor C^2, spin softening d_i d_j + S^2 n_i n_j, the energy above
+C^2, plus -S^2 u'^T B u'; Coriolis forces couple the two directions, and rotation causes a load along b3.
 Derivation: tests/invariants/test_precone_derivation.py.
 """
 
@@ -187,7 +187,7 @@ class TransverseField(Field):
 
     direction: ClassVar[int]
     rotates: ClassVar[bool]
-    # The fields that precede this one in the list, the first field of all first.
+    # The transverse fields that precede this one in `FIELDS`, in their order there.
     partners: ClassVar[tuple[TransverseField, ...]]
     explanations: ClassVar[Mapping[str, Explanation]] = {
         "mass": Explanation("M22 q2''", why.say_mass),

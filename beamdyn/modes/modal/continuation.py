@@ -1,7 +1,7 @@
 """Continuation of the equilibria of a beam in a parameter, through turning points.
 
-A curve of solutions of r(q, p) = 0 is followed by its arc length, measured by the largest slope angle of the
-beam and by the parameter over its scale (Keller's pseudo-arclength method).
+A curve of solutions of r(q, p) = 0 is followed by its arc length, measured by the slope angles of the beam
+and by the parameter over its scale (Keller's pseudo-arclength method).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _STALLED = 1e-9
 _STRAYED = 0.5  # correction of a step over its length, above which the step may have met another curve
 _LOOSE = 2.0  # largest correction of a step over its length where both sides are known to be on one curve
 _SYMMETRIC = 1e-9  # relative skew-symmetric part of a matrix that counts as rounding
-_NEAR = 1e-4  # arc length within which directions of another sign are a bifurcation, and no other curve
+_NEAR = 1e-4  # step within which a change of stability is taken for a bifurcation, not for another curve
 
 
 class Problem(Protocol):
@@ -130,24 +130,24 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST, easy: int 
             continue
         point, before = following, stability
         yield point
-        # The slope angles change by 1, or the parameter by its size, at least by the smaller of arc lengths.
+        # `longest` times the arc length in which the slope angles change by 1, or the parameter by its size.
         by_angles, by_parameter = _metric(problem, point.q_rate, 0.0), 1 / (1 + abs(point.p) / problem.scale)
         most = longest * (1 / max(by_angles, by_parameter))
         step = min(most, 1.5 * step) if iterations <= easy else max(step / 2, _SHORTEST)
 
 
 def count_negative(problem: Problem, q: np.ndarray, p: float) -> int:
-    """Number of negative eigenvalues of the Jacobian at a solution: 0 where it is stable, if symmetric."""
+    """Count the negative eigenvalues of the Jacobian at a solution: 0 where it is stable, if symmetric."""
     matrix = problem.jacobian(q, p)
     return int((scaled_eigenvalues(matrix, np.diag(matrix)) < 0).sum())
 
 
 def scaled_eigenvalues(matrix: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
-    """Compute eigenvalues (n,) of a matrix in coordinates that make a diagonal one +-1, from the lowest.
+    """Compute the eigenvalues of a matrix (n, n) scaled so that a given diagonal is +-1, the lowest first.
 
-    Their signs are those of the matrix itself (Sylvester), which rounding hides where coordinates are of
-    unlike sizes, as those of short elements are.  Of a matrix that is not symmetric, as by a load without
-    potential, only the real ones: an even number is missing, so that the sign of the determinant is theirs.
+    Their signs are those of the unscaled eigenvalues (Sylvester), which rounding hides where coordinates have
+    unlike sizes, as with short elements.  Of a matrix that is not symmetric, as under a load without
+    potential, only the real eigenvalues are returned: complex pairs do not change the determinant's sign.
     """
     size = np.sqrt(np.where(diagonal == 0, 1.0, np.abs(diagonal)))
     scaled = matrix / np.outer(size, size)

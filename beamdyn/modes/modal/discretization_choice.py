@@ -36,12 +36,12 @@ _MOST_SEGMENTS = 200  # largest number of segments of a beam between its station
 _MOST_IN_ALL = 1000
 _FEW_SEGMENTS = 6  # segments up to which polynomials on each need fewer functions than moments over the beam
 _MANY_ON_EACH = 2  # modes per segment beyond which moments need more functions, and lose digits
-# Forces in each direction beyond the number of modes, and for each digit, which public blades need; twisted
-# sections bend under the forces in both directions.
+# Number of forces in each direction beyond that of modes, and per digit of accuracy, as public blades need;
+# twisted sections need fewer, as they bend under the forces in both directions.
 _IN_STRAIGHT, _IN_TWISTED = (11, 2.5), (6, 2.3)
 # Least number of elements on a segment for a boundary layer, so that half as many resolve the layer, too.
 _ON_LAYERS = 8
-_OF_ELEMENTS = 0.1  # accuracy for which layers are cut off with finite elements, which continue beyond
+_OF_ELEMENTS = 0.1  # accuracy that sets the length of boundary layers with finite elements
 _MANY = 10_000  # a number of modes that no discretization gives
 _NAMES = "ritz", "fem"
 # Least number of functions: with fewer, the coarser basis lacks only one, which may not affect a mode.
@@ -207,7 +207,7 @@ def list_models(
     """List the models to try, from the smallest sensible one to the finest; an instance is the only one.
 
     `cheapest` begins with the smallest sensible model, instead of one that usually meets the default target;
-    `has_layers` says whether segments were made for layers at the ends, which need several elements.
+    `has_layers` says whether segments were made for boundary layers, which need several elements.
     The other parameters and what is raised are those of `choose_model`.
     """
     segments = len(scene.modelled_beam.breakpoints) - 1
@@ -318,7 +318,7 @@ def check_discretization(discretization: object) -> None:
         raise InvalidValue("discretization", discretization, bound)
 
 
-_LENGTHS = 5.0  # smallest length of a layer in decay lengths; half a length more per factor e of accuracy
+_LENGTHS = 5.0  # length of a layer in decay lengths, to which each factor e of accuracy adds half of one
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4  # longest parts of the beam that get functions of their own
 _SHORTEST = 1e-4  # length of the shortest layer
 # Breakpoints x/L added near the tip for a boundary layer whose length is not known, as the speed is not.

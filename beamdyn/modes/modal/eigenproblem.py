@@ -158,7 +158,7 @@ class Solver(Eigensolver):
 
     @cached_property
     def _diagonal(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Growth (n,) of the stiffness, the basis (n, n) of these coordinates, and mass (n, n) in them."""
+        """Growth (n,) of the diagonal stiffness, basis (n, n) of these coordinates, and mass in them."""
         L = self._at_rest
         K2, M = (_symmetric(transformed(L, A)) for A in (self.pencil.K2, self.pencil.M))
         growth, Q = np.linalg.eigh(K2)
@@ -308,7 +308,7 @@ class Solver(Eigensolver):
     def _solve_graded(
         self, speed: float, count: int, basis: np.ndarray, condition: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute modes of gyroscopic equations on springs, in coordinates in which the stiffness is 1."""
+        """Compute modes of gyroscopic equations on springs, in coordinates with the identity as stiffness."""
         M, C = (basis.T @ A @ basis for A in (self.pencil.M, speed * self.pencil.G))
         time = np.sqrt(np.trace(M) / len(M))
         inverse, y = solve_gyroscopic(M / time**2, C / time, np.ones(len(M)))
@@ -335,7 +335,7 @@ class LoadedSolver(Solver):
         inverse, y = np.concatenate([r := np.sqrt(-mu + 0j) / time, -r]), np.concatenate([y, y], axis=1)
         if C.any():
             inverse, y = solve_general(by_mass / time**2, np.linalg.solve(K, C) / time, np.ones(self.size))
-        # Eigenvalues of modes so high that they are rounding errors.
+        # Leave out eigenvalues of modes so high that they are rounding errors.
         lost = np.abs(inverse) < np.sqrt(self.size * _EPS)
         s, z = select_lowest(inverse[~lost] * time, y[: self.size, ~lost], count)
         norm = np.sqrt(np.einsum("nk,nm,mk->k", z.conj(), M, z).real)

@@ -32,7 +32,7 @@ Branch = Literal["straight", "bent"]
 _SAME = 1e-6  # difference of slope angles below which two equilibria count as the same one [rad]
 # Largest difference of slope angles between an equilibrium and that of a coarser discretization [rad].
 _NEAR = 0.01
-_PUSH = 0.05  # transverse acceleration over omega^2 L that bends a beam which nothing else does
+_PUSH = 0.05  # transverse acceleration, over omega^2 L, by which the beam is pushed to the other branch
 _FASTEST = 100.0  # highest speed at which equilibria are followed, over the first angular frequency at rest
 # Speed over the first angular frequency at rest, up to which a loss of stability is sought: beyond, boundary
 # layers make steps short.
@@ -92,7 +92,7 @@ class SteadyLoad:
 
     @cached_property
     def at_rest(self) -> np.ndarray:
-        """Coordinates (n,) in equilibrium at rest: 0 but for a load at the tip, which grows from nothing.
+        """Coordinates (n,) in equilibrium at rest: 0 unless a load acts at the tip, which grows from 0.
 
         Raises
         ------

@@ -20,7 +20,7 @@ UNRESOLVED = 0.3  # relative error above which the comparison of two models give
 # Ratios of the difference of two successive meshes to that of the two before: the smallest used, for an order
 # of convergence above 2; the one assumed where it is not known; the largest.
 LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
-_HALVED = 0.7  # ratio of sizes of two meshes above which it is no halving, and gives no order of convergence
+_HALVED = 0.7  # ratio of sizes of two meshes above which they do not show the order of convergence
 _OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the rounding of stiffness entries
 # Ratio of the difference of the two coarser meshes to the smallest stated error, as the difference of the two
 # finer ones may be small by chance.
@@ -30,15 +30,17 @@ _LEAST_OF_BEFORE = 64.0
 _SHARED = 0.75
 # Ratio of the difference of two meshes to their rounding errors, up to which it may be rounding alone.
 _OF_NOISE = 4.0
-# Fractions of a mode's distance, and of the largest, that count as its error; largest relative distance above
-# which slow convergence may make it larger; functions of several segments converge at several rates.
+# Fractions of a mode's own distance from the coarser basis, and of the largest of all modes, that count as
+# its error, and the relative distance above which margins for slow convergence are added: on a beam of one
+# segment, on several, whose functions converge at several rates, and where convergence is irregular.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
-# One more function may change a mode less than the next does: always treated as slow.
+# For a coarser basis of one function less, which may change a mode less than the next does: always slow.
 _BY_ONE = 1.0, 0.01, 0.0
-# Number of functions across plates up to which the margin is measured: convergence slows down beyond.
+# Number of functions across plates up to which the margin is measured, as convergence slows down beyond, and
+# the fraction of the largest distance of all modes that counts as error.
 _ACROSS_MEASURED, _OTHERS_OF_PLATES = 12, 0.01
-# Fraction of the lowest squared frequency at rest above which a square is a scale of errors that is not too
-# low.
+# Fraction of the lowest squared frequency at rest above which squared frequencies themselves are the scale of
+# their errors.
 _ABOVE = 0.99
 _FEW = 1e-9  # relative difference of two bases above which they may have too few functions of one field
 
@@ -120,8 +122,8 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
             truncation = _basis_error(model, fine, squared, distance)
     error = truncation + ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # this is False for nan, too
-    # Only rotation holds a root without a spring, or on the axis: a frequency within rounding of
-    # 0 is then taken as 0.
+    # A root without a spring may turn freely at rest, or if it lies on the axis: a frequency within rounding
+    # of 0 is then taken as 0.
     free = 0.0 in mount.root_stiffnesses[: scene.physics.planes]
     neutral = (s == 0) & (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
     resolved |= neutral
@@ -153,7 +155,7 @@ def _mesh_error(
 
 
 def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.ndarray | float:
-    """Estimate the relative truncation error (S, k) by the functions across the width, as on every mesh."""
+    """Estimate the relative truncation error (S, k) by the functions across the width, on any mesh."""
     if not model.scene.models_width:
         return 0.0
     kept = np.ones(model.equations.size, dtype=bool)
@@ -187,7 +189,7 @@ def extrapolation_error(
     Parameters
     ----------
     distance, before : ndarray, shape (..., k)
-        Difference of the numbers of the two finest meshes, and of the second and the third; nan if not known.
+        Difference of the results of the two finest meshes, and of the second and third; nan if not known.
     noise : ndarray, shape (..., k)
         Rounding error of the distances.
     least : float
@@ -264,7 +266,7 @@ def error_of_assumed_modes(
 
 
 def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
-    """Choose the parts of a mode's own distance, and of the largest, that count as error, and a limit."""
+    """Choose the fractions of distances that count as error, and a limit, as in `REGULAR`."""
     if not discretization.converges_regularly:
         return _IRREGULAR
     if scene.models_width:
@@ -300,7 +302,7 @@ def _ritz_error(
     Usually further functions change an eigenvalue by less than the last ones did.  Exceptions are modes that
     only every other function changes, and modes whose distance is small by accident: where convergence is
     slow, a margin measured on random scenes is added, for the distances of all modes, relative to the higher
-    mode of two; it is `of_few` where a basis may have too few functions of one field.
+    mode of two; this margin is `of_few` where a basis may have too few functions of one field.
     Where an eigenvalue vanishes, the scale of its square is the lowest squared frequency at rest.
     """
     half, size = np.abs(distance) / 2, np.abs(squared)

@@ -41,7 +41,7 @@ def find_roots(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Ite
 
 
 def coincides(distance: np.ndarray, frequency: np.ndarray) -> bool:
-    """Whether a line equals a frequency (S,) at every speed, judged by their distance (S,), as at a hinge."""
+    """Whether a line equals a frequency (S,) at every speed by their distance (S,), as a hinge may cause."""
     return bool(np.abs(distance).max() <= _COINCIDENT * frequency.max())
 
 

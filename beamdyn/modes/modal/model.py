@@ -58,7 +58,7 @@ class Model(FieldsOnly):
     @cached_property
     def _of_fields(self) -> Equations:
         """Equations of motion built from the fields of the straight beam."""
-        check_axis(self.scene.beam, self.scene.physics)  # refuses analyses that do not choose the physics
+        check_axis(self.scene.beam, self.scene.physics)  # a curved axis needs other equations
         beam = self.scene.modelled_beam
         scene = replace(self.scene, beam=beam) if self.scene.bends_in_space else self.scene
         return assemble_over(scene, self.discretization.spaces(beam))
@@ -145,8 +145,8 @@ class Model(FieldsOnly):
     def lacks_one(self) -> bool:
         """Whether the model that errors are estimated from has just one function less in each field.
 
-        So it is for bent beams without breakpoints: strains converge fast, functions are costly, and further
-        ones would only show how far the smaller model is from this one.
+        This holds for beams that bend in space, without inner breakpoints: their strains converge fast and
+        functions are costly; the distance from a much smaller model would only show the error of that.
         """
         is_whole = isinstance(self.discretization, Ritz) and len(self.scene.modelled_beam.breakpoints) == 2
         return is_whole and self.scene.bends_in_space

@@ -71,7 +71,7 @@ def _solve_over(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
 
 
 def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
-    """Compute modes at ascending speeds from 0, by more and more Chebyshev points, half of which are known.
+    """Compute modes at ascending speeds from 0, by Chebyshev points, doubled until they suffice.
 
     Without gyroscopic terms modes are smooth functions of the squared speed, else of the speed.
     """
@@ -138,7 +138,7 @@ def _align(vector: np.ndarray, mass: np.ndarray) -> np.ndarray:
     return np.concatenate([vector[:1], vector[1:] * np.cumprod(turns, axis=0)[:, None, :]])
 
 
-_NORMALIZED = 2e-6  # distance of a squared norm from 1 that is rounding
+_NORMALIZED = 2e-6  # distance of a squared norm from 1 that counts as rounding
 
 
 def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

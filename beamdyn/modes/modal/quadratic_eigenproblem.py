@@ -45,7 +45,7 @@ def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.n
 
 
 def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Select the lowest modes from 1/s: Im s > 0, real s > 0, and of two real s < 0 the slower."""
+    """Select the lowest modes by 1/s: one of a conjugate pair, a growing one, the slower of two decaying."""
     inverse = np.where(np.abs(np.real(inverse)) < _REAL * np.abs(inverse), 1j * np.imag(inverse), inverse)
     inverse = np.where(inverse == 0, _EPS * np.abs(inverse).max(), inverse)
     s = 1 / inverse

@@ -16,7 +16,7 @@ _EPS = np.finfo(float).eps
 _LOW = 0.1  # ratio of squared frequency to shift below which subtraction would lose digits
 _GRADED = 1e-6  # lowest eigenvalue of a well-conditioned stiffness of unit diagonal
 _GRADED_AT_REST = 1e-12  # lowest eigenvalue of a stiffness at rest of unit diagonal that has digits left
-_UNDAMPED = 1e-6  # ratio of a rotation's damping to the clamped beam's frequency that is a root of rounding
+_UNDAMPED = 1e-6  # ratio of a rotation's damping to the clamped beam's frequency below which it is undamped
 # Relative squared speed at which the search ends, over that at which rotation matters.
 _SMALLEST_TRIAL = 1e-12
 
@@ -98,7 +98,7 @@ def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray)
     Parameters
     ----------
     pencil : SteadyPencil
-        Equations with damping or gyroscopic terms, which do no work on a mode.
+        Equations with damping or gyroscopic terms; the latter do no work on a mode.
     eigenvalue : ndarray, shape (k,)
         Eigenvalues of the lowest modes without damping and gyroscopic terms [1/s].
     v : ndarray, shape (n, k)
@@ -130,7 +130,7 @@ def softening_of_graded(pencil: SteadyPencil) -> tuple[float, float] | None:
     Returns
     -------
     tuple of float, or None
-        Softening and rounding; None if the stiffness at rest is singular, or not graded so.
+        Softening and rounding; None if the stiffness at rest with a unit diagonal is singular to rounding.
     """
     diagonal = np.diag(pencil.K0)
     if diagonal.min() <= 0:
@@ -190,7 +190,7 @@ def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> 
 
 
 def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float] | None:
-    """Compute coordinates in which the stiffness at a speed is 1, without the shift, which costs digits.
+    """Compute coordinates in which the stiffness at a speed is the identity, without the shift.
 
     Returns
     -------

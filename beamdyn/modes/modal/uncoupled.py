@@ -23,7 +23,7 @@ from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
 from beamdyn.modes.modal.springs import solve_definite
 
 _EPS = np.finfo(float).eps
-_MORE = 2  # modes sought beyond those requested, so that real eigenvalues leave enough of them
+_MORE = 2  # number of further modes sought, as not every real eigenvalue found belongs to a mode
 _RESTARTS = 50  # largest number of restarts of the iteration, which converges after a few, if at all
 
 

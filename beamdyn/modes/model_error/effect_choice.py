@@ -60,7 +60,7 @@ class EffectSizes:
     reasons : dict of str to str
         Why an effect cannot be added, or its size is not known.
     strained : float
-        Order of the relative change by the strain due to rotation, which no model here includes.
+        Order of magnitude of the relative change by the strain due to rotation, which no model includes.
     """
 
     sizes: dict[str, float]
@@ -69,7 +69,7 @@ class EffectSizes:
 
 
 Judge = Callable[[Scene], EffectSizes]
-Solve = Callable[[Scene], int]  # solves the answer, and returns the number of its coordinates
+Solve = Callable[[Scene], int]  # computes the answer for a scene, and returns the number of its coordinates
 
 
 # Choices for different answers -----------------------------------------------------------------------
@@ -122,7 +122,7 @@ def choose_physics(
         effects, counts = left_out_of_modes(found.model, some, s), vibrate(s)
         if bent:  # other effects are then judged on the straight beam, where it is stable
             counts &= vibrate(without_large_deflection(found.model).solver.eigenvalues(some, modes))
-        elif bends(found.model):  # the static deflection gives a generous size of large deflection
+        elif bends(found.model):  # the static deflection gives a generous estimate of large deflection
             # Where the straight beam is unstable, though rotation bends it before, its results are wrong.
             ratio = np.linalg.norm(found.model.static_tips(some), axis=1) / candidate.beam.length
             rough = math.inf if np.isnan(ratio).any() else float(_ROUGH * np.max(ratio) ** 2)
@@ -132,7 +132,7 @@ def choose_physics(
     def count(candidate: Scene) -> int:
         return solve(candidate).model.solver.size
 
-    undamped = scene.undamped  # damped modes take long to find, and change alike
+    undamped = scene.undamped  # damped modes take long to find, and effects change them alike
     chosen = choose_by(undamped, judge, count, tolerance, some, barred)
     return replace(chosen, damping_ratio=scene.damping_ratio, damping=scene.damping)
 
@@ -205,7 +205,7 @@ def _sizes_in_modes(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, r
 
 
 def warn_of_peak(scene: Scene, deflection: float) -> Iterator[Statement]:
-    """Yield a warning if large deflection, which a choice left out, matters at a deflection [m]."""
+    """Yield a warning if large deflection, which the chosen physics lacks, matters at a deflection [m]."""
     choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
     if choice is not None and not choice.physics.large_deflection and size > choice.tolerance:
         yield Statement(
@@ -232,7 +232,7 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
     try:
         bent = add_effects(replace(scene, physics=Physics()), [NAMED[name] for name in kept])
         refuse_bending_in_space(bent)
-    except InvalidValue:  # the direction is oblique
+    except InvalidValue:  # large deflection is refused in an oblique direction
         return None
     if lost >= size:
         return None
@@ -274,7 +274,7 @@ class _Candidate:
     reasons : dict of str to str
         Why an effect cannot be added, or its size is not known.
     strained : float
-        Order of the relative change by the strain due to rotation.
+        Order of magnitude of the relative change by the strain due to rotation.
     """
 
     scene: Scene
@@ -340,7 +340,7 @@ def choose_by(
     judge : callable
         Function that returns the sizes of the effects that a scene leaves out.
     solve : callable
-        Function that solves the answer for a scene and returns its number of coordinates; it is timed.
+        Function that computes the answer for a scene and returns its number of coordinates; it is timed.
     tolerance : float
         Relative change that may be left out.
     speeds : ndarray

@@ -117,7 +117,7 @@ def _diverge(s: np.ndarray) -> np.ndarray:
 
 
 def _shifted(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Shift eigenvalues s (m,) of modes v (n, m) that vibrate or diverge to equations with an effect."""
+    """Estimate with an effect the eigenvalues s (m,) of modes v (n, m) that vibrate or diverge without it."""
     known = vibrate(s) | _diverge(s)
     shifted = np.full(len(s), np.nan, dtype=complex)
     shifted[known] = reference_modes.shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
@@ -218,7 +218,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
         near = base.suited_to(added.scene, 1)
         pencil, equations = near.equations.steady(), near.extend(added.scene)
         v = reference_modes.buckling_mode(pencil, critical)
-        # Shift by the effect in its own function spaces.
+        # Both critical speeds are those in the function spaces that suit the effect.
         known = reference_modes.shift_critical_speed(pencil, critical, v)
         shifted = reference_modes.shift_critical_speed(equations.steady(), known, near.embed(equations, v))
         return np.array(shifted / known - 1)
@@ -231,7 +231,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
 
 
 def nothing_known(scene: Scene, reason: str = "", shape: tuple[int, ...] = ()) -> LeftOutEffects:
-    """Return the effects that a scene leaves out, if no changes of values (of a shape) are known, and why."""
+    """Return the effects that a scene leaves out, with unknown changes of values of a shape, and why."""
     additions, not_known, not_modelled = list_effects(_straightened(scene))
     names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION.name]
     unchanged = {name: np.full(shape, np.nan) for name in (*names, *(added.name for added in additions))}
@@ -263,7 +263,7 @@ def _gather(
     reason: str,
     shape: tuple[int, ...] = (),
 ) -> LeftOutEffects:
-    """Gather changes of values by all effects left out: by each one's equations, and by large deflection."""
+    """Gather the changes of values by all effects left out: by `change` of each, and by large deflection."""
     additions, not_known, not_modelled = list_effects(straight)
     changes = {} if bent is None else {LARGE_DEFLECTION.name: bent}
     not_known |= {LARGE_DEFLECTION.name: reason} if reason else {}
@@ -299,7 +299,7 @@ def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
     scene : Scene
         The scene.
     solve : callable
-        Solves a scene.
+        Function that solves a scene that includes the named effect, "" for none.
 
     Returns
     -------

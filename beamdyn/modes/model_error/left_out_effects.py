@@ -196,7 +196,7 @@ class LeftOutEffects:
         where: str = "",
         where_unknown: Callable[[str], str] = lambda name: "",
     ) -> Iterator[Statement]:
-        """Yield warnings of changes past a tolerance or 1 %, of unknown ones, and of reversed verdicts.
+        """Yield warnings of changes past a tolerance or 1 %, of unknown ones, and of changed stability.
 
         Parameters
         ----------
@@ -205,7 +205,7 @@ class LeftOutEffects:
         where : str
             Where the largest change is: see `sentence`.
         where_unknown : callable
-            Function of an effect's name that words where its change is unknown; empty if as `where`.
+            Function from an effect's name to words for where its change is unknown; empty words mean `where`.
         """
         for name, how in self.reversals.items():
             begin = (where_unknown(name), " ") if where_unknown(name) else ()

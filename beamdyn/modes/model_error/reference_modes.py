@@ -28,9 +28,9 @@ from beamdyn.modes.modal.uncoupled import solver_of
 from beamdyn.scene.scene import Scene
 
 _MOST = 160  # largest number of coordinates of a model: an estimate of a change needs no more
-_APART = 1e-8  # relative distance from the eigenvalue, at which the equations without the effect are singular
-_AT_CLAMP = 3  # functions along each segment, beyond the number of modes, that resolve what a clamp hinders
-# Number of functions across the width: 1 % of what the clamp changes is missing, 0.1 % of torsion.
+_APART = 1e-8  # relative distance kept from the eigenvalue, where the equations are singular
+_AT_CLAMP = 3  # functions along each segment, beyond the number of modes, that resolve camber near a clamp
+# Number of functions across the width, which miss 1 % of the change by the clamp, and 0.1 % of torsion.
 _ACROSS = 4
 _STEPS = 8  # largest number of inverse iterations: one suffices unless the effect is large or modes are close
 # The iteration ends at a step of this size relative to the change, or relative to the eigenvalue.
@@ -67,7 +67,8 @@ class BaseEquations:
                 break
             discretization = discretization.coarser()
             model = Model(model.scene, discretization)
-        has_width = model.scene.models_width  # the other effects then need no further breakpoints
+        # Where the width is modelled, the modelled beam has the breakpoints that any other effect needs.
+        has_width = model.scene.models_width
         spaces = discretization.spaces(model.scene.modelled_beam if has_width else model.scene.beam)
         if spaces.shares_functions(discretization.spaces(model.scene.modelled_beam)):
             return cls(model.scene, spaces, model.equations)

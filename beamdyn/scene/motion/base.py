@@ -99,7 +99,7 @@ class Motion(OneLine, ABC):
     True
     """
 
-    no_steady_state: ClassVar[str] = ""  # why there is none, and what to do; empty where there is one
+    no_steady_state: ClassVar[str] = ""  # why there is no steady state, and what to do; empty if there is one
 
     @abstractmethod
     def at(self, t: np.ndarray) -> MotionSample:
