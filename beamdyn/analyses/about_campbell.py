@@ -57,7 +57,7 @@ def campbell(
 
 
 def parse_top(text: str, scene: bd.Scene | None, bent: bool) -> tuple[Any, str]:
-    """Speeds [rad/s] up to the top one, fewer for beams that rotation bends far, and their unit."""
+    """Return speeds [rad/s] up to the top one, fewer for beams that rotation bends far, and their unit."""
     top = parse_positive("--top-speed", text, "rad/s", scene)
     unit, _ = unit_as_written(text, "rad/s")
     count = _SPEEDS_OF_BENT if bent else _SPEEDS

@@ -82,7 +82,7 @@ def _beside(
     columns: Sequence[str] = (),
     **_: Any,
 ) -> bd.FrequencyComparison | bd.CurveComparison:
-    """Measured values beside those of the scene, as they are: nothing is fitted to them."""
+    """Compare measured values with those of the scene as it is: nothing is fitted."""
     from beamdyn.studies.beside_data.compare import beside  # its solvers take a second, and help needs none
 
     given = _data(data, measured, speeds, uncertainty, columns)
@@ -143,9 +143,9 @@ def identify(
         The unknown numbers by their names in the file, a comma between them, each with bounds or
         without: "beam.thickness=0.1:0.3 mm, mount.root_stiffness".
     starts
-        Most starts of the search, from places that are nearest to the data.
+        Largest number of starts of the search, from the places that are nearest to the data.
     seed
-        Of the random places.
+        Seed of the random places.
     write
         Write the scene with the numbers found into this file, with where they come from.
     """
@@ -214,7 +214,7 @@ def _columns(text: str) -> dict[str, str]:
 
 
 def _in_words(text: str, speeds: np.ndarray | None) -> bd.MeasuredFrequencies:
-    """Frequencies of ``--measured`` at one speed."""
+    """Read the frequencies of ``--measured``, all at one speed."""
     values, written = parse_amounts("--measured", text, Frequency("Hz"), "62.1, 389, 1090 Hz")
     if speeds is not None and len(speeds) != 1:
         raise ValueError(f"--speeds: give one speed with --measured, or a file; there are {len(speeds)}")

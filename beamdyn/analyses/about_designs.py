@@ -70,8 +70,8 @@ def sensitivities(
     modes
         Number of modes of frequencies and crossings, from the lowest; default: 3.
     order
-        Of crossings, as of resonances: 1, the default: resonances with the load; more: also
-        combination resonances by the periodic coefficients.
+        Order of crossings: 1, the default: resonances with the load; more: also combination
+        resonances by the periodic coefficients.
     inputs
         Numbers by their names in the file, such as beam.thickness, or speed, the option once for
         each; all if not given.

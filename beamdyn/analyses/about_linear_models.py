@@ -48,7 +48,7 @@ class RandomInput:
     road : str, optional
         Class of a random road by ISO 8608, from A, very good, to H.
     roughness : str, optional
-        The same by its density at 0.1 1/m, e.g. "64e-6 m3".
+        Random road by its density at 0.1 1/m, e.g. "64e-6 m3".
     highest : str, optional
         Spatial frequency at which the road ends; default: 2.83 1/m, that of the standard.
     speed : str, optional
@@ -71,7 +71,7 @@ class RandomInput:
 
     @property
     def drive(self) -> inputs_outputs.Excitation | None:
-        """Return where the input acts; None where the kind of density decides."""
+        """Return where the input acts; None if not given, as the kind of density then decides."""
         return None if self.input is None else parse_input(self.input)
 
     @property
@@ -81,7 +81,7 @@ class RandomInput:
         Raises
         ------
         ValueError
-            If not exactly one of the three is given, or the end of a road without a road.
+            If not exactly one of `psd`, `road` and `roughness` is given, or `highest` without a road.
         """
         if sum(given is not None for given in (self.psd, self.road, self.roughness)) != 1:
             raise ValueError("--psd, --road, --roughness: give one of the three")
@@ -145,12 +145,12 @@ def _position(option: str, text: str) -> float | None:
 def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> bd.PowerSpectrum:
     """Read a density from a CSV file with the columns f [Hz] and psd, in a unit such as m2/s4/Hz or g2/Hz.
 
-    It is straight between its points on the axes.
+    The density is straight between its points on logarithmic or linear `axes`.
 
     Raises
     ------
     ConfigError
-        If a head lacks its unit, a column is missing or a cell is no number: with the line.
+        If a head lacks its unit, a column is missing or a cell is no number; the message names the line.
     InvalidValue
         If the frequencies do not ascend, or a density is negative, or 0 on logarithmic axes.
     """

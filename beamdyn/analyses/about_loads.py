@@ -176,9 +176,9 @@ def loads(
         What --plot and --report draw along the span; default: moment, or strain where nothing bends
         the beam.
     modes
-        Of a transient and steady response, as for simulate and steady; default: auto.
+        Number of modes of a transient or steady response, as for simulate and steady; default: auto.
     tolerance
-        The same; default: 1e-5.
+        Tolerance of a transient or steady response, as for simulate and steady; default: 1e-5.
     """
     kinds = {"--speed": speed, "--t-end": t_end, "--speeds": speeds}
     _check_together([name for name, given in kinds.items() if given is not None], angle, window)

@@ -212,7 +212,7 @@ def simulate(
     series
         Write three periods around the largest deflection (within the window) for ParaView: .xdmf.
     animation
-        Write an animation of the same: .gif.
+        Write an animation of these three periods: .gif.
     """
     span = None if window is None else parse_window(window, t_end)
     run = bd.simulate(scene, t_end, modes, tolerance, method, discretization)

@@ -61,7 +61,7 @@ def design(
         "power", with "at" and a speed. Without it frequencies are those at rest, and responses those at
         the final speed.
     seed
-        Of the random designs with which a search over several numbers begins.
+        Seed of the random designs with which a search over several numbers begins.
     write
         Write the scene with the numbers found into this file, with what they were to reach.
     """

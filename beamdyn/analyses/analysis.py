@@ -100,9 +100,9 @@ class Answer:
     tables : sequence of rich renderables, optional
         The result for people; by its view if not given.
     draw : callable, optional
-        Draws it on axes; by its view if not given.
+        Draws the result on axes; by its view if not given.
     tolerance : float, optional
-        By which the warnings of the result judge its errors.
+        Tolerance by which the warnings of the result judge its errors.
     """
 
     result: Result
@@ -125,13 +125,13 @@ class Analysis:
     Parameters
     ----------
     function : callable
-        ``function(scene, **options)``: its result, or an `Answer`. Its name is that of the command, its
-        docstring what it asks; the annotations of its keyword arguments describe the options. It is given
-        `outputs`, and the `file` of the scene, only if it names them.
+        ``function(scene, **options)``: a result, or an `Answer`. Its name is that of the command, its
+        docstring the question; the annotations of its keyword arguments describe the options. It is given
+        `outputs`, and the `file` of the scene, only if it has arguments of these names.
     examples : tuple of str
         Commands that can be typed as they stand.
     about_scene : str
-        What it takes of the scene.
+        What the analysis takes of the scene, in words.
     moving : callable
         ``moving(options)``: whether the scene must have a motion.
     physics : type, optional
@@ -142,7 +142,7 @@ class Analysis:
         Options, as they are typed, with which the screen opens; empty for those of the first example.
     sooner : callable, optional
         ``sooner(scene, **options)``: a preliminary answer, whose picture the screen shows until that of
-        `function` is there; where there is none, that of few modes.
+        `function` is there; if not given, an answer with few modes.
     """
 
     function: Callable[..., Result | Answer]
@@ -256,7 +256,7 @@ class Analysis:
         file : Path, optional
             The file of the scene, if it is in one.
         by : callable, optional
-            What answers, given the options that `function` takes; that if not given.
+            Function to call in place of `function`, with the same options.
         """
         values = {name: value for name, value in given.items() if name != "physics"}
         values |= {name: text.value(named(name), given[name], scene) for name, text in self.texts.items()}

@@ -49,7 +49,7 @@ def at_most(most: int) -> Parameter:
 
 
 def parse_quantity(option: str, text: str, of: str | Quantity) -> float:
-    """A number with its unit, in SI; an InvalidInput names the option."""
+    """Read a number with its unit, in SI; an InvalidInput names the option."""
     try:
         return quantity(text, of) if isinstance(of, str) else of.convert(text)
     except InvalidInput as error:
@@ -145,7 +145,7 @@ def parse_speeds(text: str, scene: bd.Scene | None = None) -> np.ndarray:
 
 
 def parse_amounts(option: str, text: str, of: str | Quantity, example: str) -> tuple[list[float], list[str]]:
-    """Numbers in a list with one unit at its end, such as "62.1, 389 Hz": their values, and as written."""
+    """Read a list of numbers with a unit at its end, such as "62.1, 389 Hz": values, and texts as written."""
     found = _UNIT.search(text.strip())
     values = [value for (value,) in _tuples(option, text, 1, example, of)]
     return values, [part.strip() for part in text.strip()[: found.start() if found else None].split(",")]
@@ -162,7 +162,7 @@ def parse_points(option: str, text: str) -> list[list[float]]:
 
 
 def _tuples(option: str, text: str, size: int, example: str, of: str | Quantity = "m") -> list[list[float]]:
-    """Amounts in a list of members of so many numbers, with one unit for all at the end."""
+    """Read a list, each member of which has `size` numbers, with one unit for all at the end."""
     unit = _UNIT.search(text.strip())
     members = text.strip()[: unit.start()].split(",") if unit else []
     parts = [[number.strip() for number in member.split(":")] for member in members]

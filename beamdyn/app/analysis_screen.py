@@ -72,7 +72,7 @@ def analysis_screen(analysis: Analysis) -> Screen:
         return answer.result
 
     def headline(answer: Answer) -> Iterator[KeyResult]:
-        beside = "", warned(getattr(answer.result, "warnings", ()))  # these stand below, each
+        beside = "", warned(getattr(answer.result, "warnings", ()))  # left out: the warnings stand below
         lines = (line for line in answer.result.headline() if line not in beside)
         yield KeyResult("in short", "; ".join(map(in_files, islice(lines, _HEADLINES))))
 
@@ -84,7 +84,7 @@ def analysis_screen(analysis: Analysis) -> Screen:
 
 
 def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
-    """Draw the picture of an answer; in files with notes below it, on the page without them."""
+    """Draw the picture of an answer, without the notes that stand below it in files."""
     result: Any = answer.result
     if narrow:
         own = hasattr(result, "picture_size")  # a picture of panels chooses its own size

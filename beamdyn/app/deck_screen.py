@@ -36,7 +36,7 @@ _DRAWN = {
 
 
 class DeckInput(Section):
-    """[deck]: the text of a blade's file, and what that does not say."""
+    """[deck]: the text of a blade's file, and the lengths that it may lack."""
 
     text: Annotated[
         str,

@@ -66,7 +66,7 @@ def bent_beam(
     room : float
         Largest deflection as drawn [m] for which to leave room.
     scale : str
-        To which the deflection is drawn, in words.
+        Scale to which the deflection is drawn, in words.
     """
     length = float(x[-1])
     half = 0.5 * _DEEP * length

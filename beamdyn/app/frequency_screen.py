@@ -50,7 +50,7 @@ class Frequencies:
     locus : Locus
         Frequencies over speed.
     crossings : Crossings, optional
-        Speeds at which the motion excites them; None without a motion, or where that is not known.
+        Speeds at which the motion excites the modes; None without a motion, or where they are not known.
     critical : CriticalPoint or None
         Critical speed; None under a load at the tip by which the beam may flutter instead.
     refused : str

@@ -46,7 +46,7 @@ _HEADINGS = {
 
 
 def _on(base: str) -> list[Analysis]:
-    """Return the analyses whose first example is about a file, so that their screens open with it."""
+    """Return the analyses whose first example uses the file `base`, with which their screens open."""
     return [each for each in SHOWN if f"/{base} " in f"{each.examples[0]} "]
 
 

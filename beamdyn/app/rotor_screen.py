@@ -15,7 +15,7 @@ from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.scene.rotor import RotorDrawing
 
-_STEPS = 200  # least number of steps into which a dragged length divides the length of the beam
+_STEPS = 200  # least number of steps in the length of the beam, to which dragged lengths are rounded
 
 
 def solve(tables: Mapping[str, Any]) -> RotorDrawing:

@@ -50,9 +50,9 @@ def scene_screen(
     name, purpose, solve
         As for `Screen`.
     beside : sequence of str
-        Tables of its form before those of the scene.
+        Further tables of its form, after the first two of the scene.
     result : callable
-        ``result(answer)``: the result, where the answer is more than that.
+        ``result(answer)``: the result within an answer; by default the answer itself.
     left_out_of : str
         What the effects left out change, such as "frequencies"; empty if the screen does not list them.
     **special

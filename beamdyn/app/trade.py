@@ -84,9 +84,10 @@ class Trade:
 
 
 def solve(tables: Mapping[str, Any]) -> Trade:
-    """The chosen model, and measurements of others; of a coarse solution few, and of its numbers alone.
+    """Choose the model, and measure error and time of others for comparison.
 
-    A coarse solution has one run of the chosen model, whose time is not shown.
+    A coarse solution has few measurements, of the numerical error alone, and one run of the chosen model,
+    whose time is not shown.
     """
     digits = int(read_aside(tables, "trade").digits)
     scene, speed, modes = read_at_speed(tables)
@@ -158,7 +159,7 @@ def _chart(answer: Trade, diagram: Diagram, name: str) -> Chart:
 
 
 def tables(answer: Trade) -> Sequence[RenderableType]:
-    """Make tables of the chosen model and the cheapest ones, of all digits, and of effects left out."""
+    """Make tables of the chosen model, of the cheapest for each number of digits, and of effects left out."""
     numbers, physics = answer.cheapest(answer.numerical), answer.cheapest(answer.of_physics)
     n = f"{answer.digits} digit{'s' * (answer.digits > 1)}"
     found = "nothing measured keeps them" if numbers is None else _describe(numbers)
@@ -227,14 +228,14 @@ def headline(answer: Trade) -> Iterator[KeyResult]:
 
 
 def quick_headline(answer: Trade) -> Iterator[KeyResult]:
-    """Yield the numerical error; what takes many runs, and the model error, follow."""
+    """Yield the numerical error, and placeholders for the model error and for what takes many runs."""
     yield from _of_times(_FOLLOWS, _FOLLOWS)
     yield from [*quick_headline_of_modes(answer.modes)][1:]
     yield KeyResult("model error at most", _FOLLOWS)
 
 
 def _of_times(cheapest: str, time: str) -> Iterator[KeyResult]:
-    """Yield the results that many runs are timed for."""
+    """Yield the two results that take many timed runs: the cheapest model, and the chosen one's time."""
     yield KeyResult("cheapest, physics included", cheapest)
     yield KeyResult("time of the chosen model", time)
 

@@ -34,7 +34,7 @@ _PLACES, _TIMES = 41, 201  # number of positions along the beam, and of times in
 _SAMPLES = 40  # number of the largest samples near which the peak is sought
 _CLOSE = 4  # periods of the first mode before and after the present time in the close-up
 _MOST_SENT = 2000  # points of the whole run on the page: enough to see its periods when zoomed
-_MODES = 3  # modes whose resonances are marked, and of a coarse solution
+_MODES = 3  # number of modes whose resonances are marked, and of a coarse solution
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ def make_program() -> Program:
 
 @cache
 def command_line(command: str = "", *, listed: bool = False) -> App:
-    """Make the program with one command, with all commands, or with all as the list in its help has them."""
+    """Make the program with one command, with all, or, if `listed`, with all as its help lists them."""
     app = App(
         name="beamdyn",
         version=__version__,

@@ -1,4 +1,4 @@
-"""Few of many, evenly spread: rows of tables, curves of pictures, places of model errors."""
+"""Selection of a few of many, evenly spread: rows of tables, curves of pictures, places of model errors."""
 
 from __future__ import annotations
 

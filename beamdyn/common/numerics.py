@@ -66,7 +66,7 @@ def legendre_series(points: int) -> np.ndarray:
 def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Multiply Legendre series in columns, (m, c) and (n, c): shape (m + n - 1, c).
 
-    The recurrence of Legendre polynomials P_k gives P_k b; no digits are lost of series of a few terms.
+    The recurrence of Legendre polynomials P_k gives P_k b; for series of a few terms no digits are lost.
     """
     short, long = sorted((a, b), key=len)
     if len(short) == 1:  # one of the series is a constant

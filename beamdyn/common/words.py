@@ -9,11 +9,11 @@ from functools import partial
 from typing import Any, Self
 
 _NAMES = {"youngs": "Young's", "poissons": "Poisson's"}  # words with an apostrophe, which keys lack
-_LONG = 10.0  # length [m] from which on it is in m everywhere
+_LONG = 10.0  # lengths from this one on are worded in m everywhere [m]
 
 
 def name_in_words(path: str) -> str:
-    """The path of an input as forms and pictures say it: "root stiffness" of "root_stiffness"."""
+    """Word the path of an input as forms and pictures do: "root stiffness" for "root_stiffness"."""
     words = path.replace(".", " ").replace("_", " ").split(" ")
     return " ".join(_NAMES.get(word, word) for word in words)
 
@@ -24,7 +24,7 @@ class Words(str):
     Parameters
     ----------
     *parts : str
-        The parts, one after the other; those that are `Words` keep what they know.
+        The parts, one after the other; those that are `Words` keep their own parts.
     """
 
     parts: tuple[str, ...]
@@ -64,17 +64,17 @@ class InputName(Part):
 
     @property
     def on_form(self) -> str:
-        """The words of its field; the beam's inputs go without the beam."""
+        """The name of its field on a form: "thickness" for "beam.thickness"."""
         return name_in_words(self.removeprefix("beam."))
 
 
 class Named(Part):
-    """What Python calls one thing, and files and commands another: "a RollingWheel".
+    """A text worded in one way for Python, and in another for files and commands, such as "a RollingWheel".
 
     Parameters
     ----------
     in_python, elsewhere : str
-        The words for it.
+        Both wordings.
     """
 
     elsewhere: str

@@ -34,7 +34,7 @@ _RESPONSE = re.compile(r"\s*(.+?) (?:by|per) (.+?)\s*")
 _MOST = 40  # largest number of shapes in a file
 _REMEDY = 'name yours by columns, as in --columns "{name} = {head}"'
 
-Half = Callable[[str], float]
+Half = Callable[[str], float]  # a function from a number as written to half a unit of its last digit
 
 
 class Frequency(Quantity):
@@ -123,7 +123,7 @@ def _read(
     least_rows: int = 2,
     *times: str,
 ) -> tuple[CsvTable, list[CsvColumn]]:
-    """Read the table, and its columns of values; `times` names columns of further times."""
+    """Read a table of one kind of data, and its columns of values; `times` names columns of further times."""
     along, unit = kind.along
     known = {along: Quantity(unit, least=0.0)} | {name: Quantity("s", least=0.0) for name in times}
     known |= _SPEED if kind is MeasuredLoads else {}
@@ -143,7 +143,7 @@ def _read(
 
 
 def _values(table: CsvTable, columns: list[CsvColumn], half: Half) -> dict[str, Any]:
-    """Return the fields that data of all kinds of columns have."""
+    """Return the fields that measured data of every kind have."""
     values, named = np.array([column.values for column in columns]).T, table.named()
     none = np.full(len(values), np.nan)
     spreads = [named.get(f"{column.name} {_SPREAD}") for column in columns]

@@ -66,7 +66,7 @@ def read_measurements(
     Raises
     ------
     ValueError
-        At the first mistake: names file, line, and what was expected.
+        At the first mistake; the message names file, line, and what was expected.
 
     References
     ----------
@@ -142,7 +142,7 @@ def _speeds(text: DataText, own: np.ndarray | None, given: np.ndarray | None, co
 
 
 def _half_digits(written: list[list[str]], values: np.ndarray) -> np.ndarray:
-    """Compute half a unit of the last digit of each cell, in the unit of the values (S, m)."""
+    """Compute half a unit of the last digit of each cell, in the unit of `values` (rows, columns)."""
     numbers = [[half_unit(cell) for cell in row] for row in written]
     sizes = [[abs(float(_plain(cell))) if cell else 1.0 for cell in row] for row in written]
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -1,6 +1,6 @@
 """Tables as other programs write them, laid out as CSV: the lines of a file keep their numbers.
 
-Read are lists of variables of ANSYS (PRVAR), tables whose heads and units stand in two lines (FAST),
+It reads lists of variables of ANSYS (PRVAR), tables whose heads and units stand in two lines (FAST),
 CSV files with lines of titles or with heads such as "X:Time(s)", and universal files (dataset 58).
 """
 
@@ -39,8 +39,8 @@ def as_table(text: DataText, columns: Mapping[str, str]) -> DataText:
     text : DataText
         The file.
     columns : mapping
-        Heads that its columns are to have, such as "tip" or "tip by tip force [mm/N]", each with that which
-        its column has in the file, without the unit.
+        Heads that its columns are to have, such as "tip" or "tip by tip force [mm/N]", each with the head of
+        its column in the file, without the unit.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Tables of a scene's TOML file, with texts with units, and the core objects that they make."""
+"""Tables of a scene's TOML file, with texts with units, and the objects that they make, such as `Beam`."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def _kind_of_variation(given: Any) -> str | None:
 # Tables of the file -------------------------------------------------------------------------------
 
 
-# By kind, in the order of the list of motions.
+# Tables by kind of rotation or motion, in the order of `KINDS`.
 ROTATIONS = {name: section_of(made, name) for name, made in KINDS.items() if issubclass(made, Rotation)}
 _ROTATION = {Rotation: one_of_kinds(ROTATIONS)}
 MOTIONS = {name: ROTATIONS.get(name) or section_of(made, name, _ROTATION) for name, made in KINDS.items()}

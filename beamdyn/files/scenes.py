@@ -1,4 +1,4 @@
-"""Reading of scenes in TOML, with the CSV files that they name: from text with units to core objects."""
+"""Reading of scenes in TOML, with the CSV files that they name: from text with units to objects in SI."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def read_station_file(text: DataText, more: Mapping[str, Quantity] | None = None
     Raises
     ------
     ConfigError
-        At the first mistake: names file, line, and what was expected.
+        At the first mistake; the message names file, line, and what was expected.
     """
     known = PLACES | VARYING | dict(more or {})
     table = read_csv(text, known, _STATION_NAMES | {plain_name(name): name for name in more or ()})
@@ -158,7 +158,7 @@ class RecordedQuantity(Quantity):
 
 @cache
 def _si_value(unit: str, of: str) -> Decimal:
-    """Return the size of a unit in SI."""
+    """Return the size of a unit in SI units, exactly as a decimal."""
     return Decimal(repr(quantity(f"1 {unit}", of)))
 
 
@@ -230,12 +230,12 @@ def read_record(path: Path, known: Mapping[str, Quantity]) -> dict[str, tuple[fl
     path : Path
         The CSV file: a line of heads with units, such as "t [s], n2 [m/s2]", then lines of numbers.
     known : mapping
-        What the columns may be, by name; "times" is one.
+        Quantities that columns may have, by name; "times" is one.
 
     Raises
     ------
     ConfigError
-        If a head lacks its unit, a cell is no number, or samples are missing: with the line.
+        If a head lacks its unit, a cell is no number, or samples are missing; the message names the line.
     """
     text = read_data(path)
     names = {plain_name(head): key for key in known for head in (key, *_RECORD_HEADS.get(key, ()))}
@@ -250,7 +250,7 @@ def read_record(path: Path, known: Mapping[str, Quantity]) -> dict[str, tuple[fl
 
 
 def _check_times(table: CsvTable, times: tuple[float, ...]) -> None:
-    """Refuse times that do not ascend evenly from 0, with the line of the first."""
+    """Refuse times that do not ascend evenly from 0; the message names the line of the first wrong one."""
     try:
         check_record_times("t", times)
     except InvalidValue as error:
@@ -301,8 +301,8 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     Raises
     ------
     ConfigError
-        If there is no such file or it does not describe a scene; the message lists all mistakes.  One in
-        the CSV file is named by its line.
+        If there is no such file or it does not describe a scene; the message lists all mistakes, those in a
+        CSV file by line.
 
     Examples
     --------

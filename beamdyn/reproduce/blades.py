@@ -71,7 +71,7 @@ def whole_blade_scene(name: str, by_elements: bool = False) -> bd.Scene:
 
 
 def _compare_blades(key: str, discretization: str = "ritz") -> Iterator[tuple[str, PrintedValue]]:
-    """Compare the frequencies [Hz] of a key of the published data with ours, each with the blade's name."""
+    """Compare published frequencies [Hz], under a key of the data, with ours, each with the blade's name."""
     for row in load("blades")["blade"]:
         if printed := row.get(key):
             whole = key == "frequency_printed_by_bmodes"

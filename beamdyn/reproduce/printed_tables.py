@@ -42,7 +42,7 @@ def _by_source(entries: Iterable[tuple[str, PrintedValue]]) -> Entries:
 
 
 def summarize(entries_by: Callable[[str], Entries]) -> list[Summary]:
-    """Summarize entries by a discretization, for each source and discretization."""
+    """Summarize entries for each source and discretization; `entries_by` makes those of a discretization."""
     found = {name: entries_by(discretization) for name, discretization in _DISCRETIZATIONS.items()}
     sources = next(iter(found.values()))
     return [summarize_entries(source, name, found[name][source]) for source in sources for name in found]
@@ -76,8 +76,8 @@ def cases(paper: str) -> Iterator[dict[str, Any]]:
     """Yield the cases of a paper's tables: one for each row, with the data that rows of a table share.
 
     Besides the keys of ``rotating_beams.toml``, cases have ``where``, which names the row, ``factor`` of the
-    printed values over the nondimensional ones, and ``exact``, third values by the number of the mode. Mass
-    and stiffness are those of a rectangular section that tapers linearly, unless they are given.
+    printed values over the nondimensional ones, and ``exact``, values by a third computation by the number of
+    the mode. Mass and stiffness are those of a linearly tapering rectangular section, unless they are given.
     """
     for printed in load(paper).get("table", []):
         shared = {"factor": 1.0} | {key: value for key, value in printed.items() if key != "rows"}
@@ -127,7 +127,7 @@ def _cable(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
 
 
 def _stretch(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
-    """Compare the centrifugal stretch [m] with its closed form."""
+    """Compare the centrifugal stretch of a beam at its tip [m] with its closed form."""
     given = values_alone(load("code_aster")["stretch"])
     area = 1e-4  # any area [m2], as the stretch does not depend on it
     mass, stiffness = given["density"] * area, given["youngs_modulus"] * area
@@ -184,7 +184,7 @@ def nondimensional_scene(case: Mapping[str, Any]) -> bd.Scene:
     Returns
     -------
     Scene
-        Scene whose eigenvalues at gamma rad/s have the magnitude lambda.
+        Scene whose eigenvalues at gamma rad/s have the case's nondimensional frequencies as magnitudes.
     """
     delta, alpha = case["delta"], case.get("alpha")
     beam = bd.Beam.from_stiffness(

@@ -122,7 +122,7 @@ def _phase(phase: float) -> str:
 def curve_csv(result: bd.CurveComparison) -> Columns:
     """Make columns of measured and computed curves, with a row for each time, speed, position or frequency.
 
-    Complex ones have columns of magnitude and phase; those of the allowance and the error follow.
+    Complex curves have columns of magnitude and phase; columns of the allowed deviation and the error follow.
     """
     units = {"time": "s", "speed": "rad/s", "position": "m", "frequency": "Hz"}
     columns = [Column(result.along, result.x, units[result.along])]

@@ -133,8 +133,8 @@ def _say_model_error(size: float, lacks_data: bool) -> str:
 def locus_table(result: bd.Locus) -> Group:
     """Make a table of a locus at some of its speeds: frequencies, or growth rates of unstable modes.
 
-    Where two planes are modelled, a letter behind each frequency tells in which the mode mostly bends; that
-    of a mode which does not mostly bend tells what deforms.
+    Where two planes are modelled, a letter behind each frequency tells the plane in which the mode mostly
+    bends, or, if it mostly deforms otherwise, how.
     """
     size, shown = np.abs(result.eigenvalue) * result.error, rows_worth_showing(result.status)
     model_errors, lacks = model_error_at(result, shown), result.left_out_effects.lack_data

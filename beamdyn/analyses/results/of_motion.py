@@ -65,7 +65,7 @@ def time_of_peak(
 ) -> tuple[float, float]:
     """Return the time of the largest tip deflection in a window, and its uncertainty, the sampling step [s].
 
-    Of a window with less than two samples, its middle and half its length.
+    For a window with less than two samples, return its middle and half its length.
     """
     inside = np.flatnonzero((run.t >= start) & (run.t <= end))
     if len(inside) < 2:
@@ -104,7 +104,7 @@ def transient_csv(run: bd.Transient) -> Columns:
 
 
 def _table_over_speeds(result: bd.SteadyResponse | bd.Sweep, columns: Columns, peaks_at: np.ndarray) -> Group:
-    """Make a table of columns at some speeds and at all peaks, which the status names."""
+    """Make a table of columns at some speeds and at all peaks, which the column of statuses names."""
     shown, high = of_modes.rows_worth_showing(np.array(result.status), peaks_at), {*peaks_at.tolist()}
     states = [f"{result.status[s]}, peak" if s in high else str(result.status[s]) for s in shown.tolist()]
     status = Column("status", states)

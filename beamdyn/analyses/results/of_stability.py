@@ -25,7 +25,7 @@ _SI: Mapping[str, tuple[str, float]] = {}
 
 
 def multiplier_columns(result: bd.FloquetMultipliers) -> Columns:
-    """Make columns with a row for each multiplier: size, angle, error and sign; or of the exponent."""
+    """Make columns with a row for each multiplier: size, angle, error, sign; without any, of growth rate."""
     if not len(result.multipliers):
         rate, error = np.array([result.growth_rate]), np.array([result.growth_rate_error])
         return Columns(

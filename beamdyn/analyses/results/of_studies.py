@@ -76,7 +76,7 @@ def study_table(result: bd.Study) -> Group:
 def study_columns(result: bd.Study) -> Columns:
     """Make columns with a row for each design: inputs in SI, answers, errors, statuses.
 
-    The last varies fastest.
+    The last input varies fastest.
     """
     parts = (result.value, result.error, result.status)
     value, error, status = (each.reshape(result.designs.count, -1).T for each in parts)
@@ -157,11 +157,11 @@ def sensitivities_csv(result: bd.Sensitivities) -> Columns:
 # Trade-offs -------------------------------------------------------------------------------------------
 
 
-_TIES = 3  # largest number of named settings whose times equal the least one within their scatter
+_TIES = 3  # largest number of settings that are named as equally fast, within the scatter of times
 
 
 def diagram_table(diagram: Diagram) -> Group:
-    """Make a table of the cost of each digit, with the Pareto front and the reference of the errors."""
+    """Make a table of the cheapest setting for each further digit, with Pareto front and reference."""
     rows = [
         (
             f"{d.error:.0e}",

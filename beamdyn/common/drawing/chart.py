@@ -46,7 +46,7 @@ class ChartCurve:
     Parameters
     ----------
     name : str
-        Name in the legend and at the pointer.
+        Name in the legend and beside the mouse pointer.
     x, y : ndarray, shape (n,)
         Its points, in the units of the axes; a gap where y is not finite.
     dashed : bool
@@ -56,7 +56,7 @@ class ChartCurve:
     points : bool
         Whether its points are marked.
     most : int
-        Most points that are drawn; of more, the smallest and the largest value of each part.
+        Largest number of points drawn; a curve with more keeps its ends and the extremes of its parts.
     """
 
     name: str
@@ -77,7 +77,7 @@ class ChartPoints:
     name : str
         Name in the legend.
     at : sequence of (x, y, words)
-        Their coordinates, and the text of each at the pointer.
+        Coordinates of each point, and the text shown when the mouse pointer is on it.
     role : str
         Role that gives their colour: a name in `beamdyn.common.drawing.strokes`.
     """

@@ -16,7 +16,7 @@ _PALE, _CURSOR = "0.6", "0.4"
 _GAP = 0.01  # distance of a text from the foot of the axes, over their height
 _BESIDE: dict[str, Any] = {"va": "bottom"}
 _ALONG: dict[str, Any] = {"ha": "right", "va": "top", "rotation": 90}
-# Height of texts at the top of marks where a legend stands above, over that of the axes.
+# Height of the top of a mark's text, over that of the axes, so that it stays below a legend.
 _BEHIND_LEGEND = 0.92
 
 
@@ -69,18 +69,18 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
 def plot_charts_of_one_x(
     figure: Figure, charts: Sequence[Chart], left: float, heights: Sequence[float]
 ) -> None:
-    """Plot charts of the same x below one another, without titles, from a part of the figure's width on.
+    """Plot charts of the same x below one another, without titles, in a figure right of `left`.
 
     Parameters
     ----------
     figure : Figure
-        Without a layout engine, which would move the axes.
+        The figure; it must not have a layout engine, which would move the axes.
     charts : sequence of Chart
         The charts.
     left : float
-        Where their axes begin, as a part of the figure's width.
+        Left edge of the axes, as a fraction of the figure's width.
     heights : sequence of float
-        Their heights, relative to one another.
+        Heights of the charts, relative to one another.
     """
     cells = figure.add_gridspec(
         len(charts), 1, height_ratios=heights, hspace=0.08, left=left, right=0.985, bottom=0.09, top=0.96

@@ -83,7 +83,7 @@ class Obstacles:
 
     @cached_property
     def _covered(self) -> np.ndarray:
-        """Summed-area table of cells with lines, from the upper left: shape (rows + 1, columns + 1)."""
+        """Summed-area table of cells that lines cross, from the upper left: (rows + 1, columns + 1)."""
         start, way = self.lines[:, :2], self.lines[:, 2:] - self.lines[:, :2]
         # Number of points along each line, at most a cell apart.
         counts = np.ceil(np.hypot(*way.T) / _CELL).astype(int) + 1
@@ -330,7 +330,7 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
 def keep_places(
     before: Sequence[Place | None], requests: Sequence[LabelRequest], obstacles: Obstacles
 ) -> list[Place | None] | None:
-    """Keep labels at their offsets while their anchors move; None if that makes any of them collide.
+    """Move labels along with their anchors; return None if any of them then collides.
 
     Parameters
     ----------

@@ -22,9 +22,9 @@ _CROWDED = 30.0  # distance of a label from its point that asks for a larger mar
 _SWATCH, _SPACE = 16.0, 14.0  # length of a sample line in the key, and distance after its text [pt]
 _BAR = 0.22  # longest scale bar, over the width of the frame
 _SMALL_DISC = 30.0  # radius of a disc up to which labels stand beside it, not on it [pt]
-# Points that cover the handle of a movable point, relative to it: 16 px across on the page.
+# Points, relative to a movable point, at which labels would cover its handle: 16 px across on the page.
 _HANDLE = np.vstack([np.zeros((1, 2)), arc((0, 0), 4.5, 0, 2 * np.pi, 9)])
-# Points that cover the symbol of the ground below its point, over half its width and its height.
+# Points at which labels would cover a ground symbol, relative to its point; unit: half its width, its height.
 _MARKS = np.array([(0.0, 0.0), (0.0, -2 / 17), (0.0, 0.5), (-0.7, 0.9), (0.0, 0.9), (0.7, 0.9)])
 _PADDING = (4.0, 1.0)  # room around a measured text [pt], as letters are drawn with hinting and slant
 
@@ -114,7 +114,7 @@ class Layout:
     rules : tuple of Rule
         Lines from labels to their points, of the key and of scales.
     numbered : tuple of str
-        Labels without a free place: a number stands at their point, and they in a list.
+        Labels without a free place: they stand in a list, with numbers that stand at their points.
     places : tuple of Place or None
         Places of the labels; None for one without.
     """
@@ -215,7 +215,7 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
             heights = np.linspace(-0.8, 0.8, 9) * r
             half = np.sqrt(r**2 - heights**2)
             chords = np.stack([x - half, y + heights, x + half, y + heights], axis=-1)
-            segments.append(chords[: None if r < _SMALL_DISC else 0])  # labels stand beside a small disc
+            segments.append(chords[: None if r < _SMALL_DISC else 0])  # labels avoid small discs only
         closed = isinstance(shape, Outline) and shape.closed
         pairs = np.vstack([along, along[:1]]) if closed else along
         lines = np.concatenate([pairs[:-1], pairs[1:]], axis=1)

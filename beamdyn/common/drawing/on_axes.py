@@ -30,7 +30,7 @@ def figure_of(rows: Rows, paper: Paper | None = None) -> Figure:
     rows : sequence of sequences of Drawing
         The drawings; those of a row share its width evenly, and have one scale.
     paper : Paper, optional
-        Size of the figure; by what is drawn if not given.
+        Size of the figure; follows from the drawings if not given.
     """
     paper = paper or Paper.of(rows)
     width, height = paper.width, paper.height
@@ -48,9 +48,9 @@ def draw_in(figure: Figure, box: tuple[float, float, float, float], drawing: Dra
     Parameters
     ----------
     figure : Figure
-        Without a layout engine, which would move the axes.
+        The figure; it must not have a layout engine, which would move the axes.
     box : tuple of float
-        Left, bottom, width, height in parts of the figure.
+        Left, bottom, width and height, as fractions of the figure.
     drawing : Drawing
         The drawing.
 
@@ -68,7 +68,7 @@ def draw_on(ax: Axes, drawing: Drawing, fit: Fit | None = None) -> Axes:
     Parameters
     ----------
     ax : Axes
-        Where to draw, in the drawing's unit; the title stands within them.
+        Axes on which to draw, in the drawing's unit; the title stands within them.
     drawing : Drawing
         The drawing.
     fit : Fit, optional

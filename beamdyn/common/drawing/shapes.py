@@ -170,11 +170,11 @@ class Drawing:
     points : mapping
         Points (x, y) that can be moved, by their names.
     room : ndarray, shape (k, 2)
-        Further points that the drawing has room for, such as those of other positions.
+        Further points that must fit into the picture, such as those of other positions.
     own_scale : bool
         Whether its scale differs from that of others in its row, as in a detail.
     scale : str
-        Scale of the deflections in words, where it is not that of lengths.
+        Scale of the deflections in words, where it differs from that of lengths.
     """
 
     shapes: Sequence[DrawnShape]
@@ -203,7 +203,7 @@ class Drawing:
     def extent(self) -> tuple[np.ndarray, np.ndarray]:
         """Compute least and greatest coordinates (2,) of shapes and `room`.
 
-        Of a unit square if there are none.
+        Without any, they are those of a unit square.
         """
         room = np.reshape(np.asarray(self.room, dtype=float), (-1, 2))
         points = np.vstack([room, *map(points_of_shape, self.shapes)])

@@ -47,7 +47,7 @@ def _widths(row: Sequence[Drawing], width: float) -> list[float]:
 
 
 def _height(row: Sequence[Drawing], width: float) -> float:
-    """Compute the height of a row of drawings on paper of a width."""
+    """Compute the height of a row of drawings on paper of a given width."""
     highest = 0.0
     for drawing, own in zip(row, _widths(row, width), strict=True):
         low, high = drawing.extent()

@@ -31,7 +31,7 @@ class Sketch:
     shapes, labels : list
         Shapes and labels so far.
     room : list of points
-        Further points that the drawing has room for.
+        Further points that must fit into the picture.
     """
 
     def __init__(self) -> None:
@@ -87,7 +87,7 @@ class Sketch:
 
 
 def wall(middle: Point, half: Point, back: Point) -> list[DrawnShape]:
-    """Draw a wall through a point, hatched on one side; `half` is half of it, `back` a hatching line."""
+    """Draw a wall, hatched on one side; `half` leads from its middle to an end, `back` along a hatch line."""
     at, way, behind = (np.asarray(each, dtype=float) for each in (middle, half, back))
     ends = np.array([at - way, at + way])
     ticks = ends[0] + np.linspace(0, 1, 6)[:, None] * (ends[1] - ends[0])

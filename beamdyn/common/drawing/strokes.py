@@ -146,7 +146,7 @@ def letters_of(text: Text) -> list[Letters]:
 
 
 def _pen(shape: Outline | Disc) -> Pen:
-    """Return the pen of a shape; discs are opaque, and hide what they carry."""
+    """Return the pen of a shape; discs are opaque, and hide what lies beneath them."""
     line, fill = shape.role if shape.width else "", f"{shape.role}-area" if shape.filled else ""
     return Pen(line, shape.width, shape.dash, fill, AREA if isinstance(shape, Outline) else 1.0)
 

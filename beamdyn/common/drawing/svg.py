@@ -25,20 +25,20 @@ def svg_of(rows: Rows, paper: Paper | None = None) -> str:
     rows : sequence of sequences of Drawing
         Rows of drawings that stand beside one another.
     paper : Paper, optional
-        Its size; by what is drawn if not given.
+        Size of the picture; follows from the drawings if not given.
 
     Returns
     -------
     str
-        It begins with an XML declaration.  Its root has role, title and description, and an id from its
-        content; points that can be moved have ids, too.
+        The text, which begins with an XML declaration.  Its root element has role, title and description, and
+        an id computed from the content; points that can be moved have ids, too.
     """
     paper = paper or Paper.of(rows)
     return as_file(element(lay_out(rows, paper), paper))
 
 
 def as_file(made: str) -> str:
-    """Return the text of a file with an SVG element, with its own colours."""
+    """Return the text of an SVG file: an element as `element` makes it, with the colours that it needs."""
     style = f"<style>{page_colours('.machine')}{_DARK}{{{page_colours('.machine', dark=True)}}}</style>"
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{made.replace("<desc", f"{style}<desc", 1)}\n'
 
@@ -77,7 +77,7 @@ def page_colours(selector: str, dark: bool = False) -> str:
 
 
 def _paint(name: str) -> str:
-    """Write a colour as a variable of the page or file, with its value on light ground as default."""
+    """Write a colour as a CSS variable, with its value on light ground as default."""
     return f"var(--{name},{strokes.colour(name)})"
 
 
@@ -120,7 +120,7 @@ def _pairs(points: np.ndarray) -> str:
 
 
 def _letters(line: strokes.Letters) -> str:
-    """Write a line of letters, with the width as measured, whatever the font."""
+    """Write a line of letters, stretched to its measured width whatever font the reader has."""
     symbol, words = line.symbol, line.words
     gap = " " if symbol and words else ""
     width = (symbol_width(symbol) + line_width(f"{gap}{words}")) * line.size

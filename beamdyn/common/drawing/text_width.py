@@ -50,7 +50,7 @@ _EM = 2048  # number of the font's units of length in the size of its letters
 
 @cache
 def _font() -> Any:
-    """Load the font, in the size of its own units."""
+    """Load the font at the size at which lengths are in its own units."""
     from matplotlib import get_data_path  # imported here, because it is slow to import
     from matplotlib.ft2font import FT2Font
 

@@ -1,4 +1,7 @@
-"""Reading of TOML files with units into core objects; all mistakes are reported in one message."""
+"""Reading of TOML files with units into objects of the core, which takes SI floats.
+
+All mistakes of a file are reported in one message.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +37,7 @@ class ConfigError(ValueError):
     Parameters
     ----------
     source : str
-        Name of the file, or what stands for it.
+        Name of the file, or of another origin of the text.
     mistakes : sequence of str
         One sentence each: the key's path, the value, what is wrong and the remedy.
     paths : sequence of str
@@ -64,12 +67,12 @@ class MissingValue(InvalidValue):
     """Raised for a value that must be given and is not; the message names field and bound."""
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """Return the message, in the words of a medium."""
+        """Return the message, each part of it worded by `word`."""
         return f"{self.field}: missing; {worded(self.bound, word)}"
 
 
 class CoreSection(Section):
-    """A table of a file that stands for a core object; what the core refuses is a mistake in the table."""
+    """A table of a file from which an object of the package is made; what that refuses is a mistake in it."""
 
     @cached_property
     def core(self) -> Any:
@@ -89,9 +92,9 @@ def read(path: str | PathLike[str]) -> str:
     Raises
     ------
     InvalidValue
-        If it is not the name of a file, as text or path.
+        If `path` is neither text nor a path.
     ConfigError
-        If it cannot be read; the message says why.
+        If the file cannot be read; the message says why.
     """
     file = as_path("path", path, "a TOML file")
     try:
@@ -111,7 +114,7 @@ def parse(text: str, source: str) -> dict[str, Any]:
     Raises
     ------
     ConfigError
-        If it is not TOML.
+        If the text is not TOML.
     """
     try:
         return tomllib.loads(text)
@@ -130,12 +133,12 @@ def parse(text: str, source: str) -> dict[str, Any]:
 
 
 def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model:
-    """Validate tables.
+    """Make an instance of a pydantic model from tables of a file.
 
     Parameters
     ----------
     model : type of BaseModel
-        The model of the tables.
+        The model.
     data : mapping
         Tables, as tomllib reads them.
     source : str
@@ -144,7 +147,7 @@ def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model
     Raises
     ------
     ConfigError
-        If they do not describe it; the message lists all mistakes.
+        If the tables do not fit the model; the message lists all mistakes.
     """
     try:
         return model.model_validate(dict(data))
@@ -197,7 +200,7 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
 
 
 def _missing_table(path: str, known: Sequence[Input]) -> str:
-    """Word that a table is missing, with the keys that it needs if it is of one kind; "" for a key."""
+    """Word which table to give, with its required keys if it is of one kind; "" if no table is missing."""
     keys = [each for each in known if each.path.startswith(f"{path}.")]
     needed = [each.name for each in keys if each.required and each.path == f"{path}.{each.name}"]
     of_one_kind = needed and len({each.section for each in keys}) == 1
@@ -206,10 +209,7 @@ def _missing_table(path: str, known: Sequence[Input]) -> str:
 
 
 def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: Any) -> tuple[str, str]:
-    """Word the refusal of a number or a core object with the file's keys and value.
-
-    Return the input's path.
-    """
+    """Word a refusal by the core with the file's keys and value; return the sentence and the input's path."""
     if isinstance(reason, InvalidInput) and not reason.field:
         return say(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
@@ -220,7 +220,7 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
 
 
 def _place_in(field: str, key: str) -> str:
-    """Return the path of an input with what a core field's name adds to it, such as ".values[1]"."""
+    """Return the path of an input, with the end of a core field's name that it lacks: ".values[1]"."""
     parts = (field.removeprefix(name) for name in _wholes(field) if f".{key}".endswith(f".{name}"))
     if (part := next(parts, None)) is not None:
         return key + part
@@ -284,7 +284,7 @@ def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
 
 
 def _without_indices(field: str) -> str:
-    """Return a field as inputs are described, without indices of tables in a list: "point_mass.mass"."""
+    """Return a field without indices, as inputs are described: "point_mass.mass" for "point_mass[0].mass"."""
     return re.sub(r"\[\d+\]", "", field)
 
 
@@ -294,11 +294,11 @@ def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
     Parameters
     ----------
     error : Exception
-        An `InvalidValue` names its argument; others name none.
+        The error; only an `InvalidValue` names its argument.
     paths : iterable of str
         Paths of inputs.
     table : str
-        Path of the table in which it is looked for.
+        Path of the table in which the input is looked for.
     """
     field = error.field if isinstance(error, InvalidValue) else ""
     paths = list(paths)

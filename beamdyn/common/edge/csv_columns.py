@@ -14,7 +14,7 @@ from beamdyn.common.edge.data_text import DataText, as_decimal, number_at, plain
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.units import InvalidInput, usual_unit
 
-_INNER = r"(?:[^\[\]()]|\([^\[\]()]*\))*"  # a unit in brackets, such as (m/s2)2/Hz
+_INNER = r"(?:[^\[\]()]|\([^\[\]()]*\))*"  # pattern of the text within brackets, such as the unit (m/s2)2/Hz
 _HEAD = re.compile(rf"\s*([^\[\]()]*?)\s*(?:[\[(]({_INNER})[\])]\s*)?")
 _DELIMITERS = ",;\t"
 
@@ -53,9 +53,9 @@ class CsvTable:
     text : DataText
         The file.
     head_line : int
-        Line of the heads.
+        Number of the line with the heads.
     lines : tuple of int
-        Line of each row.
+        Line number of each row.
     columns : tuple of CsvColumn
         The columns, in their order.
     """
@@ -89,7 +89,7 @@ def read_csv(
     known : mapping
         Quantities that columns may have, by name.
     names : mapping
-        Names of quantities by the plain names of heads: several heads may stand for one quantity.
+        Names of quantities by heads, as `plain_name` writes these; several may stand for one quantity.
     may_lack : collection of str
         Quantities whose cells may be empty.
     least_rows : int
@@ -198,7 +198,7 @@ def _read_row(
 
 
 def check_places(table: CsvTable, name: str) -> None:
-    """Refuse positions that do not ascend; a position given twice is a jump of other values.
+    """Refuse positions that do not ascend; one given twice must be a jump in the values of other columns.
 
     Parameters
     ----------

@@ -72,9 +72,9 @@ def read_data(path: str | PathLike[str]) -> DataText:
     Raises
     ------
     InvalidValue
-        If it is not the name of a file.
+        If `path` is neither text nor a path.
     ConfigError
-        If it cannot be read, is no text or is empty.
+        If the file cannot be read, is no text or is empty.
     """
     file = as_path("path", path, "a file")
     try:
@@ -104,7 +104,7 @@ def named_file(path: str | PathLike[str], key: str, name: str) -> Path:
     Raises
     ------
     ConfigError
-        If it is not there: names the key, the file and the folder.
+        If the file does not exist; the message names the key, the file and the folder.
     """
     folder = Path(path).parent
     if not (folder / name).exists():
@@ -117,7 +117,7 @@ def named_file(path: str | PathLike[str], key: str, name: str) -> Path:
 
 
 def to_number(word: str) -> float | None:
-    """Read a word as FORTRAN reads a number, such as 1.0D+03; None if it is none, or too large."""
+    """Read a word as FORTRAN reads a number, such as 1.0D+03; None if it is not a number, or too large."""
     match = _NUMBER.fullmatch(word)
     if match is None:
         return None
@@ -126,7 +126,7 @@ def to_number(word: str) -> float | None:
 
 
 def as_decimal(word: str) -> str:
-    """Rewrite the word of a number with e in place of FORTRAN's letters."""
+    """Rewrite a number with e before its exponent, where FORTRAN may write another letter or none."""
     match = _NUMBER.fullmatch(word)
     assert match is not None
     return match[1] + (f"e{match[2]}" if match[2] else "")

@@ -1,4 +1,4 @@
-"""Tables of files, made from core classes with described fields, so that no input is described twice."""
+"""Tables of files, made from classes of the core, which take SI floats: no input is described twice."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class MadeSection(CoreSection):
     """A table made from a core class; its keys follow from the arguments of the class."""
 
     made: ClassVar[type]
-    key_of: ClassVar[Mapping[str, str]]  # keys by argument; those of a pair are named "tip[0]" and "tip[1]"
+    key_of: ClassVar[Mapping[str, str]]  # keys by argument; "tip[0]" and "tip[1]" are those of a pair
 
     @property
     def given(self) -> dict[str, Any]:
@@ -48,7 +48,7 @@ Base = TypeVar("Base", bound=MadeSection)
 def section_of(
     made: type, kind: str = "", tables: Mapping[type, Any] | None = None, base: type[Base] = MadeSection
 ) -> type[Base]:
-    """Make the class of the table of a core class.
+    """Make the class of a table of a file, from a core class whose objects the table describes.
 
     Parameters
     ----------
@@ -57,8 +57,8 @@ def section_of(
     kind : str
         Value of the key ``kind`` that tells the table from its alternatives; there is none if empty.
     tables : mapping, optional
-        By class of a field, what its table may be, where that does not follow from the class; by class of
-        a description, the class of the `Quantity` that reads it.
+        How to read fields where that does not follow from their annotation: by the class of a field, an
+        annotation for pydantic; by the class of a description, the class of the `Quantity` to use.
     base : type of MadeSection
         Base class, which may have further keys.
 

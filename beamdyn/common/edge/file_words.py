@@ -76,7 +76,7 @@ def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
 
 
 def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
-    """Word that an option is unknown, and which is meant: by another known name, or by its value."""
+    """Word that an option is unknown, and which may be meant: that of a synonym, or one with such a value."""
     option = (error.token.keyword or error.token.value).partition("=")[0]
     if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
         return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"
@@ -100,7 +100,7 @@ def in_files(text: str, units: Any = None) -> str:
 
 
 def word(part: Part, units: Any = None) -> str:
-    """Word a part of a text in the terms of files, or of the form that asks."""
+    """Word a part of a text in the terms of files, or within `on_form` in those of a form."""
     if isinstance(part, Setting) and (heading := _HEADING.get()) is not None:
         return part.on_form(heading(part.table))
     if isinstance(part, InputName) and _HEADING.get() is not None:
@@ -120,7 +120,7 @@ def say(error: Exception) -> str:
 
 @contextmanager
 def on_form(heading: Callable[[str], str]) -> Iterator[None]:
-    """Name settings in this context as a form does, with these headings of its tables."""
+    """In this context, name settings in messages as a form does; `heading` returns a table's heading."""
     before = _HEADING.set(heading)
     try:
         yield

@@ -21,7 +21,7 @@ from beamdyn.common.inputs.described import Described
 class Section(BaseModel):
     """A table of inputs: strict types, no unknown keys, frozen.
 
-    It pickles also where its class was made (`section_of`) and stands in no module under its name.
+    An instance pickles even if `section_of` made its class, which then stands in no module under its name.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, arbitrary_types_allowed=True)
@@ -72,7 +72,7 @@ class Quantity(Described):
         Raises
         ------
         InvalidInput
-            If it is not such a quantity or out of bounds; its field is empty.
+            If the value is not such a quantity or is out of bounds; the error's `field` is empty.
         """
         return self.within_bounds(given, self.convert(given))
 
@@ -166,7 +166,7 @@ class Input:
     section : type of Section
         The table that holds it; where tables are alternatives, this tells them apart.
     kind : type
-        Its annotation, without the description.
+        Its type annotation, without the description.
     quantity : Quantity
         Symbol, unit, bounds and meaning.
     choices : tuple
@@ -218,8 +218,8 @@ def describe(model: type[BaseModel], prefix: str = "", choose: Choice = _each) -
     prefix : str
         Put before each path.
     choose : callable
-        Where a table has alternatives (two kinds of beam), its path and the models of all in, those to
-        describe out.
+        ``choose(path, models)``: which models to describe of a table with alternatives, such as two kinds of
+        beam, given its path and the models of all.
 
     Returns
     -------
@@ -242,7 +242,7 @@ def _has_alternatives(model: type[BaseModel]) -> bool:
 
 
 def _models_of(field: FieldInfo) -> list[type[BaseModel]]:
-    """Return the models that describe a table."""
+    """Return the models of the table that a field holds, one for each alternative; empty without a table."""
     parts = [*parts_of(field.annotation), *field.metadata]
     return [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
 

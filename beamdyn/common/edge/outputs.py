@@ -39,7 +39,7 @@ _SUFFIXES = {
 
 
 class Files:
-    """Files to write, with what all kinds of commands need of them."""
+    """Files to write: base of the options that commands of all kinds share."""
 
     plot: Path | None = None
     json: Path | None = None

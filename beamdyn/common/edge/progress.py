@@ -25,7 +25,7 @@ _LINE: ContextVar[_ProgressLine | None] = ContextVar("line", default=None)
 
 
 class Pace:
-    """Estimate of the remaining time from the steps in the last half of the time, as steps may get faster."""
+    """Estimate of the remaining time from steps in the last half of the elapsed time: steps may speed up."""
 
     def __init__(self) -> None:
         self._times: list[float] = []
@@ -119,7 +119,7 @@ def _bar(pace: Pace) -> Progress:
 
 @contextmanager
 def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
-    """Show progress on standard error during the work inside, if that is a terminal.
+    """Show progress during the work in this context, if standard error is a terminal.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
     Yields
     ------
     callable
-        To be called with the numbers of steps that are done and of all; the line has a bar only then.
+        To be called with the numbers of steps that are done and of all; without calls the line has no bar.
     """
     if sys.stderr is None or not sys.stderr.isatty():
         yield lambda done, total: None

@@ -1,4 +1,4 @@
-"""Wording of refusals by the core in terms of the command that was typed."""
+"""Wording of refusals by the core, which takes SI floats, in terms of the command that was typed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,9 @@ _ELSEWHERE = {
     "t_end": "--window",
 }
 _PHYSICS = "physics."
-_USUAL = {"rad": "1 deg"}  # units for numbers that were not typed themselves
+_USUAL = {
+    "rad": "1 deg"
+}  # by SI unit: a quantity in the unit in which messages give a number that was not typed
 
 
 def is_no_answer(error: Exception) -> bool:
@@ -62,7 +64,7 @@ def as_typed(error: Exception) -> str:
 
 
 def _says_more(text: str, value: object) -> bool:
-    """Whether a typed text says more than its value: a unit, or what is made of the text."""
+    """Whether a typed text says more than the value read from it: a unit, or the words for an object."""
     if isinstance(value, float | int):
         return text == last_quantity(text) != f"{value:g}"
     return isinstance(value, tuple) or is_dataclass(value)

@@ -19,13 +19,13 @@ from rich.text import Text
 from beamdyn.common.inputs.checks import reason_of
 
 _RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
-_SENTENCE = 36  # letters from which on the words of a cell are a sentence
-# Letters in a row from which on a table takes the whole width of a page, and of one on a wide screen.
+_SENTENCE = 36  # number of letters above which the words of a cell are styled as a sentence
+# Numbers of letters in a row above which a table takes the whole width of a page, and of a wide screen.
 _WIDE, _WIDEST = 75, 112
-_LONG = 12  # rows from which on a table goes on in a second column, if it has room in one
-_BETWEEN = 1.5  # letters that have the room between two columns
+_LONG = 12  # number of rows from which a table continues in a second column where there is room
+_BETWEEN = 1.5  # width of the gap between two columns, in letters
 
-_FEW_DECADES = 1e2  # ends of an axis over decades, one over the other, up to which its small ticks matter
+_FEW_DECADES = 1e2  # ratio of the ends of a logarithmic axis above which its minor ticks can be left out
 _MOST_PLACES = 50  # largest number of pictures whose layout is kept
 _PLACES: dict[tuple[object, ...], list[Bbox]] = {}  # places of axes, by size and labels of their picture
 
@@ -54,7 +54,7 @@ def png(figure: Figure, kind: str = "png") -> bytes:
 
 
 def _write_powers_plainly(figure: Figure) -> None:
-    """Write powers of axes over decades as plain letters, since typesetting takes a third of the time."""
+    """Write the powers of ten of logarithmic axes as plain text: typesetting takes a third of the time."""
     from matplotlib.ticker import LogFormatterSciNotation
 
     class Powers(LogFormatterSciNotation):
@@ -69,9 +69,10 @@ def _write_powers_plainly(figure: Figure) -> None:
 
 
 def in_haste(figure: Figure) -> Figure:
-    """Leave out what takes most of a picture's time: a layout of its own, and the small ticks of decades.
+    """Prepare a figure for fast drawing, without a layout of its own or most minor ticks.
 
     Its axes are where they were in the last picture of this process with the same labels and size.
+    Logarithmic axes over more than two decades lose their minor ticks.
     """
     for axis in (axis for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)):
         low, high = axis.get_view_interval()
@@ -84,7 +85,7 @@ def in_haste(figure: Figure) -> Figure:
         if len(_PLACES) >= _MOST_PLACES:
             _PLACES.clear()
         _PLACES[known] = [ax.get_position(original=True).frozen() for ax in figure.axes]
-    figure.set_layout_engine(None)  # as the usual settings have it: none
+    figure.set_layout_engine(None)  # by default none
     for ax, place in zip(figure.axes, _PLACES[known], strict=True):
         ax.set_position(place, which="original")
     return figure
@@ -99,14 +100,14 @@ def _in_letters(power: re.Match[str]) -> str:
 
 
 def drawing(draw: Callable[[], Figure], finish: Callable[[Figure], Figure] = lambda figure: figure) -> str:
-    """The SVG of a drawing, or a sentence if it cannot be drawn (numbers too large).
+    """Return the SVG of a drawing, or a sentence if it cannot be drawn (numbers too large).
 
     Parameters
     ----------
     draw : callable
         Draws the figure.
     finish : callable
-        What is done to it before it is written, such as `in_haste`.
+        Changes the figure before it is written, such as `in_haste`.
     """
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
@@ -139,8 +140,8 @@ def data_url(text: str) -> str:
 def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
     """Write tables and sentences, as the commands print them, in HTML.
 
-    Each table with its title and sentences is a section.  If one has more than `most` rows, the first and
-    last ones are shown, and how many are not.
+    Each table with its title and sentences is a section.  Of a table with more than `most` rows the first and
+    last ones are shown, and the number of the others.
     """
     made = []
     for part in parts:
@@ -158,21 +159,21 @@ def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
 
 
 def _size(part: Group) -> str:
-    """Name the size of the largest table of a group, as styles of pages tell them apart."""
+    """Return the CSS classes for the largest table of a group, such as "wide long"."""
     letters, rows = _width(part), _rows(part)
     sizes = {"wide": letters > _WIDE, "widest": letters > _WIDEST, "long": rows >= _LONG}
     return " ".join(name for name, applies in sizes.items() if applies)
 
 
 def _rows(part: object) -> int:
-    """Rows of a table, or of the longest one of a group; else 0."""
+    """Return the number of rows of a table, or of the longest one of a group; else 0."""
     if isinstance(part, Group):
         return max(map(_rows, part.renderables), default=0)
     return part.row_count if isinstance(part, Table) else 0
 
 
 def _width(part: object) -> float:
-    """Letters that have the room of a table, or of the widest of a group; else 0.  Heads may be broken."""
+    """Return the width of a table, or of the widest of a group, in letters; else 0.  Heads may be broken."""
     if isinstance(part, Group):
         return max(map(_width, part.renderables), default=0.0)
     columns = part.columns if isinstance(part, Table) else ()

@@ -227,7 +227,7 @@ def table(
 def table_of(columns: Columns, units: DisplayUnits, title: str = "", keys: int = 1) -> Group:
     """Make a table of a result's columns in display units, with the sentences that go with them.
 
-    Words stand at the left, numbers at the right.  The title may be another than theirs; so many first
+    Words stand at the left, numbers at the right.  A `title` replaces that of the columns; the first `keys`
     columns identify a row.
     """
     shown = [_for_people(column, units) for column in columns.columns if column.words is not None]

@@ -33,7 +33,7 @@ _PLAIN = str.maketrans(
     | dict.fromkeys(_SPACES, " ")
     | {0xFF10 + digit: str(digit) for digit in range(10)}  # digits of full width
 )
-# What stands between several quantities in a text, and before a number.
+# Patterns: the separator of several quantities in a text, and what stands before a number.
 _BETWEEN, _BEFORE_NUMBER = re.compile(r"[:,]|\bto\b"), re.compile(r"^[^\d.]*")
 _KNOWN_SIGNS = "°µμΩ"  # signs of units beyond ASCII
 
@@ -111,7 +111,7 @@ def quantity(text: object, unit: str) -> float:
     Raises
     ------
     InvalidInput
-        If it is not a finite number with a unit of the same kind as `unit`; its field is empty.
+        If `text` is not a finite number with a unit of the same kind as `unit`; its `field` is empty.
     """
     return _known(text, unit) if isinstance(text, str) else _quantity(text, unit)
 

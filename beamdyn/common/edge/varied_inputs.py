@@ -93,7 +93,7 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
     Parameters
     ----------
     inputs : sequence of Input
-        Those that may be varied.
+        Inputs that may be varied.
     text : str
         KEY=start:stop:count unit, at equal steps; start:stop:count:log unit, at equal ratios; or a list,
         KEY=1,2,5 unit.  The key is a path, or its last part where that is unique.
@@ -152,7 +152,7 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     Parameters
     ----------
     inputs : sequence of Input
-        Those in question, and choices, which are no numbers.
+        Inputs that the key may mean, and choices, for which the message is another one.
     key : str
         The key.
     words : str
@@ -165,7 +165,7 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     """
     matches = [i for i in inputs if key in (i.path, i.name)]
     if all(i.required or i.default is None for i in matches):
-        # A required input takes precedence, as the others follow it, like those of a second shoe.
+        # A required input takes precedence: the others default to it, like those of a brake's second shoe.
         matches = [i for i in matches if i.required] or matches
     if len(matches) > 1:
         raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")
@@ -209,7 +209,7 @@ def parse_spreads(
     Parameters
     ----------
     inputs : sequence of Input
-        Those that may have a tolerance.
+        Inputs that may have a tolerance.
     texts : sequence of str
         KEY=TOLERANCE of each; the key as for `parse_axis`.
     nominal : callable

@@ -44,7 +44,7 @@ class View:
     Parameters
     ----------
     tables : callable, optional
-        ``tables(result)``: tables and sentences for people; that of the columns if not given.
+        ``tables(result)``: tables and sentences for people; by default the table of the columns.
     rows : callable, optional
         ``rows(result)``: columns, or the rows of the CSV file, heads first.
     index : int
@@ -166,7 +166,7 @@ def html_of(result: Result) -> str:
         draw = picture_of(result)
         content = "" if draw is None else base64.b64encode(png(draw())).decode()
         image = content and f'<img alt="{name}" src="data:image/png;base64,{content}">'
-    # Numbers that are too large, or none that is finite.
+    # Numbers are too large, or none is finite.
     except (ValueError, ArithmeticError, LookupError) as error:
         image = f"<p>{escape(f'There is no picture: {reason_of(error)}')}</p>"
     return (
@@ -194,7 +194,7 @@ def _fields_rows(result: Result) -> Iterator[Sequence[object]]:
 def _named_fields(result: Any, depth: int = 0) -> Iterator[tuple[str, Any, str]]:
     """Yield name, value and unit of each public field that is a number, text, array or mapping of them.
 
-    Those of results and other objects within it follow; inputs, which are `Described`, are left out.
+    Fields of results and other objects within it follow; inputs, which are `Described`, are left out.
     """
     stated = (vars(base).get("field_units", {}) for base in reversed(type(result).__mro__))
     units = {name: unit for each in stated for unit, names in each.items() for name in names.split()}

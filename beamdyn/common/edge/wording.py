@@ -1,4 +1,4 @@
-"""Messages of the core about a value, reworded in terms of a file: its keys, and degrees for radians."""
+"""Messages of the core, which takes SI floats, reworded for files: their keys, and degrees for radians."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def of_file(keys: Mapping[str, str]) -> Iterator[None]:
     Parameters
     ----------
     keys : mapping
-        Names of the core and the keys that stand for them, e.g. ``{"lining[0]": "lining_start"}``.
+        Keys by the names of the arguments that they stand for, e.g. ``{"lining[0]": "lining_start"}``.
     """
     try:
         yield

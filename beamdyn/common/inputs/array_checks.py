@@ -93,23 +93,23 @@ def solve_possible(
     Parameters
     ----------
     solve : callable
-        ``solve(rows)``: what is found of the cases of these rows, together.
+        ``solve(rows)``: the result for the cases with these numbers, as arrays.
     count : int
         Number of cases.
 
     Returns
     -------
     found : object
-        What is found; None if all cases are refused.
+        Result of `solve`; None if all cases are refused.
     rows : ndarray of int
-        Rows of the cases that are solved.
+        Numbers of the cases that are solved.
     refused : dict of int to InvalidValue
-        Why each of the others is refused, by its row.
+        Why each of the others is refused, by its number.
 
     Raises
     ------
     InvalidValue
-        If it is not about some of the cases.
+        If `solve` raises one that does not tell which cases it is about.
     """
     rows, refused = np.arange(count), dict[int, InvalidValue]()
     while rows.size:

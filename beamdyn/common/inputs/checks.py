@@ -62,9 +62,9 @@ class InvalidValue(ValueError):
     other : str
         Name of another argument that the message mentions.
     where : str
-        Said after the value: where it is refused, or in how many cases.
+        Text after the value: where it is refused, or in how many cases.
     cases : RefusedCases, optional
-        Of an array of cases, which are refused.
+        Which cases are refused, where the value is one of an array.
     """
 
     field: str
@@ -81,12 +81,12 @@ class InvalidValue(ValueError):
         return self.worded(str)
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """Return the message, in the words of a medium."""
+        """Return the message, each part of it worded by `word`."""
         name = self.field and f"{self.field} = "
         return f"{name}{self.shown}{self.where}: {self.advice(word)}"
 
     def advice(self, word: Callable[[Part], str]) -> str:
-        """Return the bound and the remedy, in the words of a medium."""
+        """Return the bound and the remedy, each part of them worded by `word`."""
         remedy = self.remedy and f"; {worded(self.remedy, word)}"
         return self._filled(worded(self.bound, word) + remedy)
 
@@ -140,10 +140,7 @@ OUT_OF_RANGE = (
 
 
 def reason_of(error: Exception) -> str:
-    """Return the message of an error.
-
-    A plain one in place of Python's or numpy's for numbers out of range.
-    """
+    """Return the message of an error, in plain words where Python or numpy met numbers out of range."""
     beyond = isinstance(error, ZeroDivisionError | OverflowError | FloatingPointError)
     return OUT_OF_RANGE if beyond else str(error)
 

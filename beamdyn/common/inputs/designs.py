@@ -1,6 +1,7 @@
 """Designs: inputs, each at its path in nested objects, with values combined or taken together.
 
-The objects are dataclasses, whose fields go by their keys in files, mappings, sequences, and models of files.
+The objects are mappings, sequences, pydantic models of files, and dataclasses; a path names a field of a
+dataclass by its key in files.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ def with_parts(whole: Any, parts: Mapping[str, Any]) -> Any:
 
 
 class _Tree(dict[Any, Any]):
-    """New values by the first step of their paths; values further within form trees of their own."""
+    """New values by the first step of their paths; those of longer paths are in trees within the tree."""
 
 
 def _steps(path: str) -> list[str | int]:
@@ -126,12 +127,12 @@ class VariedInput:
 
     @property
     def label(self) -> str:
-        """For tables: name and unit."""
+        """Name and unit, for tables."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     @property
     def in_words(self) -> str:
-        """For pictures: its name as forms say it; that of the beam's inputs without the beam."""
+        """Name as on forms, for pictures: "thickness" for "beam.thickness"."""
         return InputName(self.name).on_form
 
 
@@ -144,8 +145,8 @@ class Designs:
     inputs : sequence of VariedInput
         The inputs.
     combine : {"product", "zip"}
-        Whether each value is combined with each of the other inputs, or the first of all are a design, the
-        second of all another, and so on.
+        Whether each value is combined with each of the other inputs, or the first values of all inputs make
+        a design, the second values another, and so on.
     """
 
     inputs: Sequence[VariedInput]
@@ -163,7 +164,7 @@ class Designs:
         return math.prod(self.shape)
 
     def columns(self, rows: slice | np.ndarray = slice(None)) -> dict[str, np.ndarray]:
-        """Return the values (R,) of each input in some of the designs, by name."""
+        """Return the values (R,) of each input in R of the designs, by name."""
         places = np.arange(*rows.indices(self.count)) if isinstance(rows, slice) else rows
         if self.combine == "zip":
             return {each.name: each.values[places] for each in self.inputs}
@@ -200,7 +201,7 @@ class Designs:
 
 
 def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
-    """Return designs with their values by name, from columns (R,)."""
+    """Convert columns of values (R,), by name, to R designs, each with its values by name."""
     return [
         dict(zip(columns, row, strict=True))
         for row in zip(*(c.tolist() for c in columns.values()), strict=True)

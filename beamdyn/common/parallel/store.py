@@ -39,7 +39,7 @@ class Store:
     Raises
     ------
     ValueError
-        If it is a file, holds anything else, or cannot be written.
+        If `path` is a file, holds anything else, or cannot be written.
     """
 
     def __init__(self, path: str | Path, kind: str) -> None:
@@ -80,7 +80,7 @@ class Store:
         Raises
         ------
         DamagedRecord
-            If there is one that is not as it was written.
+            If the record is not as it was written.
         """
         try:
             text = self.file(key).read_bytes()
@@ -107,9 +107,9 @@ def fingerprint(*values: object) -> str:
     Parameters
     ----------
     *values : object
-        Numbers, strings, arrays, containers and dataclasses of them, by content (of dataclasses of our
-        own not by fields that equality leaves out, such as a label; of others by all fields); functions by
-        name and code (of what they call and read by name only); anything else by its pickle.
+        Numbers, strings, arrays, containers and dataclasses of them count by content, functions by name and
+        code, anything else by its pickle.  In this package's dataclasses, fields that equality leaves out,
+        such as a label, do not count; what a function calls and reads counts by its name alone.
 
     Returns
     -------

@@ -69,7 +69,7 @@ class Task:
     Parameters
     ----------
     make : callable
-        Makes what is to be solved; it is made when its turn comes.
+        ``make()`` returns what is to be solved; it is called when the task's turn comes.
     size : int
         Number of its designs or cases.
     place : object
@@ -92,7 +92,7 @@ class TaskRunner:
     workers : int
         Number of processes; this one is the first of them.
     executor : Executor, optional
-        Any of `concurrent.futures`, in place of workers.
+        An executor as in `concurrent.futures`, in place of workers.
     store : str or Path, optional
         Folder in which results are kept; those found there are not computed again.
     kind : str
@@ -102,7 +102,7 @@ class TaskRunner:
     progress : callable, optional
         Called as progress(done, total) with the numbers of designs, at the start and after each task.
     interrupted : type
-        What is raised when the executor breaks; its `parts` say what the sizes of tasks count.
+        Class of the error raised when the executor breaks; its `parts` name what the sizes of tasks count.
 
     Attributes
     ----------
@@ -112,7 +112,7 @@ class TaskRunner:
     Raises
     ------
     InvalidValue
-        If an argument is none of these.
+        If an argument is not as described here.
     """
 
     workers: int = 1
@@ -170,8 +170,9 @@ class TaskRunner:
         Parameters
         ----------
         solve : callable
-            Takes what a task makes; with workers or an executor a function of a module.  What it returns
-            with a store is data: see `beamdyn.common.results.snapshots`.
+            ``solve(made)``: the result for what a task's `make` has returned; with workers or an executor it
+            must be a function of a module.  With a store the result must be data: see
+            `beamdyn.common.results.snapshots`.
         tasks : sequence of Task
             The tasks.
         keep : callable
@@ -180,7 +181,7 @@ class TaskRunner:
         Raises
         ------
         RunInterrupted
-            If the executor breaks: of the kind that `interrupted` is.
+            If the executor breaks; the error has the class `interrupted`.
         """
         run = _TaskRun(self, solve, keep, sum(task.size for task in tasks))
         if self.executor is not None:
@@ -284,7 +285,7 @@ class _TaskRun:
     def _ask(self, action: Callable[..., Any], *arguments: Any) -> Any:
         """Call the executor; on an error, store what is done and raise `TaskRunner.interrupted`.
 
-        The error is then the executor's own, as tasks return theirs.
+        Such an error is the executor's own: errors of tasks are returned as their results.
         """
         try:
             return action(*arguments)

@@ -34,8 +34,8 @@ class Workers(ThreadPoolExecutor):
     Only the task that was in flight in the dead process is run again.  The processes are new
     interpreters: safe if the caller has threads, and, unlike those of `multiprocessing`, they do not
     import the caller's script, which therefore needs no ``if __name__ == "__main__"``.  What they
-    run must be importable: functions of the script itself are not.  They end with the caller, however
-    it ends.
+    run must be importable: functions of the script itself are not.  The processes end with the caller,
+    however it ends.
 
     Parameters
     ----------

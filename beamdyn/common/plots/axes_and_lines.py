@@ -32,23 +32,23 @@ def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
 
 
 def panels(count: int, ax: Axes | None = None, columns: int = 2) -> tuple[Axes, list[Axes]]:
-    """Replace axes by several that share their place, two in a row if not said otherwise.
+    """Replace axes by several panels that share their place, by default two in a row.
 
     Parameters
     ----------
     count : int
         Number of panels.
     ax : Axes, optional
-        Whose place they take; that of a new figure if not given.
+        Axes whose place the panels take; those of a new figure if not given.
     columns : int
         Largest number of panels in a row.
 
     Returns
     -------
     Axes
-        Those whose place is taken.
+        The axes whose place is taken.
     list of Axes
-        The new ones, in reading order.
+        The panels, in reading order.
     """
     columns = min(columns, count)
     rows = -(-count // columns)
@@ -100,7 +100,7 @@ def _is_isolated(y: np.ndarray) -> np.ndarray:
 
 
 def draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, style: dict[str, Any]) -> None:
-    """Draw a line whose dashes change from sample to sample; its pieces meet at a sample."""
+    """Draw a line, solid at samples where `solid` is true, else dashed; its pieces meet at samples."""
     starts, isolated = [0, *(np.flatnonzero(np.diff(solid)) + 1).tolist()], _is_isolated(y)
     for start, stop in zip(starts, [*(s + 1 for s in starts[1:]), len(x)], strict=True):
         piece, dashes = slice(start, stop), "-" if solid[start] else "--"

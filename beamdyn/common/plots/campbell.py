@@ -83,7 +83,7 @@ def plot_campbell(
     Parameters
     ----------
     scenes : sequence of Curves
-        One scene, whose modes differ in colour, or several, which do.
+        One scene, whose modes differ in colour, or several scenes, which differ in colour.
     lines : mapping of str to float
         Excitation lines: their frequencies as multiples of the speed.
     crossings : mapping of str to sequence of (float, float)
@@ -95,7 +95,7 @@ def plot_campbell(
     rated : float, optional
         Rated speed [rad/s], marked by a line.
     operating : (float, float), optional
-        Operating range [rad/s], shaded; the first kind of crossings is then that within it.
+        Operating range [rad/s], shaded; the first kind of crossings must then hold those within the range.
 
     Returns
     -------
@@ -242,8 +242,8 @@ def _name_at_right(ax: Axes, labels: Sequence[_CurveName], top: float) -> None:
 def _spread(heights: Sequence[float]) -> list[float]:
     """Move ascending heights as little as possible, so that neighbours are far enough apart.
 
-    Heights less their numbers times the distance have to ascend: the nearest ascending ones are the means
-    of blocks that do not (pool adjacent violators).
+    Each height minus its index times the least distance must not descend; the nearest such values are means
+    over blocks of values that descend (isotonic regression, pool adjacent violators).
     """
     blocks: list[tuple[float, int]] = []
     for i, height in enumerate(heights):

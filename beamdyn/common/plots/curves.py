@@ -20,14 +20,14 @@ _GREY = "0.5"
 _FEW = 4  # largest number of cases drawn as lines along the span; of more cases the range is drawn
 _MARKERS = "osD^vXP"
 _SAME = 1e-6  # difference of curves, over the largest value, that cannot be seen
-_FEWEST_BARS = 3  # names for which a picture of bars has room at least
+_FEWEST_BARS = 3  # number of names for which a bar chart has room, at least
 
 
 # Sweeps over inputs ----------------------------------------------------------------------------------
 
 
 def sweep_figure(swept: Any) -> Figure:
-    """Draw a sweep: over one input one panel for all results of a unit, over more a map of each result.
+    """Draw a sweep: over one input, a panel for each unit of results; over more inputs, a map of each result.
 
     Parameters
     ----------
@@ -119,9 +119,9 @@ def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -
     ax : Axes
         Axes on which to draw.
     x : ndarray, shape (n,)
-        Places.
+        Positions on the horizontal axis.
     values : ndarray, shape (m, n)
-        Heights; there is a gap where they are not finite.
+        Values of the curves; there is a gap where they are not finite.
     labels : sequence of str
         Names of the curves, one each.
     """
@@ -209,14 +209,14 @@ def plot_along_span(
     ax: Axes | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw a quantity along the beam, one colour a component: lines of few cases, the range of more.
+    """Draw a quantity along the beam, one colour a component: few cases as lines, more as a range.
 
     Components that are the same have one colour together.
 
     Parameters
     ----------
     x : ndarray, shape (S,)
-        Stations along the beam [m]; the two sides of a jump have the same.
+        Stations along the beam [m]; the two sides of a jump have the same position.
     values : ndarray, shape (C, S, k)
         Values of C cases, such as times, of k components.
     labels : sequence of str, length k
@@ -288,7 +288,7 @@ def plot_load_over_time(
 
 
 def plot_exceedance(ranges: np.ndarray, counts: np.ndarray, quantity: str, ax: Axes | None = None) -> Axes:
-    """Draw the number of cycles whose range is at least as large.
+    """Draw, for each range, the number of cycles with at least this range.
 
     Parameters
     ----------
@@ -316,12 +316,13 @@ def plot_exceedance(ranges: np.ndarray, counts: np.ndarray, quantity: str, ax: A
 def plot_work_precision(
     families: Mapping[str, np.ndarray], front: np.ndarray, title: str = "", ax: Axes | None = None
 ) -> Axes:
-    """Draw error against time, one line a family, and the Pareto front as a broad band below them.
+    """Draw error against time, a line for each family of settings, over the Pareto front as a broad band.
 
     Parameters
     ----------
     families : mapping of str to ndarray, shape (n, 2)
-        Times [s] and relative errors; an error above 1, not a digit being right, is drawn as 1.
+        Times [s] and relative errors by the name of the family; an error above 1, where no digit is right, is
+        drawn as 1.
     front : ndarray, shape (k, 2)
         Times and errors of the Pareto-optimal measurements.
     title : str

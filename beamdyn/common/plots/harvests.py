@@ -12,7 +12,7 @@ from beamdyn.common.results.display_units import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 
 _KM_PER_HOUR = 3.6  # factor from m/s to km/h
-_HEIGHT, _WIDTH, _ABOVE = 2.8, 4.2, 1.2  # of a panel, and room for the names above all [inch]
+_HEIGHT, _WIDTH, _ABOVE = 2.8, 4.2, 1.2  # of a panel, and height of the names above all panels [inch]
 _NARROWEST = 3.0  # least width of a panel beside others [inch]
 
 

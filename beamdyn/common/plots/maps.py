@@ -24,7 +24,7 @@ _LOGARITHMIC = 10.0
 _DIGITS = 4
 _FEW = 40  # largest number of values of an input whose points are marked on a curve
 # Standard deviation [places of the grid] by which the share of places without an answer is smoothed; least
-# distance of the smoothed share from 1/2, its value at the edge of the hatched region.
+# distance of the smoothed share from 1/2, at which the hatched region ends.
 _SMOOTHED, _APART = 1.0, 0.02
 _SAME = 1e-9  # relative difference of values that is rounding: no lines are drawn between them
 # Share of the smallest, and of the largest, values that have no influence on the lines of equal value.
@@ -109,23 +109,23 @@ def map_size(
 def plot_maps(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], ax: Axes | None = None) -> Axes:
     """Draw answers over inputs, with a panel for each.
 
-    Over one input an answer is a curve.  Over two it is drawn by lines of equal value, labelled; of a third
-    input some values have panels of their own; of further ones, and of those that have one value, the title
-    says the first.  Where there is no answer the panel is hatched, and says why.
+    Over one input an answer is a curve.  Over two it is drawn by lines of equal value, labelled; some values
+    of a third input have panels of their own.  The title says the first value of further inputs, and of those
+    with a single value.  Where there is no answer the panel is hatched, and says why.
 
     Parameters
     ----------
     inputs : sequence of MapInput
-        The d inputs, one of them that belongs to each axis of the answers.
+        The d inputs, one for each axis of the answers.
     answers : sequence of MapAnswer
         The answers; those without any value are named in a panel of its own.
     ax : Axes, optional
-        Whose place is taken; that of a new figure if not given.
+        Axes whose place the panels take; those of a new figure if not given.
 
     Returns
     -------
     Axes
-        The panel where it is one, else those whose place is taken.
+        The panel if it is the only one, else the axes whose place is taken.
     """
     over = _varied(inputs)
     shown = [*_panels(inputs, answers)]

@@ -55,9 +55,9 @@ class PlacedLabels(Artist):
         places : ndarray, shape (n, 2)
             Places of its centre, in the units of the axes, the best first.
         beside : bool
-            Whether it stands beside its places, which are marked points, that no text covers.
+            Whether the text stands beside its places, which are then marked points that no text may cover.
         **style
-            Of the text.
+            Properties of the text, as for `matplotlib.text.Text`.
         """
         from matplotlib.text import Text
 

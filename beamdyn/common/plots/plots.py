@@ -127,7 +127,7 @@ def mark_critical(
     Parameters
     ----------
     ax : Axes
-        With angular speed on x; its limits stay.
+        Axes with angular speed on x; their limits stay.
     speed : float
         Critical speed [rad/s]; one outside the limits, such as inf, is not drawn.
     label : str
@@ -161,7 +161,7 @@ def mark_points(
     x, y : array_like, shape (n,)
         The points, in the units of the axes.
     label : str
-        For the legend: where they come from.
+        Entry in the legend, which says where the points come from.
 
     Returns
     -------
@@ -223,7 +223,7 @@ def plot_response(
     amplitude : ndarray, shape (S,)
         Largest tip deflection [m]; nan leaves a gap.
     bound : ndarray, shape (S,), optional
-        Sum of the amplitudes of all lines [m].
+        Sum of the amplitudes that all excitation lines cause [m].
     ax : Axes, optional
         Where to draw; new axes if not given.
     by_direction : mapping of str to ndarray, shape (S,), optional
@@ -244,7 +244,7 @@ def plot_response(
     drawn = (length.of(np.where(np.asarray(row) > 0, row, np.nan)) for row in rows.values())
     axes_and_lines.draw_lines(ax, speed.of(np.asarray(speeds)), drawn, list(rows))
     for line in ax.lines[1:]:
-        line.set(linestyle="--", linewidth=1.2)  # thin, as it mostly lies on top of the other
+        line.set(linestyle="--", linewidth=1.2)  # thin, as it mostly lies on top of the first
     if (np.asarray(amplitude) > 0).any():
         ax.set_yscale("log")
     return add_legend(ax)
@@ -257,18 +257,18 @@ def plot_sweep(
     labels: Sequence[str] = ("peak",),
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw the peaks of transients over speed, one line each.
+    """Draw the peaks of transients over speed, in one line or several.
 
     Parameters
     ----------
     speeds : ndarray, shape (S,)
         Angular speeds [rad/s].
     peaks : ndarray, shape (S,) or (d, S)
-        Largest tip deflections [m]; nan leaves a gap.
+        Largest tip deflections [m] of one line, or of d lines; nan leaves a gap.
     ax : Axes, optional
         Where to draw; new axes if not given.
     labels : sequence of str, length d
-        For the legend, which one line needs none of.
+        Names of the lines in the legend, which a single line does not need.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 
@@ -339,7 +339,7 @@ def plot_transient(
     ax : Axes, optional
         Where to draw; new axes if not given.
     labels : sequence of str, length d
-        For the legend, which one line needs none of.
+        Names of the lines in the legend, which a single line does not need.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 

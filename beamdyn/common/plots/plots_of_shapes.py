@@ -113,11 +113,11 @@ def plot_surfaces(
     shapes : ndarray, shape (m, n, k)
         Deflections of the modes out of the strip, real, in any unit.
     across : ndarray, shape (m, n)
-        Those along -y, in the same unit, by which the outline is drawn displaced.
+        Displacements along -y, in the same unit, by which the outline is drawn displaced.
     labels : sequence of str, length m
         Titles of the panels.
     ax : Axes, optional
-        Where to draw; new axes if not given. Their place is divided.
+        Axes whose place is divided into panels; new axes if not given.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 
@@ -178,7 +178,7 @@ def _set_up_shapes(ax: Axes | None, units: DisplayUnits = SI_UNITS) -> Axes:
 
 
 def plot_bent_beam(along: np.ndarray, across: np.ndarray, ax: Axes | None = None, title: str = "") -> Axes:
-    """Draw a bent beam to scale: positions along the straight beam and across it, over its length."""
+    """Draw a bent beam to scale, from positions along and across the straight beam, over its length."""
     ax = axes_and_lines.new_axes() if ax is None else ax
     ax.plot(along, across, color=COLOURS[0])
     ax.plot([0, 1], [0, 0], color="0.7", linewidth=0.8)

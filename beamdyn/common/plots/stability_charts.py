@@ -18,7 +18,7 @@ _FEW = 0.6  # size of a mark of an undecided point [pt]
 def plot_multipliers(
     multipliers: np.ndarray, error: np.ndarray, sign: np.ndarray, ax: Axes | None = None
 ) -> Axes:
-    """Draw multipliers (m,) in the complex plane, by their sign, with the unit circle."""
+    """Draw Floquet multipliers (m,) in the complex plane, coloured by Krein sign, with the unit circle."""
     ax = set_up_axes(ax, "real part of the multiplier", "imaginary part")
     angle = np.linspace(0, 2 * np.pi, 361)
     ax.plot(np.cos(angle), np.sin(angle), color="0.5", linewidth=1.0, label="unit circle")
@@ -53,7 +53,7 @@ def plot_stability_chart(
     rate : ndarray, shape (A, B)
         Growth rates [1/s]; nan, where motion does not grow, stays white.
     undecided : ndarray of bool, shape (A, B)
-        Points to mark.
+        Points to mark, as it is not decided whether motion grows there.
     ax : Axes, optional
         Where to draw; new axes if not given.
     """

@@ -109,7 +109,7 @@ class Columns:
         return Columns(*(column.at(rows) for column in self.columns), title=self.title, note=self.note)
 
     def in_units(self, units: DisplayUnits) -> Columns:
-        """Convert to display units; a column stays where another one has its quantity in that unit."""
+        """Convert to display units; a column is kept where another has its quantity in the display unit."""
         heads = {column.head for column in self.columns}
         shown = ((column, column.in_units(units)) for column in self.columns)
         return Columns(*(column if new.head in heads else new for column, new in shown))
@@ -125,7 +125,7 @@ def columns_of_rows(names: Iterable[tuple[str, str] | str], rows: Iterable[Seque
 def column_named(
     name: str, values: np.ndarray | Sequence[Any], unit: str, number: object = "", **shown: Any
 ) -> Column:
-    """Make a column of a quantity with its own name, such as an input; the head of a rate has "1_per_s"."""
+    """Make a column with the name of its quantity, such as an input; in 1/s its head ends with "1_per_s"."""
     return Column(f"{name}_1" if unit.startswith("1") else name, values, unit, number, **shown)
 
 

@@ -83,7 +83,7 @@ def count_sure(text: str, error: float) -> int:
     Returns
     -------
     int
-        The whole length if all digits are sure; the sign and the decimal point count as what stands before.
+        The whole length if all digits are sure; a sign or decimal point counts only before a sure digit.
     """
     mantissa, _, exponent = text.partition("e")
     digits = mantissa.lstrip("-").replace(".", "", 1)

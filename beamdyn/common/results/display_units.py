@@ -25,7 +25,7 @@ class ShownUnit(NamedTuple):
     Parameters
     ----------
     name : str
-        Such as "rpm".
+        Name of the unit, such as "rpm".
     per_si : float
         Number of this unit in one SI unit.
     """
@@ -38,7 +38,7 @@ class ShownUnit(NamedTuple):
         return values * self.per_si
 
     def say(self, value: float, digits: int = 6) -> str:
-        """A value with its unit, from SI."""
+        """Word a value, given in SI, in this unit."""
         return f"{known_digits(value * self.per_si):.{digits}g} {self.name}"
 
 

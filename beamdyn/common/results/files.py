@@ -22,12 +22,12 @@ def as_path(name: str, value: object, wanted: str = "a file") -> Path:
     value : object
         Text or path.
     wanted : str
-        Kind of thing that it names.
+        Kind of thing that the path is to name.
 
     Raises
     ------
     InvalidValue
-        If it is neither text nor a path.
+        If `value` is neither text nor a path.
     """
     if not isinstance(value, str | os.PathLike):
         # Imported here, since it loads numpy, which help does without.
@@ -63,7 +63,7 @@ def check_writable(
     Raises
     ------
     ValueError
-        If it is no path, or the suffix is none of those allowed.
+        If `path` is neither text nor a path, or its suffix is none of those allowed.
     FileExistsError
         If the file exists and `force` is not set.
     FileNotFoundError
@@ -130,9 +130,9 @@ def replacing(path: str | Path) -> Iterator[Path]:
     Raises
     ------
     OSError
-        If it cannot be written: names `path`.
+        If the file cannot be written; the message names `path`.
     KeyboardInterrupt
-        If the program is interrupted meanwhile: names `path`.
+        If the program is interrupted meanwhile; the message names `path`.
     """
     path = Path(path)
     target, stream = Path(os.path.realpath(path)), _is_stream(path)

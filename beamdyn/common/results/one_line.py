@@ -99,7 +99,7 @@ _OF_PRELIMINARY = 3  # significant digits of a preliminary number, whose error i
 
 @contextmanager
 def few_digits() -> Iterator[None]:
-    """Within it, numbers are written with the digits that a preliminary result has."""
+    """In this context, write numbers with the few digits that a preliminary result has."""
     token = _IS_PRELIMINARY.set(True)
     try:
         yield
@@ -108,12 +108,12 @@ def few_digits() -> Iterator[None]:
 
 
 def known_digits(value: float) -> float:
-    """A number, rounded to the digits of a preliminary result within `few_digits`."""
+    """Return a number; within `few_digits`, rounded to the digits of a preliminary result."""
     return float(f"{value:.{_OF_PRELIMINARY}g}") if _IS_PRELIMINARY.get() else value
 
 
 def number(value: Any, unit: str = "") -> str:
-    """A number with four digits and its unit; with fewer within `few_digits`."""
+    """Word a number with four digits and its unit; with fewer within `few_digits`."""
     size = float(value) if not isinstance(value, complex) else abs(value)
     if not math.isfinite(size):
         return f"{size:g}{unit and ' ' + unit}" if not math.isnan(size) else "none"

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 else:
-    # Annotations name them, of other modules, too; matplotlib is loaded where something is drawn.
+    # Names for annotations, here and in other modules; matplotlib is loaded only where something is drawn.
     Artist = Axes = Figure = Any
 
 # Okabe and Ito's colours, which colour-blind people can tell apart; without yellow, pale on white.
@@ -170,8 +170,8 @@ def _marks(ax: Axes) -> Iterator[Artist]:
 def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
     """Put a label before the names of what was drawn last, and change its colours if they are taken.
 
-    Each colour of `COLOURS` that it has moves on by the number of colours taken, or to a free colour if that
-    leads beyond the last one.
+    Its colours move on in `COLOURS` by the number of colours taken, or to free colours if one would move
+    beyond the last.
     """
     new = [mark for mark in _marks(ax) if not any(mark is old for old in before)]
     taken, own = _colours(before), _colours(new)

@@ -48,7 +48,7 @@ def seal(content: Mapping[str, Any]) -> dict[str, Any]:
     Returns
     -------
     dict
-        To be written as JSON, in any layout.
+        The record, to be written as JSON in any layout.
     """
     versioned = {**content, "schema": SCHEMA}
     return {**versioned, "checksum": _checksum(versioned)}
@@ -70,7 +70,7 @@ def unseal(text: str | bytes) -> dict[str, Any]:
     Raises
     ------
     DamagedRecord
-        If it is not that, to the last digit.
+        If the text is not a record as `seal` made it, to the last digit.
     """
     try:
         record = json.loads(text)
@@ -99,7 +99,8 @@ class Saved:
     Attributes
     ----------
     kept : tuple of str
-        What is computed when asked for, and saved with the result once it is; numbers are anyway.
+        Names of cached properties to save with the result once they are computed; numbers and arrays are
+        saved in any case.
     """
 
     kept: ClassVar[tuple[str, ...]] = ()
@@ -144,7 +145,7 @@ class Saved:
         Raises
         ------
         ValueError
-            If the path is none.
+            If `path` is neither text nor a path.
         FileExistsError
             If the file exists and `force` is not set.
         OSError
@@ -173,10 +174,10 @@ def load(path: str | Path) -> Any:
     Raises
     ------
     ValueError
-        If the path is none, or the file is damaged, was changed, holds no result, or was written by a
-        version whose results had other fields.
+        If `path` is neither text nor a path, or the file is damaged, was changed, holds no result, or was
+        written by a version whose results had other fields.
     OSError
-        If it cannot be read.
+        If the file cannot be read.
 
     Examples
     --------
@@ -218,9 +219,9 @@ _MOST_PARTS = 6  # largest number of parts of a headline, if a class of results 
 
 
 class Shown(OneLine, InDisplayUnits):
-    """Base of dataclasses with tables and pictures; their `plot`, if they have one, takes their label.
+    """Base of dataclasses with tables and pictures; a method `plot` of theirs gets the option `label`.
 
-    The tables are those in the views of the package of the class, which stand at the edge.
+    The tables are made by the views of the class's package: see `beamdyn.common.results.shown_by`.
     """
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -231,7 +232,7 @@ class Shown(OneLine, InDisplayUnits):
     def headline(self) -> Iterable[str]:
         """Yield the parts of the result's one-line summary: main numbers with units, error, and cautions.
 
-        Of a class that says nothing else, the first public fields, and how many warnings there are.
+        By default, yield the first public fields, and how many warnings there are.
         """
         names = [f.name for f in dataclasses.fields(self) if f.repr]  # pyright: ignore[reportArgumentType]
         names = [name for name in names if name not in ("provenance", "warnings", "message")]
@@ -261,7 +262,7 @@ class Shown(OneLine, InDisplayUnits):
         return _views().text_of(_shown_in(self, units))
 
     def to_pandas(self, units: Units = None) -> DataFrame:
-        """Return the columns of the CSV file as a data frame of pandas, indexed by what they are given over.
+        """Return the columns of the CSV file as a data frame of pandas, indexed by what varies (speed).
 
         Its ``attrs`` hold the class, the label, the warnings and the provenance of the result.
 
@@ -283,7 +284,7 @@ class Shown(OneLine, InDisplayUnits):
 
 
 def _views() -> Any:
-    """Import the module that shows results, which the package has named, when it is needed."""
+    """Import the module that shows results, named in `MEDIA`, only when it is needed."""
     return import_module(MEDIA[-1])
 
 
@@ -305,7 +306,7 @@ class Provenance:
     method : str
         The discretization, with its size.
     compared_with : str
-        The coarser one from which the error was estimated.
+        The coarser discretization from which the error was estimated.
     wall_time : float
         Time taken [s].
     """

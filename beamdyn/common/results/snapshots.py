@@ -124,7 +124,7 @@ def decode(value: Any) -> Any:
     Raises
     ------
     ValueError
-        If it names a class that this version does not have, or that has other fields.
+        If `value` names a class that this version does not have, or that has other fields.
     """
     if not isinstance(value, dict):
         return value

@@ -25,7 +25,7 @@ NO_ANSWER = "no answer"  # no answer to some of many cases, or to a part of the 
 INPUT = "input"  # something given has no effect, or is doubtful
 EXCITATION = "excitation"  # nothing moves the beam, or what moves it is doubtful
 IN_LINE = "in line"  # loads act exactly in line, where any offset changes the answer
-LIMITS = "limits"  # limits of other validity: large strain, few vibrations
+LIMITS = "limits"  # other limits of validity: large strain, few vibrations
 
 
 class Speeds(Part):
@@ -186,7 +186,7 @@ _within_another: ContextVar[bool] = ContextVar("within_another", default=False)
 
 
 class OutsideLinearTheory(UserWarning):
-    """A number of linear theory about a beam that bends further than this theory allows.
+    """Warning that a number of linear theory is about a beam that bends further than this theory allows.
 
     Analyses issue this warning of Python, once each, where the beam bends by more than a
     tenth of its length; the result says so in its ``warnings``, too.  With ``physics="auto"`` of the scene,
@@ -194,7 +194,7 @@ class OutsideLinearTheory(UserWarning):
 
     Examples
     --------
-    To stop where one is issued, and to go on without:
+    To stop where this warning is issued, and to go on without it:
 
     >>> import warnings
     >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
@@ -237,7 +237,7 @@ def _announcing(analysis: Callable[Arguments, Answer], remedy: str) -> Callable[
 
 
 def announce(sentences: tuple[str, ...], remedy: str = _REMEDY) -> None:
-    """Issue what a result says of lying outside linear theory, as warnings for the caller of the caller."""
+    """Issue statements that a result lies outside linear theory as warnings to the caller's caller."""
     if not _within_another.get():
         for sentence in of_kind(sentences, OUTSIDE):
             warnings.warn(f"{sentence}{remedy}", OutsideLinearTheory, stacklevel=3)

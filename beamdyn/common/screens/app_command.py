@@ -25,7 +25,7 @@ def add_command(app: App, program: Callable[[], Program], port: int, about: str)
     app : App
         The command line.
     program : callable
-        Makes the interactive program; it is called when it is known that it can be shown.
+        Makes the interactive program; called only when it is known that the program can be shown.
     port : int
         Port, if no other is asked for.
     about : str

@@ -104,7 +104,7 @@ class LinkedDesign:
         Raises
         ------
         ConfigError
-            If it holds none; the design itself is not checked.
+            If the fragment holds no design; the design itself is not checked.
         """
         packed = fragment.removeprefix("#").removeprefix("design=")
         if len(packed) > _LONGEST_LINK:

@@ -16,7 +16,7 @@ from beamdyn.common.screens.chart_options import marks_of, options_of
 from beamdyn.common.screens.page_writer import PageWriter
 
 _HOW = "A chart that has the focus is zoomed by + and -, moved by the arrow keys, and shown whole by 0."
-# While something is held the toolbox is hidden, as it would be made anew for each picture.
+# While a handle or slider is held the toolbox is hidden, as it would be made anew for each picture.
 _NO_TOOLBOX = {"toolbox": {"show": False}}
 
 
@@ -40,7 +40,7 @@ class _ShownChart:
         return self.element.id
 
     def fill(self, chart: Chart, options: dict[str, Any]) -> None:
-        """Show another chart, of which these are the options without its cursor."""
+        """Show another chart; `options` are those of the chart without its cursor."""
         self.heading.set_text(chart.title)
         series = [marks_of(chart), *options["series"][1:]]
         last, self._options = self._options, _saved_by_script(options) | {"series": series}
@@ -73,7 +73,7 @@ class ChartBoard:
     words : str
         Description of the charts.
     writer : PageWriter
-        Writer of the charts while something is held.
+        Writer of the charts while a handle or slider is held.
     """
 
     def __init__(self, words: str, writer: PageWriter) -> None:
@@ -96,7 +96,7 @@ class ChartBoard:
         return options_of(replace(chart, cursor=None))
 
     def _sum_of(self, i: int, options: dict[str, Any], last: dict[str, Any]) -> int:
-        """The checksum of a chart's options; that of the last ones where these are the same."""
+        """Return the checksum of chart i's options; the stored one if they are the `last` options."""
         return self._sums[i] if options is last else crc32(json.dumps(options).encode())
 
     def _elements(self) -> Iterator[Any]:
@@ -127,7 +127,7 @@ class ChartBoard:
 
 
 def _saved_by_script(options: dict[str, Any]) -> dict[str, Any]:
-    """Options by which the page's own script saves the chart."""
+    """Return options by which the page's own script saves the chart."""
     toolbox = options["toolbox"]
     feature = toolbox["feature"]
     saving = feature["mySave"] | {":onclick": "saveChart"}

@@ -20,7 +20,7 @@ _COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")
 # Colours of a chart that drawings do not have, on light ground; the page sets those on dark ground.
 _MORE = {"chart-4": "#a3527f", "chart-5": "#806000", "chart-6": "#6a35c9"}
 _MORE_DARK = {"chart-4": "#e59ac2", "chart-5": "#f5d76e", "chart-6": "#a98bff"}
-# Steps of an axis to which the chart component rounds, with the leading digits below which each holds.
+# Rounding of an axis' step by the chart component: leading digits below the second number become the first.
 _STEPS = ((1, 1.5), (2, 2.5), (3, 4.0), (5, 7.0), (10, math.inf))
 _POWERS = "(x) => (x >= 1e-3 && x < 1e5) ? String(x) : x.toExponential(0).replace('+', '')"
 _FEW = 8  # largest number of decades of an axis at which small ticks are still drawn
@@ -89,7 +89,7 @@ def options_of(chart: Chart) -> dict[str, Any]:
             "inactiveColor": _paint("ghost"),
             "data": [*lines, *({"name": each.name} for each in chart.points)],
         },
-        "tooltip": {  # the tooltip shows all curves at the pointer's x, or one point where x has decades
+        "tooltip": {  # shows all curves at the pointer's x, or one point where x is logarithmic
             "trigger": "item" if chart.x.logarithmic else "axis",
             "renderMode": "richText",  # no HTML, so that names are shown as they are
             "confine": True,
@@ -132,7 +132,7 @@ def _letters(size: int) -> dict[str, Any]:
 
 
 def _axis(axis: ChartAxis, values: Sequence[Any], upright: bool) -> dict[str, Any]:
-    """Make the options of an axis; an axis of decades has numbers at powers of ten unless they overlap."""
+    """Make the options of an axis; a logarithmic axis has numbers at powers of ten unless they overlap."""
     line = {"lineStyle": {"color": _paint("axis")}}
     label: dict[str, Any] = _letters(_PALE) | {"hideOverlap": True}
     tick: dict[str, Any] = {"show": True} | line
@@ -181,7 +181,7 @@ def _is_tick(low: float, high: float) -> bool:
 
 
 def _decades(axis: ChartAxis, values: Sequence[Any]) -> tuple[float, float]:
-    """Return the ends of an axis of decades: as given, else whole decades around the values."""
+    """Return the ends of a logarithmic axis: as given, else whole decades around the values."""
     known = np.concatenate([np.asarray(each, dtype=float).ravel() for each in values] or [np.empty(0)])
     known = np.log10(known[np.isfinite(known) & (known > 0)])
     known = known if len(known) else np.zeros(1)

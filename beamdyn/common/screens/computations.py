@@ -28,16 +28,16 @@ class LatestComputation:
     fail : callable
         Called with the error if `settle` raises one: the result cannot be shown.
     tell : callable
-        Called when `slow` or `busy` has changed, and each second of what takes long.
+        Called when `slow` or `busy` has changed, and each second during a long computation.
 
     Attributes
     ----------
     slow : bool
         Whether a computation has taken so long that the page should say so.
     waited : float
-        How long the one under way has taken [s].
+        Time that the running computation has taken so far [s].
     usual : float
-        How long the last one that took long has taken in all [s]; 0 if none has.
+        Time that the last long computation took in all [s]; 0 if there has been none.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class LatestComputation:
         self._show, self._fail, self._tell = settle, fail, tell
         self._wanted: Callable[[], asyncio.Future[Any]] | None = None
         self._future: asyncio.Future[Any] | None = None
-        self._gives_way = self._wanted_gives_way = False  # what is under way, and what follows it
+        self._gives_way = self._wanted_gives_way = False  # for the running computation and the next one
         self._task: asyncio.Task[None] | None = None
 
     @property
@@ -59,14 +59,14 @@ class LatestComputation:
         return self._task is not None
 
     def want(self, start: Callable[[], asyncio.Future[Any]], gives_way: bool = False) -> None:
-        """Start a computation, or let it follow the one under way in place of another that waited.
+        """Start a computation, or let it follow the running one in place of another that waited.
 
         Parameters
         ----------
         start : callable
             ``start()``: the future of the computation.
         gives_way : bool
-            Whether it takes long and is ended as soon as something newer is wanted.
+            Whether the computation takes long, and is ended as soon as a newer one is wanted.
         """
         self._wanted, self._wanted_gives_way = start, gives_way
         if self._task is not None and self._future is not None and self._gives_way:
@@ -162,7 +162,7 @@ class BusyRow:
     cancel : callable
         Cancels the computation.
     words : str
-        What is computed, for those who do not see it; empty where that is said beside it.
+        What is computed, for screen readers; empty where a text beside the row says it.
     """
 
     def __init__(self, cancel: Callable[[], object], words: str = "") -> None:
@@ -181,9 +181,9 @@ class BusyRow:
 
 
 class FileMaking:
-    """A file that is made for download: its name while that takes long, for how long, and a button to end it.
+    """Making of files for download, with a row while it takes long: name, time taken, a button to cancel it.
 
-    A file that is asked for meanwhile follows.
+    A file that is asked for meanwhile is made next.
     """
 
     def __init__(self) -> None:
@@ -199,7 +199,7 @@ class FileMaking:
         self._way.want(start)
 
     def close(self) -> None:
-        """End what is under way: the page is gone."""
+        """Cancel the file that is being made, as the page is gone."""
         self._way.cancel()
 
     def _tell(self) -> None:
@@ -228,7 +228,7 @@ async def download(making: asyncio.Future[Any], name: str) -> None:
     Parameters
     ----------
     making : asyncio.Future
-        From `RunsTasks.submit`.
+        Future of the content, from `RunsTasks.submit`.
     name : str
         Name of the file.
     """

@@ -16,7 +16,7 @@ _OFTEN = (
     0.03  # least time between two messages of a dragged slider, or between two pictures of a played one [s]
 )
 _LONGEST = 0.2  # longest time by which one picture of a played motion advances, so that it does not jump [s]
-_REST = 0.3  # time after a release or a step by key, after which a slider is at rest [s]
+_REST = 0.3  # time after a release or a step by key from which a slider counts as at rest [s]
 _STILL = 1.0  # time for which each picture stays where reduced motion is preferred [s]
 _STILLS = 4  # number of pictures from one end to the other where reduced motion is preferred
 _PATIENCE = 3.0  # time without painting, after which a page counts as not visible [s]
@@ -63,11 +63,11 @@ class Player:
     Parameters
     ----------
     motion : Slider
-        Its name, and its positions over time.
+        Name of the slider, and its positions over time.
     writer : PageWriter
         Writes into the page while it plays or is dragged.
     turned : callable
-        Called when it has been moved, or paused.
+        Called when the slider has been moved, or paused.
     """
 
     def __init__(self, motion: Slider, writer: PageWriter, turned: Callable[[], object]) -> None:

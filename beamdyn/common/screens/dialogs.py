@@ -100,9 +100,9 @@ class DesignsDialog:
     def show(
         self, kept: Mapping[str, tuple[str, Entries]], examples: Sequence[Example], document: Document
     ) -> None:
-        """Open the dialog with these designs; only those of the document in front can be compared.
+        """Open the dialog with named designs and examples; only those of `document` can be compared.
 
-        An example opens in that if it reads the same kind of file as the example's own.
+        An example opens in `document` if that reads the same kind of file as the example's own document.
         """
         self._said.set_text("")
         self._list.clear()

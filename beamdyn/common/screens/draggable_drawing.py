@@ -26,11 +26,11 @@ class DraggableDrawing:
     Parameters
     ----------
     words : str
-        What the drawing shows, for those who do not see it.
+        What the drawing shows, for screen readers.
     moved : callable
         Called when a handle is moved: handle, its new place (x, y) [m], whether it has been released.
     writer : PageWriter
-        Writes it into the page while something is held.
+        Writes the drawing into the page while a handle or slider is held.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ class DraggableDrawing:
         self._stepped_to.clear()
 
     async def _pulled(self, i: int, event: Any) -> None:
-        """Move a handle to its latest place received; places that arrive while one is drawn are skipped."""
+        """Move a handle to its latest place received; places that arrive during a drawing may be skipped."""
         x, y, done = event.args
         self._wanted = (i, (x, y), done)
         if self._follows:

@@ -67,10 +67,7 @@ def _accepted(program: Program) -> Iterator[Example]:
 
 
 def _title(text: str, name: str) -> str:
-    """Return the first sentence of the comment at a file's head, shortened to whole clauses.
-
-    The file's name where there is none.
-    """
+    """Return the first sentence of a file's comment at its head, shortened to whole clauses; or its name."""
     lines = takewhile(lambda line: line.startswith("#"), text.splitlines())
     words = _SENTENCE.split(" ".join(line.lstrip("# ") for line in lines))[0]
     if len(words) > _LONGEST:

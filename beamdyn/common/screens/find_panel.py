@@ -1,4 +1,4 @@
-"""The panel of questions backwards on a screen: which value of an input gives a result its wanted value."""
+"""The panel of inverse questions on a screen: which value of an input gives a result its wanted value."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _WITHIN = "from:to:samples unit; if empty, from a tenth to ten times its value"
 
 
 class FindPanel:
-    """A panel below a screen's results for questions backwards, which can be folded.
+    """A panel below a screen's results for inverse questions, which can be folded.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class FindPanel:
         self._busy.show(self._way.slow, self._way.words)
 
     def _settle(self, future: asyncio.Future[str], last: bool) -> None:
-        """Show the inputs that a question backwards has found, or why it has found none."""
+        """Show the inputs that an inverse question has found, or why it has found none."""
         if self._found.is_deleted:
             return
         self._tell()

@@ -16,7 +16,7 @@ from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screen_parts import Drag, Preset
 from beamdyn.common.screens.screens import Screen
 
-_FEW = 3  # least number of fields that are folded; a table of defaults with as many or fewer is open at first
+_FEW = 3  # least number of fields to fold; tables with so few fields, all with defaults, are open at first
 
 
 class Form:
@@ -35,7 +35,7 @@ class Form:
     hold : callable
         Called with True when a slider is taken hold of, with False when it is let go.
     writer : PageWriter
-        Writes into the fields while something is held.
+        Writes into the fields while a handle or slider is held.
 
     Attributes
     ----------

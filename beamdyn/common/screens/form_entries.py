@@ -56,7 +56,7 @@ def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
 def _lined(value: Any) -> str:
     """Write a value as TOML; a list of tables, or of rows of plain numbers, has a line for each.
 
-    Points are no such rows: their coordinates have units.
+    A list of points stays on one line: their coordinates have units.
     """
     rows = _is_list_of(list, value) and any(isinstance(cell, int | float) for cell in value[-1])
     if rows or _is_list_of(dict, value):
@@ -235,7 +235,7 @@ def read_entry(typed: str, entry: Input, unit: str) -> Reading:
     entry : Input
         The input of the field.
     unit : str
-        The unit shown, which a bare number is given.
+        The unit shown at the field, which a bare number is given.
     """
     if isinstance(entry.default, tuple) and len(parts := _PAIR.split(typed.strip("() "))) == 2:
         # These parts are coordinates of a point, such as "26.9, 4" or "26.9 mm, 4 mm".
@@ -296,7 +296,7 @@ def help_of(entry: Input) -> str:
 
 
 def name_words(entry: Input) -> str:
-    """Name of an input in words, with the names of tables nested in its table before it."""
+    """Return the name of an input in words, without that of its outermost table."""
     return name_in_words(entry.path.partition(".")[2] or entry.path)
 
 

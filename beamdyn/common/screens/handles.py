@@ -47,7 +47,7 @@ class Viewport:
     layout: Layout
 
     def place(self, point: Place) -> Place:
-        """Convert a point of the drawing to a place in parts of the picture, from its top left corner."""
+        """Convert a point of the drawing to a place: fractions of the picture from its top left corner."""
         x, y = self.layout.fit.to_paper(point) / self._size
         return float(x), float(y)
 

@@ -58,7 +58,7 @@ class Header:
     files : mapping
         Entries of the menu of files, and the function that each calls.
     do : object
-        The page: what has the methods `undo`, `redo`, `designs`, `stop_comparing` and `keep_look`.
+        The page: an object with the methods `undo`, `redo`, `designs`, `stop_comparing` and `keep_look`.
     """
 
     def __init__(

@@ -179,7 +179,7 @@ class ListEditor:
     changed : callable
         Called with all entries after a change.
     writer : PageWriter
-        Writes into the fields while something is held.
+        Writes into the fields while a handle or slider is held.
     """
 
     def __init__(
@@ -213,7 +213,7 @@ class ListEditor:
         self._advise(entries)
 
     def follow(self, entries: Mapping[str, str]) -> None:
-        """Show entries in the lists."""
+        """Show entries in the lists; leave the sentences on what is missing as they are."""
         rows = [row for group in self._groups for row in group.rows]
         with self._writer.writing(*(field for row in rows for field in row.texts)):
             for shown, group in zip(self._groups, self._lists.groups(entries), strict=True):

@@ -26,7 +26,7 @@ class Cell:
     hint : str
         Description, with the unit.
     usual : str
-        The default that holds where it is empty, in words.
+        The default that holds while the cell is empty, in words.
     """
 
     key: str

@@ -93,7 +93,7 @@ def differing(one: Mapping[str, str], other: Mapping[str, str]) -> frozenset[str
     return frozenset(path for path in {*one, *other} if one.get(path, "") != other.get(path, ""))
 
 
-# An option in the head of a file that `OpenDocument.file` has written.
+# Pattern of an option in the head of a file that `OpenDocument.file` has written.
 _OPTION = re.compile(r"^# (\S+) = (.*)$", re.MULTILINE)
 
 
@@ -116,11 +116,11 @@ class ShownAnswer:
     rest : float
         Time that all but its drawing took [s].
     is_whole : bool
-        Whether tables and notes are those of the answer; else they wait.
+        Whether tables and notes are those of the answer; else they are made later.
     is_rough : bool
         Whether it was solved for the drawing alone, by `Screen.coarser`: it is preliminary.
     picture : str
-        The picture of an answer for the drawing alone, in HTML, on a screen that has one.
+        Picture in HTML that comes with an answer solved for the drawing alone; empty if there is none.
     """
 
     answer: Any
@@ -269,7 +269,7 @@ class OpenDocument:
             Whether to solve as far as the drawing needs it, without tables and notes; else all, also what
             takes time, such as the model error.
         drawn : ShownAnswer, optional
-            What was solved for the drawing of these entries, to be completed.
+            Answer to these entries that was solved for the drawing alone, to be completed.
         """
         entries, inputs = self.needed(screen), self.inputs
         with on_form(partial(heading_of, headings=self.document.headings)):

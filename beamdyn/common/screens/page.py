@@ -33,7 +33,7 @@ def add_style_and_scripts(program: Program) -> None:
 
 
 async def open_page(program: Program, solver: RunsTasks) -> None:
-    """Make the page of a client when it connects: one that never does costs next to nothing.
+    """Make the page of a client when it connects: a client that never connects costs next to nothing.
 
     What the browser has stored is asked for first, so that nobody types into a form that is yet to change.
     """
@@ -98,7 +98,7 @@ class Page:
 
     @property
     def front(self) -> str:
-        """Name of the screen in front."""
+        """Name of the screen in front: the one that the page shows."""
         return str(self._bar.value)
 
     @property
@@ -124,7 +124,7 @@ class Page:
             self.panels[self.front].comparison.solve()
 
     def _edited(self) -> None:
-        """After a change of entries, update which screens are stale, the history and the stored data."""
+        """Update which screens are stale, the history and the stored data, after a change of entries."""
         for panel in self.panels.values():
             panel.state()
         if not any(panel.dragged for panel in self.panels.values()):  # a whole drag counts as one step
@@ -172,7 +172,7 @@ class Page:
     def open(self, text: str, name: str) -> None:
         """Open the text of a file as the first document that accepts it, or show the parser's message.
 
-        The document in front is asked first.
+        The document in front is tried first.
         """
         front = self.current[0]
         accepting = (each for each in (front, *self.program.documents) if each.accepts(text))

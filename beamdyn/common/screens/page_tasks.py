@@ -42,16 +42,19 @@ _FEW = 3
 def solve(
     document: Document, screen: Screen, entries: form_entries.Entries, drawn: ShownAnswer | None = None
 ) -> Outcome:
-    """Solve entries for a screen, with what is drawn first; return the answer, or mistakes by field."""
+    """Solve entries for a screen; return the answer, or mistakes by field.
+
+    An answer to the entries that was solved for the drawing alone, `drawn`, is completed.
+    """
     return _opened(document, entries).attempt(screen, drawn=drawn)
 
 
 def solve_for_drawing(
     document: Document, screen: Screen, entries: form_entries.Entries, narrow: bool = False
 ) -> Outcome:
-    """The answer as far as the drawing needs it, without tables and notes; or what is wrong, by field.
+    """Solve entries as far as the drawing needs it, without tables and notes; or return mistakes by field.
 
-    Where the screen has a picture that other processes make, it comes with the answer, made in haste.
+    Where the screen has a picture that other processes make, it comes with the answer, drawn fast.
     """
     found = _opened(document, entries).attempt(screen, for_drawing=True)
     if screen.picture is None or not isinstance(found, ShownAnswer) or found.is_whole:
@@ -73,7 +76,7 @@ def sweep(
 
 
 def find(document: Document, screen: Screen, entries: form_entries.Entries, sought: str, so_that: str) -> str:
-    """Answer a question backwards on entries, as HTML; or word what is wrong with the question."""
+    """Answer an inverse question (see `Backwards`) as HTML; or word what is wrong with the question."""
     work = _opened(document, entries)
     assert screen.backwards is not None
     try:
@@ -90,7 +93,7 @@ def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
 
 
 def picture_part(document: Document, screen: Screen, answer: Any, narrow: bool) -> str:
-    """The picture of an answer in HTML, for a narrow page or a wide one."""
+    """Return the picture of an answer in HTML, for a narrow page or a wide one."""
     return _picture(screen, answer, narrow)
 
 
@@ -101,7 +104,7 @@ def _picture(screen: Screen, answer: Any, narrow: bool, *finish: Callable[[Figur
 
 
 def rows_file(document: Document, screen: Screen, answer: Any) -> str:
-    """Write the numbers of an answer as a CSV file; for a beam with the model error, which takes time."""
+    """Write the numbers of an answer as a CSV file; for a beam this computes the model error, too."""
     return csv_text(screen.rows(answer))
 
 
@@ -125,7 +128,7 @@ def report(
     title: str,
     sweeps: Shown,
 ) -> str:
-    """Write the HTML report on a document with answers by the names of their screens."""
+    """Write the HTML report on a document, from answers by the names of their screens."""
     work = _opened(document, entries)
     work.answered = dict(answered)
     by_name = {screen.name: screen for screen in document.screens}
@@ -190,9 +193,9 @@ def inputs_html(work: OpenDocument) -> str:
 
 
 def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Screen) -> Outcome:
-    """Return the outcome of a finished computation; if it was cancelled, why, and what had changed.
+    """Return the outcome of a finished computation; if it has none, sentences by field that say why.
 
-    That is said at the fields of the inputs that have changed since the last answer.
+    If the process died or took too long, the inputs that have changed since the last answer are named.
     """
     if future.cancelled():
         return {"": ["Cancelled. The next change of an input is computed again."]}
@@ -219,8 +222,8 @@ def changed(work: OpenDocument, screen: Screen) -> list[str]:
 def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
     """Return the mistakes on a screen, by the path of the field at fault.
 
-    What is about no single field is about all that have changed since the last answer.  So is what is about
-    others than these, if they are few: a top speed is refused since the beam has been made longer.
+    A mistake about no single field stands at all fields that have changed since the last answer.  So do
+    mistakes at unchanged fields if few have changed: a longer beam may cause the refusal of a top speed.
     """
     mistakes = dict(work.mistakes.get(screen.name, {}))
     since = changed(work, screen)

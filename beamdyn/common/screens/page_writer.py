@@ -38,7 +38,7 @@ class PageWriter:
     def writing(self, *elements: Any) -> Iterator[None]:
         """Write changes of elements, made within this context, directly into the page.
 
-        Written are text, content, style, classes and attributes, and the text of a field, but no other
+        Text, content, style, classes and attributes are written, and the text of a field, but no other
         property of a component.
         """
         if not self.is_ahead:
@@ -70,7 +70,7 @@ class PageWriter:
             element.update()
 
     def write(self, element: Any, changed: dict[str, Any]) -> None:
-        """Write changes of an element, in one message with all others until it is sent."""
+        """Collect changes of an element; all that come before the next message are sent in it."""
         if changed and not self._unwritten:
             asyncio.get_running_loop().call_soon(self._send, element.client)
         if changed:

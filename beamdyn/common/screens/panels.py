@@ -34,11 +34,11 @@ class ComparisonPanel:
     work : OpenDocument
         The document.
     screen : Screen
-        Which of its screens.
+        The screen of the document on which the panel stands.
     solver : RunsTasks
         Solves the other design.
     solved : callable
-        Called when that has been solved, or why it cannot be is known.
+        Called when the other design has been solved, or could not be.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class ComparisonPanel:
         self._fold.set_visibility(False)
 
     def solve(self) -> None:
-        """Have the other design solved, unless it is on its way."""
+        """Have the other design solved, unless that is under way."""
         if (other := self.work.other) is None or (self._way.busy and other is self._asked):
             return
         self._asked, given = other, dict(other.entries)
@@ -64,7 +64,7 @@ class ComparisonPanel:
         self._way.want(lambda: self._solver.submit(page_tasks.solve, self.work.document, self.screen, given))
 
     def close(self) -> None:
-        """End what is under way."""
+        """Cancel the solution of the other design."""
         self._way.cancel()
 
     def _tell(self) -> None:
@@ -82,7 +82,7 @@ class ComparisonPanel:
         self._said.set_text(f"The other design cannot be shown: {error}")
 
     def _entitle(self) -> OtherDesign | None:
-        """Show the title where there is another design."""
+        """Show the panel with the other design's name, or hide it; return that design, None without one."""
         if other := self.work.other:
             self._fold.set_text(f"Compared with {other.name}")
         self._fold.set_visibility(other is not None)
@@ -117,7 +117,7 @@ class PicturePanel:
     make : callable
         ``make(answer)`` returns a future of the part as HTML.
     writer : PageWriter
-        Writer of the part while something is held.
+        Writer of the part while a handle or slider is held.
     """
 
     def __init__(self, make: Callable[[Any], asyncio.Future[str]], writer: PageWriter) -> None:

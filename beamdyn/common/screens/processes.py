@@ -24,12 +24,12 @@ from beamdyn.common.screens.screens import Document, Program, Screen
 
 LONGEST = 120.0  # time limit of an answer [s]
 MEMORY = 800  # memory that an answer may take beyond that of an idle process [MB]
-_MOST = max(3, (os.cpu_count() or 1) + 1)  # processes: one is left where others are at long answers
+_MOST = max(3, (os.cpu_count() or 1) + 1)  # number of processes: one stays free during long answers
 _NICE = 5  # niceness of the processes: the server and the browser come first
-_HEEDS = 0.3  # time that a process has to let go of a task that is no longer wanted, before it is ended [s]
-_AGAIN = 0.03  # time after which it is told again [s]: while it imports a module it heeds nothing
+_HEEDS = 0.3  # time that an interrupted process has to stop its task, before it is ended [s]
+_AGAIN = 0.03  # time after which it is interrupted again [s]: imports of modules ignore interruptions
 _SOON_FREE = (
-    0.05  # of that time, as long as the next task waits for this process rather than take another [s]
+    0.05  # time for which the next task waits for an interrupted process before it takes another one [s]
 )
 _SPARE = 0.5  # time after which a task that still runs has an idle process started, for other tasks [s]
 _SERVE = "from beamdyn.common.screens.processes import serve_tasks; serve_tasks({caller})"
@@ -176,7 +176,7 @@ class Processes:
         raise result
 
     async def _interrupt(self, worker: _Worker, asked: asyncio.Future[bytes]) -> None:
-        """Have a process let go of its task, and use it again; end it if it does not."""
+        """Interrupt the task of a process, and free the process for others; end it if it does not stop."""
         try:
             async with asyncio.timeout(_HEEDS):
                 while not asked.done():
@@ -198,9 +198,9 @@ class Processes:
         self.start()
 
     async def _idle_worker(self) -> _Worker:
-        """An idle process; where there is none another is started, and the first that is free is taken.
+        """Return an idle process; if there is none, start one, and return the first that becomes free.
 
-        One that has just been interrupted is soon free, and has done such tasks before.
+        A process that has just been interrupted is soon free, and has run such tasks before.
         """
         if self._interrupted:
             await asyncio.wait(self._interrupted, timeout=_SOON_FREE, return_when=asyncio.FIRST_COMPLETED)
@@ -303,13 +303,13 @@ class _Worker:
         return cls(await asyncio.create_subprocess_exec(*given, stdin=pipe, stdout=pipe, env=environment))
 
     async def ask(self, task: bytes) -> bytes:
-        """The pickled answer to a task; `EOFError` or `OSError` if the process dies."""
+        """Return the pickled answer to a task; raise `EOFError` or `OSError` if the process dies."""
         self._tasks.write(len(task).to_bytes(8, "big") + task)
         await self._tasks.drain()
         return await self._answers.readexactly(int.from_bytes(await self._answers.readexactly(8), "big"))
 
     def interrupt(self) -> None:
-        """Have the process let go of the task that it is at; `OSError` where that cannot be told."""
+        """Interrupt the task of the process; raise `OSError` if the signal cannot be sent."""
         if not hasattr(signal, "SIGUSR1"):  # on Windows
             raise OSError
         self.process.send_signal(signal.SIGUSR1)
@@ -319,11 +319,11 @@ class _Worker:
 
 
 class _NoLongerWanted(BaseException):
-    """Raised amid a task that has been cancelled; no error that a task could take for one of its own."""
+    """Raised within a cancelled task; a BaseException, as the task might catch an `Exception`."""
 
 
 class _Interrupts:
-    """Interrupts the task that this process is at: nothing between two tasks, and no import of a module.
+    """Handler of interruptions of a process's tasks; it ignores those between tasks, or amid an import.
 
     A module whose import is interrupted would stay half imported, for all tasks that follow.
     """
@@ -331,7 +331,7 @@ class _Interrupts:
     _at_task = False
 
     def listen(self) -> None:
-        """Heed the signal of `_Worker.interrupt`."""
+        """Install the handler of the signal that `_Worker.interrupt` sends."""
         if hasattr(signal, "SIGUSR1"):
             signal.signal(signal.SIGUSR1, self._come)
 
@@ -341,7 +341,7 @@ class _Interrupts:
             raise _NoLongerWanted
 
     def run(self, task: Callable[[], Any]) -> Any:
-        """The result of a task; None if it is interrupted, which nobody waits for.
+        """Run a task and return its result; None if it is interrupted, as nobody waits for it then.
 
         The task has context variables of its own, such as those of `few_digits`, which therefore never
         outlive it.
@@ -401,7 +401,7 @@ def _prepare(make: Callable[[], Program], memory: int) -> None:
 
 
 def _do(make: Callable[[], Program], task: Task, document: str, screen: str, *rest: Any) -> Any:
-    """Run a task for the screen of that name."""
+    """Run a task for a document and one of its screens, both given by name."""
     return _INTERRUPTS.run(partial(task, *_screens(make)[document, screen], *rest))
 
 

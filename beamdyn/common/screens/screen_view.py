@@ -84,10 +84,10 @@ class ScreenView:
         self._holds = False  # whether a slider of the form is held
         self._charted = 0.0  # time at which the charts were shown last [s]
         self._player: Player | None = None
-        self._previews = False  # shows a part of an answer, whose rest comes soon
+        self._previews = False  # whether a part of an answer is shown, whose rest comes soon
         self._writer = PageWriter(lambda: self.dragged or self._previews or self._plays)
-        self._asked: Entries = {}  # entries that were given last to be solved
-        # Entries of the last picture that was asked for; a rough answer that brings its own does not count.
+        self._asked: Entries = {}  # entries that were last submitted to be solved
+        # Entries for which a picture was requested last; pictures that come with a rough answer do not count.
         self._pictured: Entries = {}
         self._sketch: SketchPanel | None = None
         with ui.element("div").classes("screen"):
@@ -176,7 +176,7 @@ class ScreenView:
 
     @property
     def _has_shape(self) -> bool:
-        """Whether the form has exactly a field for each present input."""
+        """Whether the form has exactly one field for each present input."""
         return [entry.path for entry in self._fielded] == self._shape
 
     def _listed(self, entries: Entries) -> None:
@@ -209,7 +209,7 @@ class ScreenView:
     def enter(self) -> None:
         """Come to the front: show what other screens have written, and solve if the answer is stale.
 
-        It will be, too, where other entries than these are being solved: after undo, for instance.
+        Also solve if the entries that are being solved are others, as after undo.
         """
         self._put_entries()
         if self._lists is not None:
@@ -244,14 +244,13 @@ class ScreenView:
     def solve(self, held: bool = False) -> None:
         """Have the present entries solved.
 
-        Their answer is shown when it comes, the last one stays until then.
-
-        What changes meanwhile is solved next, its last state alone.
+        The last answer stays until theirs comes.  Entries that change meanwhile are solved next, in their
+        last state alone.
 
         Parameters
         ----------
         held : bool
-            Whether something is being dragged: then as far as the drawing shows it.
+            Whether a handle or slider is being dragged: then only what the drawing shows is solved.
         """
         entries, drawn = dict(self.work.entries), self._answered
         self._asked = self.work.needed(self.screen)
@@ -265,7 +264,7 @@ class ScreenView:
         self.state()
 
     def _draw_first(self, entries: Entries) -> None:
-        """Have entries solved as far as the drawing shows them; the picture of others is not waited for."""
+        """Have entries solved as far as the drawing shows them; cancel a picture that is being made."""
         if self.screen.picture is not None:
             self._made[0].close()
             self._pictured = {}
@@ -313,7 +312,7 @@ class ScreenView:
             self._edited()
 
     def _fail(self, error: Exception) -> None:
-        """Say that an answer cannot be shown; what stands there may be parts of it."""
+        """Say that an answer cannot be shown, though parts of it may already stand on the page."""
         self._previews = False
         self.work.answered.pop(self.screen.name, None)
         self.work.mistakes[self.screen.name] = mistakes = {"": [_NOT_SHOWN.format(error)]}
@@ -390,7 +389,7 @@ class ScreenView:
         elif self.screen.picture is not None and answered.entries != self._pictured:
             self._pictured = answered.entries
             self._made[0].show(answered.answer)
-        if answered.is_whole:  # before, its picture alone follows
+        if answered.is_whole:  # until then only drawing and picture are shown
             self._tables.set_content(html(answered.tables))
             self.comparison.show(answered)
             for more in self._made[self.screen.picture is not None :]:
@@ -448,7 +447,7 @@ class ScreenView:
                 self._edited()
 
     async def _answer_for_file(self) -> ShownAnswer | None:
-        """The answer once it is up to date; where none but a preliminary one comes, None, which is said."""
+        """Wait for an up-to-date answer and return it; notify and return None if it is only preliminary."""
         await self.settled()
         answered = self._answered
         if answered is None or answered.is_rough:

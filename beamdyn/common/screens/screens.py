@@ -55,7 +55,7 @@ class Sweeps:
 
 @dataclass(frozen=True)
 class Backwards:
-    """The questions backwards that a screen offers: which value of an input gives a result a wanted value.
+    """The inverse questions that a screen offers: which value of an input gives a result a wanted value.
 
     Parameters
     ----------
@@ -64,7 +64,8 @@ class Backwards:
     input, result : str
         Path of the input and name of the result that are chosen at first.
     find : callable
-        ``find(tables, sought, so_that)``: what is found, in HTML, for the texts of the command's options.
+        ``find(tables, sought, so_that)``: what is found, in HTML; `sought` names the input, `so_that` says
+        what is wanted.
     """
 
     units: Callable[[Mapping[str, Any]], Mapping[str, str]]
@@ -112,7 +113,7 @@ class FollowingFile(NamedTuple):
     Parameters
     ----------
     words : str
-        What its button says.
+        Label of its button.
     text : callable
         ``text(answer)``: the text of the file.
     """
@@ -150,7 +151,7 @@ class Screen:
     sweeps : Sweeps, optional
         Its sweeps.
     backwards : Backwards, optional
-        Its questions backwards.
+        Its inverse questions.
     drags : tuple of Drag
         Sliders in its form.
     presets : tuple of Preset
@@ -169,7 +170,8 @@ class Screen:
     headline : callable
         ``headline(answer)``: the two to four most important results, each in a few words.
     quick_headline : callable, optional
-        The results without those that take time, for use while something is held; `headline` if not given.
+        The most important results without those that take time, for use while a handle or slider is held;
+        `headline` if not given.
     effort : str
         What makes an answer take long, and what shortens it, in a sentence.
     charts : callable, optional

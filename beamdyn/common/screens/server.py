@@ -84,7 +84,7 @@ class RequestGuard:
             sentence = refusal or "There is no such page; the program's only one is at /."
             await PlainTextResponse(f"{sentence}\n", 403 if refusal else 404)(scope, receive, send)
         else:
-            # Closed before it is accepted, which gives status 403.
+            # A websocket that is closed before it is accepted gets status 403.
             await send({"type": "websocket.close", "code": 1008})
 
     def refusal(self, hosts: list[str], origins: list[str]) -> str:
@@ -150,7 +150,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     ----------
     program : callable
         Makes the program, here and in each process that makes answers: a function of a module.  It is called
-        when it is known that it can be shown.
+        only when it is known that the program can be shown.
     host : str
         Address to listen on.
     port : int
@@ -181,7 +181,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
             show=browser,
             reload=False,
             tailwind=False,  # Tailwind would search the page after each change
-            # Each message would wait for its compression, though the way is short.
+            # Compression would delay each message, and gains little within one computer.
             ws_per_message_deflate=False,
             reconnect_timeout=30.0,
         )

@@ -37,7 +37,7 @@ _FEW = 60  # largest number of values of a sweep whose points are marked on the 
 def sweep_charts(swept: InputSweep) -> list[Chart]:
     """Make the charts of a sweep of one input, one for each unit of its results.
 
-    At their feet is marked where curves have no value.
+    Points at the foot of a chart mark where curves have no value.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ class SweepPanel:
             self._future.cancel()
 
     async def show(self) -> None:
-        """Show the sweep."""
+        """Run the sweep and show its charts."""
         if swept := await self._run():
             self._charts.show(sweep_charts(swept))
             self._shown = self._found[0][0] if self._found else None

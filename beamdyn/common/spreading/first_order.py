@@ -17,7 +17,7 @@ class KnownDerivatives:
     Parameters
     ----------
     rows : mapping of int to pair of ndarray, shape (k,)
-        Derivatives by an input, by its row, and their absolute errors; nan where there is none.
+        By the row of an input: derivatives by it, nan where there is none, and their absolute errors.
     warnings : tuple of str
         Why derivatives by the other inputs are not known.
     """
@@ -61,17 +61,17 @@ def slopes_from(
     nominal : ndarray, shape (k,)
         Answers of the nominal design.
     beside : ndarray, shape (d, 4, k)
-        Answers of designs of which one input is off by the steps.
+        Answers of the designs in which one input is off its nominal value by one of the steps.
     steps : ndarray, shape (d, 4)
-        The steps of each input, in its unit, off its nominal value.
+        Steps of each input from its nominal value, in the input's unit.
     error : ndarray, shape (k,)
         Absolute error of an answer.
 
     Returns
     -------
     Slopes
-        The error is the distance of the slope of the parabola through three of the designs, and what the
-        errors of the answers make of it; nan and inf where a design has no answer.
+        The error is the difference from the slope of a parabola through three of the designs, plus the effect
+        of the answers' errors.  Where a design has no answer the slope is nan, and its error inf.
     """
     with np.errstate(invalid="ignore"):
         changes = beside - nominal
@@ -110,11 +110,11 @@ class FirstOrderRange:
     Parameters
     ----------
     smallest, largest : ndarray, shape (k,)
-        With each input at that end of its tolerance which makes them so [units of the answers].
+        Answers with each input at the end of its tolerance that makes them smallest or largest [their units].
     mean, deviation : ndarray, shape (k,)
         Mean and standard deviation [units of the answers].
     error : ndarray, shape (k,)
-        Largest effect of the errors of the slopes on these four [units of the answers].
+        Largest effect of the errors of the slopes on the four numbers above [units of the answers].
     share : ndarray, shape (d, k)
         Share of each input in the variance.
     slope, slope_error : ndarray, shape (d, k)

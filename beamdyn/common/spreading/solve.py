@@ -36,11 +36,11 @@ class SpreadAnswers:
     error : ndarray, shape (N, k)
         Their estimated relative errors; nan where none is known.
     status : ndarray of str, shape (N, k)
-        Their states.
+        Status of each answer, such as "stable" or "divergence".
     warnings : tuple of str
-        Limits of the answers.
+        Warnings about the answers.
     method, compared_with : str
-        As of `Provenance`.
+        As for `Provenance`.
     """
 
     answers: tuple[str, ...]
@@ -66,7 +66,7 @@ class SpreadAnswers:
         return np.nan_to_num(self.absolute_error, nan=0.0, posinf=np.inf)
 
 
-# A function from inputs of N designs by name, each (N,), to their answers; a ValueError if none has one.
+# A function from the inputs of N designs, (N,) by name, to their answers; a ValueError if no design has one.
 Evaluate = Callable[[dict[str, np.ndarray]], SpreadAnswers]
 Derivatives = Callable[[], KnownDerivatives]
 
@@ -91,7 +91,7 @@ def solve_spread(
     samples, seed : int
         As `check_samples` and `check_seed` return them.
     evaluate : callable
-        Answers designs.
+        Computes the answers of designs.
     derivatives : callable
         Derivatives of the answers at the nominal design, as far as they are known.
     cautions : sequence of str
@@ -149,7 +149,7 @@ class _FurtherAnswers:
 
     evaluate: Evaluate
     inputs: Sequence[SpreadInput]
-    wanted: Any  # mask of the answers that at least one design has: others are not missing
+    wanted: Any  # mask of the answers that at least one design has; only these can be missing
     _count: int = 0
     _without: dict[str, int] = field(default_factory=dict)
     _said: list[str] = field(default_factory=list)
@@ -195,7 +195,7 @@ class _FurtherAnswers:
 
 
 def _subject(sentence: str) -> tuple[str, ...]:
-    """Return a key by which equal subjects are said once: a statement's kind and quantity, or the text."""
+    """Return a key of a warning's subject, which is said once: kind and quantity, or else the text."""
     is_data = isinstance(sentence, Statement)
     return (sentence.kind, sentence.quantity) if is_data else (sentence,)
 

@@ -39,7 +39,7 @@ class Spread(Result):
     nominal : ndarray, shape (k,)
         Answers of the nominal design [`units`].
     error : ndarray, shape (k,)
-        Largest estimated relative error of an answer, of the nominal design, those for slopes and random
+        Largest estimated relative error of an answer over the nominal design, those for slopes and the random
         ones; `worst` has its own.
     first_order : FirstOrderRange
         What the derivatives at the nominal design say: `smallest`, `largest`, `mean`, `deviation`, `share` of
@@ -51,21 +51,21 @@ class Spread(Result):
         How each answer changes with each input, as far as n pairs of random designs show: "rises", "falls",
         "rises and falls", "does not change"; "no answer" where the answer is not known.
     scatter : Scatter
-        Of random designs: `mean`, standard `deviation`, `percentile` (1, 5, 50, 95, 99 %), each with its
-        error, and the share of designs that have `no_answer`; the others are of those that have one.
+        Statistics of random designs: `mean`, standard `deviation` and `percentile` (1, 5, 50, 95, 99 %) over
+        those that have an answer, each with its error; and the share of designs that have `no_answer`.
     indices : SobolIndices
         Sobol' indices: shares of the variance by each input alone (`first`), and with what it does together
         with others (`total`), and their errors.
     states : tuple of dict, length k
         Share of random designs in each state, such as "stable" or "divergence".
     samples, seed : int
-        Number n of designs in each of the 2 + d random samples, and what they follow from.
+        Number n of designs in each of the 2 + d random samples, and the seed that they follow from.
     sampled_inputs : ndarray, shape (2 n, d)
         Random designs, of which the statistics are [SI units of the inputs].
     sampled_answers : ndarray, shape (2 n, k)
         Their answers [`units`]; not finite where there is none.
     warnings : tuple of str
-        Limits of the answers.
+        Warnings about the answers.
     provenance : Provenance
         How it was found.
 

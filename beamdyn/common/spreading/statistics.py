@@ -1,15 +1,15 @@
 """Statistics of the answers of random designs, with their standard errors.
 
 Samples come in blocks whose points were scrambled independently, so that the scatter over blocks says how far
-a mean is from the truth: no assumption on the answers is made, and what the even distribution of the points
-gains is in it.  A statistic is a mean or a ratio of means over blocks, and its error that of its linear part.
+a mean is from the truth: it needs no assumption on the answers, and includes what the even distribution of
+the points gains.  A statistic is a mean or a ratio of means over blocks, its error that of its linear part.
 
 Designs of a spread: random ones for its statistics, the nominal one, and those about it for slopes.
 
 Of random designs there are two samples A and B (n each), and for each input one with the values of A but for
 that input, whose values are those of B (Saltelli et al., Computer Physics Communications 181 (2010) 259).
-Both are points of scrambled Sobol' sequences, `BLOCKS` of them, each scrambled by itself: what they differ by
-says how far a statistic may be from the truth.
+A and B are points of `BLOCKS` Sobol' sequences, each scrambled by itself: the scatter over these blocks says
+how far a statistic may be from the truth.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 BLOCKS = 16
 LEAST, MOST = 128, 2**17  # least and most samples: with fewer, blocks are too small to estimate errors
 MOST_SEED = 2**63
-# Share of the way to an end of the tolerance for slopes: far above rounding, and nearly straight.
+# Largest step for slopes, over the way to an end of the tolerance: so large that rounding does not matter, so
+# small that answers are nearly linear.
 _STEP = 1 / 8
 _ONE_SIDED, _BOTH_SIDES = np.array([0.25, 0.5, 0.75, 1.0]), np.array([-1.0, -0.5, 0.5, 1.0])
 
@@ -50,7 +51,7 @@ def count_designs(inputs: int, samples: int) -> int:
 
 
 def check_seed(seed: object) -> int:
-    """Check the whole number from which the samples follow."""
+    """Return the seed of the samples; refuse anything but a whole number from 0."""
     return count("seed", seed, 0, MOST_SEED)
 
 
@@ -99,8 +100,8 @@ class SpreadDesigns:
     def steps(self) -> np.ndarray:
         """Distances from the nominal values of the designs for slopes, shape (d, 4).
 
-        They go an eighth of the way to both ends of each tolerance; where the nominal value is one of these,
-        to the other.
+        The largest go an eighth of the way to either end of the tolerance; where the nominal value is an end,
+        all go towards the other.
         """
         return np.array([_steps(each) for each in self.inputs])
 
@@ -175,7 +176,7 @@ class Scatter:
         Mean [units of the answers], nan where no design has an answer; and its standard error, inf where
         fewer than 8 of the 16 blocks of samples hold answers.
     deviation, deviation_error : ndarray, shape (k,)
-        Standard deviation and its standard error, likewise [same units].
+        Standard deviation and its standard error, nan and inf as for the mean [same units].
     percentile : ndarray, shape (5, k)
         Answers below which `PERCENTS` of all lie [same units].
     percentile_error : ndarray, shape (5, k)

@@ -180,7 +180,7 @@ def parse_tolerance(name: str, text: str, nominal: float, unit: str, convert: Co
         "+-2%", of the nominal value, or "+-0.01 mm": any value within it is as likely; "+1% -2%" or "+1%"
         alone; "0.19 mm to 0.21 mm"; "sd 1%": normally distributed, with this standard deviation.
     convert : callable
-        Numbers and units to SI.
+        Converts a number and a unit, as written, to SI.
 
     Raises
     ------

@@ -29,7 +29,7 @@ Answer = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def trends_of(random: np.ndarray, error: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Decide how answers change with each input, from pairs of random designs that differ only in it.
+    """Decide how answers change with each input, from pairs of random designs that differ in it alone.
 
     Parameters
     ----------
@@ -121,13 +121,13 @@ def worst_cases(
     inputs : sequence of SpreadInput
         The d inputs.
     trends : ndarray of str, shape (d, k)
-        As of `trends_of`.
+        As `trends_of` returns them.
     designs, answers : ndarray, shapes (N, d) and (N, k)
         Designs that have been answered; those beyond the ends are not looked at.
     error : ndarray, shape (N, k)
         Absolute errors of the answers, by which one must be better than another; nan where none is known.
     answer : callable
-        Answers further designs.
+        Returns the answers of further designs, and their absolute errors.
     """
     low, high = np.array([each.distribution.ends for each in inputs]).T
     nominal, k = np.array([each.nominal for each in inputs]), trends.shape[1]

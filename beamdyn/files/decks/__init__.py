@@ -1,1 +1,1 @@
-"""Blades of other programs: read, audited, and written as scenes."""
+"""Decks, the input files of other programs for blades: read, audited, and written as scenes."""

@@ -33,7 +33,7 @@ class ModePolynomial:
     Parameters
     ----------
     mode : str
-        Such as "flap 1".
+        Name of the mode, such as "flap 1".
     coefficients : tuple of float
         Coefficients of the powers 2 to 6; they add up to 1, the deflection at the tip.
     difference : float
@@ -174,20 +174,20 @@ class PropertyStep:
 
 @dataclass(frozen=True)
 class ShapeCheck:
-    """A mode shape that a deck states, beside that of its own stations.
+    """A mode shape that a deck states, beside the one computed from its stations.
 
     Parameters
     ----------
     mode : str
-        Such as "flap 1".
+        Name of the mode, such as "flap 1".
     coefficient_sum : float
         Sum of its nondimensional coefficients: its deflection at the tip, which should be 1.
     difference : float
         Largest difference of the two shapes, relative to the tip deflection, which is the same.
     place : float
-        Where it is, x/L.
+        Position x/L of the largest difference.
     frequency : float
-        Frequency of the mode of the stations [Hz].
+        Frequency of the computed mode [Hz].
 
     Examples
     --------

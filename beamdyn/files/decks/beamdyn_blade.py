@@ -180,7 +180,7 @@ def _interpolated(at: np.ndarray, x: np.ndarray, values: np.ndarray) -> np.ndarr
 
 
 def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
-    """Read a blade file, the matrices of the sections: of a straight blade without twist.
+    """Read a blade file alone: matrices of the sections of a straight blade without twist.
 
     Parameters
     ----------
@@ -238,7 +238,7 @@ def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], l
 def _check_matrices(
     text: DataText, name: str, stations: np.ndarray, lines: Sequence[int], matrices: np.ndarray
 ) -> None:
-    """Refuse matrices that are not symmetric and positive definite, or a mass that no section has."""
+    """Refuse matrices that are not symmetric and positive definite, and mass matrices of no rigid section."""
     ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
     checks = [
         (asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"),

@@ -47,7 +47,7 @@ class DeckColumn:
 
 @dataclass(frozen=True)
 class Stations:
-    """The table of a deck.
+    """The table of stations in a deck.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Stations:
     units : dict of str
         Unit of each column.
     lines : tuple of int, shape (n,)
-        Line of each row.
+        Line number of each row in the file.
     """
 
     columns: dict[str, np.ndarray]

@@ -3,12 +3,12 @@
 Positive twist and pitch turn the section about -z (z from root to tip), x being downwind and y to the
 trailing edge, as in ElastoDyn: BModes turns the angles and the offsets along y round when it passes to the
 axes of a helicopter blade (y to the leading edge, nose-up positive), which it computes in.  An offset along y
-is thus minus one in the direction across here.
+is thus minus the offset in this package's direction across.
 
 Offsets in its files are from the reference axis; moments of inertia are about the centre of mass, as the
-programs write them that make such files.  Here the axis of a blade is the line of shear centres, to which
-offsets are converted.  Its bending stiffnesses are about the shear centre, as it computes with them:
-beside a centre of tension at a distance e from it they have E A e^2 more than about that.
+programs that make such files write them.  Here the axis of a blade is the line of shear centres, to which
+offsets are converted.  BModes takes bending stiffnesses about the shear centre: where the centre of tension
+is at a distance e from it, they exceed those about the centre of tension by E A e^2.
 """
 
 from __future__ import annotations
@@ -141,7 +141,7 @@ def _tip_body(
 def read_section_file(
     text: data_text.DataText, length: float, hub_radius: float, multipliers: dict[str, float] | None = None
 ) -> Blade:
-    """Read section properties.
+    """Read a file of section properties.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def read_section_file(
     length, hub_radius : float
         Length of the blade and radius of the hub [m].
     multipliers : dict of float, optional
-        By name, of the main file; 1 without it.
+        Multipliers of the main file, by name; 1 for those not given.
 
     Raises
     ------
@@ -188,10 +188,7 @@ def _read_sections(
 def _from_shear_centre(
     text: data_text.DataText, table: Stations, columns: dict[str, np.ndarray], *offsets: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Convert columns from the shear centre by `convert_offsets`.
-
-    An error names the line without stiffness.
-    """
+    """Return the columns that `convert_offsets` computes; refuse stiffnesses that are then not above 0."""
     edge = columns["second_bending_stiffness"]
     axial = columns.get("axial_stiffness", np.zeros_like(edge))
     converted = convert_offsets(edge, axial, *offsets)
@@ -205,7 +202,7 @@ def _from_shear_centre(
 def convert_offsets(
     edge: np.ndarray, axial: np.ndarray, mass: np.ndarray, shear: np.ndarray, tension: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Compute offsets from the shear centre across, and the stiffness about the centre of tension.
+    """Compute offsets across from the shear centre, and the stiffness about the centre of tension.
 
     Parameters
     ----------

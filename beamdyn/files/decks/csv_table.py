@@ -35,14 +35,14 @@ def needs_hub_radius(text: DataText) -> bool:
 
 
 def read_csv_blade(text: DataText, length: float, hub_radius: float) -> Blade:
-    """Read a blade.
+    """Read a blade from a table.
 
     Parameters
     ----------
     text : DataText
         The file.
     length, hub_radius : float
-        Length and radius of the hub [m], where the table does not say them.
+        Length of the blade and radius of the hub [m], where the table does not say them.
 
     Raises
     ------
