@@ -25,20 +25,20 @@ from beamdyn.steady.response import steady_response
 from beamdyn.steady.road_harvest import check_road, harvest_on_road
 
 _DECADES, _GRID = 4.0, 33  # decades and number of resistances tried first, on either side of 1/(omega C)
-_WIDTH, _HEIGHT = 7.5, 4.8  # of the picture [inch]
+_WIDTH, _HEIGHT = 7.5, 4.8  # width and height of the picture [inch]
 _TOLERANCE = 1e-6  # relative accuracy to which the best resistance is sought
 
 
 @dataclass(frozen=True, kw_only=True)
 class BestResistance(Harvest):
-    """What is harvested at a speed with the best load resistance, which is that of its scene.
+    """Harvested power at one speed with the best load resistance, which the result's scene has.
 
     Parameters
     ----------
     resistances : ndarray, shape (R,)
         Resistances that were tried [ohm], ascending.
     tried_power : ndarray, shape (R,)
-        Mean power with the tried resistances, that by a random road included [W].
+        Mean power with each tried resistance, including that by a random road [W].
 
     Examples
     --------
@@ -88,7 +88,7 @@ def best_resistance(
     """Find the load resistance of the largest mean power at a speed, by bounded search.
 
     Resistances are tried over four decades either side of 1/(omega C), with the first natural frequency, and
-    the best is refined by Brent's method, to 1e-6 for the modes that are kept.
+    the best is refined by Brent's method, to a relative accuracy of 1e-6.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def best_resistance(
     Returns
     -------
     BestResistance
-        At that speed, of the scene with the best resistance.
+        The harvest at that speed, of the scene with the best resistance.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def best_resistance(
         resistances=resistances,
         tried_power=power,
     )
-    vars(made)["again"] = vars(found)["again"]  # the model error is that with this resistance
+    vars(made)["again"] = vars(found)["again"]  # the model error is computed with this resistance
     return made
 
 

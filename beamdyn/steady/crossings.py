@@ -24,7 +24,7 @@ from beamdyn.scene.scene import Scene
 
 KINDS = ("forced", "parametric")
 _STEP = 1e-4  # relative step of the speed for the slope of the frequencies
-_FURTHER_MODES = 2  # number of further modes, with which the modes that are sought may exchange their order
+_FURTHER_MODES = 2  # number of modes beyond those sought, which may change places with them
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
     speeds : ndarray, shape (S,)
         Speeds of the locus [rad/s], up to the top speed or the critical one.
     frequency : ndarray, shape (S, m)
-        Natural frequencies [Hz], numbered at rest.
+        Natural frequencies of m modes [Hz], in the order at rest.
     order : int
         Highest order of the lines that were sought.
     unlisted : int

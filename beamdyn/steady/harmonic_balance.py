@@ -12,9 +12,9 @@ without damping, each harmonic h of each mode a stands by itself:
 
     (k_a - Omega_h^2 + i Omega_h c_aa) y_ha = f_ha - (what couples it with other harmonics and modes)
 
-The coupling is by the periodic coefficients and by damping, and weak beside the factor on the left but near
-a resonance.  So the equations are solved with the last response on the right-hand side, again and again: each
-time multiplies the error by the ratio of the two, some 1e-3, and a few times reach the rounding error.
+The coupling by the periodic coefficients and by damping is weak beside the factor on the left, except near
+a resonance.  So the equations are solved iteratively, with the last response on the right-hand side: each
+iteration multiplies the error by the ratio of coupling to factor, some 1e-3, and a few reach rounding error.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _MOST_ENTRIES = 10**7  # number of matrix entries that are solved at once: 80 MB
 # Largest number of terms of the series, which is given up unless each term shrinks the error to a twentieth.
 _MOST_TERMS = 12
 _SETTLED = 4 * np.finfo(float).eps  # relative change by a term at which the series has settled
-# Fraction of rates that have settled, below which new arrays cost more than they save.
+# Fraction of settled pairs of rates, below which copying the arrays without them does not pay.
 _WORTH_LEAVING_OUT = 0.25
 
 
@@ -81,7 +81,7 @@ def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: P
     harmonics : sequence of pair, length H
         Harmonics of the other factor, and of the product.
     shift : pair
-        Offset of the harmonic h - h' of the spectrum that is the entry (h, h').
+        Offset: the entry (h, h') of a matrix is the harmonic h - h' + shift of the spectrum.
 
     Returns
     -------
@@ -92,7 +92,7 @@ def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: P
 
 
 def _real_basis(harmonics: Sequence[Pair]) -> np.ndarray:
-    """Build the unitary matrix T from real cosine and sine parts of pairs h, -h to complex harmonics."""
+    """Build the unitary matrix T that turns cosine and sine parts of pairs h, -h into complex harmonics."""
     index = {h: i for i, h in enumerate(harmonics)}
     T = np.zeros((len(index), len(index)), dtype=complex)
     for h, i in index.items():
@@ -216,7 +216,7 @@ class _Products:
     def of(
         cls, order: int, spectrum: np.ndarray, matrix: np.ndarray, mean: MeanModes, harmonics: list[Pair]
     ) -> _Products:
-        """Build the products of a spectrum and its matrices with given harmonics of the response."""
+        """Make the products of one spectrum and its matrices with given harmonics of the response."""
         index = {h: i for i, h in enumerate(harmonics)}
         for (j, k), i in tuple(index.items()):
             index.setdefault((-j, -k), len(harmonics) + i)
@@ -281,7 +281,7 @@ class _Series:
             in_modes = np.einsum("snm,sn->ms", mean.shapes, vector)
             load += select_harmonics(spectrum, h).T[:, None] * in_modes
         products = tuple(_Products.of(*each, mean, harmonics) for each in system.varying)
-        if system.is_free(h).any():  # the least stiff of the mean modes is the flux of a circuit
+        if system.is_free(h).any():  # a circuit's flux lacks stiffness: its static part is taken as 0
             still = np.abs(mean.squared.T) <= _SETTLED * np.abs(mean.squared).max(axis=1)
             resistance = np.where(still & (rate == 0), np.inf, resistance)
         return cls(load, 1 / resistance, rate, damping, products)

@@ -37,7 +37,7 @@ from beamdyn.steady.response import ResponseRequest, steady_response
 from beamdyn.steady.road_harvest import SEVERAL, RoadHarvest, check_road, harvest_on_road
 from beamdyn.steady.vibration import combine_pairs, solve_parts, vibration_of
 
-_DISTANCE = 2.0  # ratio of the error to the difference from the response with more modes, as for the tip
+_DISTANCE = 2.0  # stated error over the difference from a run with more modes, as of the tip deflection
 _RESONANT = 3  # number of modes whose resonances are listed
 _COMPARED = "with more modes, and without the harmonics of the last interaction"
 _POWER = "mean power [W]"
@@ -73,7 +73,7 @@ class Harvest(JudgedByRepeating):
     strain_error : ndarray, shape (S,)
         Estimated error of the strain by the modes left out.
     road : RoadHarvest, optional
-        What a random road adds, where one is given.
+        Harvest that a random road adds, where one is given.
     status : ndarray of str, shape (S,)
         Status as in `SteadyResponse`.
     resonances : ndarray, shape (r,)
@@ -133,7 +133,7 @@ class Harvest(JudgedByRepeating):
 
     @property
     def total_error(self) -> np.ndarray:
-        """Estimated relative error of `total_power`, or without a load the largest: shape (S,)."""
+        """Estimated relative error of `total_power`; without power, the larger of both errors: (S,)."""
         if self.road is None:
             return self.error
         errors, powers = (self.error, self.road.error), (self.power, self.road.power)
@@ -162,7 +162,7 @@ class Harvest(JudgedByRepeating):
         return float(np.abs(self.speeds).max())
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the power over speed, with the resonances, and that on a random road."""
+        """Draw the power over speed, with the resonances, and the power by a random road."""
         curves = {"harvested": self.power}
         if self.road is not None:
             curves = {"by steady motion": self.power, "by a random road": self.road.power}
@@ -249,9 +249,9 @@ def harvest(
     start = perf_counter()
     powers = _powers(scene, speeds, modes, tolerance, discretization, road)
     resonances = _resonances(powers.scene, powers.speeds)
-    provenance = Provenance.since(start, powers.provenance.method, _COMPARED)  # with the resonances' time
+    provenance = Provenance.since(start, powers.provenance.method, _COMPARED)  # time of resonances, too
     found = replace(powers, resonances=resonances, provenance=provenance)
-    vars(found)["again"] = powers.again  # the model error needs no resonances
+    vars(found)["again"] = powers.again  # the model error repeats the powers only
     return found
 
 
@@ -264,7 +264,7 @@ def _powers(
     discretization: DiscretizationChoice,
     road: RoadRoughness | None,
 ) -> Harvest:
-    """Compute the answer of `harvest` but for the resonances, which its model error need not solve again."""
+    """Compute the result of `harvest` without resonances, which its model error need not solve again."""
     start = perf_counter()
     check_scene(scene)
     electrodes = electrodes_of(scene)
@@ -303,7 +303,7 @@ def _powers(
 
 
 def electrodes_of(scene: Scene) -> Electrodes:
-    """Return the electrodes of the beam; refuse a beam without."""
+    """Return the electrodes of the beam; refuse a beam that has none."""
     if scene.beam.electrodes is None:
         remedy = Words(Named("Harvester.on(beam) puts them on", "a table [harvester] puts them on"))
         raise InvalidValue("harvester", None, "the beam carries no piezoelectric layers", remedy)
@@ -313,7 +313,7 @@ def electrodes_of(scene: Scene) -> Electrodes:
 def _warn_of_strain(
     strain: np.ndarray, speeds: np.ndarray, electrodes: Electrodes, how: str
 ) -> Iterator[Statement]:
-    """Yield a warning where the layers pass their limit; `how` says what is counted."""
+    """Yield a warning where the layers' strain passes its limit; `how` words what the strain includes."""
     limit = electrodes.harvester.strain_limit
     with np.errstate(invalid="ignore"):
         beyond = strain > limit
@@ -337,7 +337,7 @@ def _resonances(scene: Scene, speeds: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class HarvestedPowers:
-    """Mean powers and largest voltage, current and strain at S speeds, with an error of the harmonics."""
+    """Mean powers, largest voltage, current and strain, and truncation error of harmonics, at S speeds."""
 
     power: np.ndarray
     input_power: np.ndarray
@@ -378,7 +378,7 @@ class HarvestedPowers:
         )
 
     def apart(self, other: HarvestedPowers) -> np.ndarray:
-        """Compute relative differences (S,) in power or, without a load, voltage or current."""
+        """Compute relative differences (S,) in power or, where there is none, in voltage or current."""
         found = np.zeros(len(self.power))
         for name in ("current", "voltage", "power"):
             own, its = getattr(self, name), getattr(other, name)

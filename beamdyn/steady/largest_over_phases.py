@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 _MAXIMA = 16  # number of largest local maxima of the samples that are refined
-_LEAST_SAMPLE = 0.5  # fraction of the largest, by Riesz' inequality: lower samples are beside lower maxima
+_LEAST_SAMPLE = 0.5  # samples below this fraction of the largest lie beside lower maxima (Riesz' inequality)
 _MOST_STEPS = 20  # largest number of Newton's steps: each squares the error, but some begin near a saddle
 _CONVERGED = 1e-15  # relative gain by a step at which the maximum has converged
 _WEAK = 0.02  # ratio of weak lines' sum to that of all: they shift maxima, but hardly cause any
-# Offset of the samples in steps: symmetric sums have saddles at round phases.
+# Offset of the samples in spacings: symmetric sums have saddles at multiples of the spacing.
 _OFFSET = np.array([0.21, 0.37])
 _MOST_SAMPLES = 2**20  # number of samples evaluated at once: 8 MB
 
@@ -45,9 +45,10 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
 
 
 def _find_strong(size: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
-    """Tell which lines of given sizes (S, H) are strong among all, or among those across the strongest.
+    """Tell which lines of given sizes (S, H) are strong among all, or among those that cross the strongest.
 
-    Along the crests of the strongest line the others alone decide, however weak they are.
+    Lines cross if their harmonics are not multiples of each other.  The strongest line is constant along its
+    crests, so that the lines that cross it decide there, however weak they are.
     """
     j, k = harmonics.T
     crossing = (np.multiply.outer(j, k) != np.multiply.outer(k, j)).astype(float)

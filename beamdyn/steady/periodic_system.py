@@ -79,7 +79,7 @@ class PeriodicSystem:
 
     @cached_property
     def without_stiffness(self) -> np.ndarray:
-        """Whether each coordinate acts only by its rate, as the flux of a circuit does: shape (n,)."""
+        """Whether each coordinate acts only by its time derivative, as the flux of a circuit: shape (n,)."""
         stiff = self.mean[0].any(axis=(0, 1))
         for order, _, matrix in self.varying:
             stiff = stiff | (matrix.any(axis=(0, 1)) & (order == 0))

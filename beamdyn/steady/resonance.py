@@ -34,8 +34,7 @@ from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, per
 
 _HIGHEST_ORDER = 20  # highest order of lines that is accepted: its search takes ten seconds
 _NODES = 400  # number of intervals of speed in which roots are bracketed
-# Number of intervals of speed with large deflection: each speed takes an equilibrium, and the loci are
-# smooth.
+# Number of intervals of speed with large deflection: an equilibrium is solved at each, and loci are smooth.
 _BENT_NODES = 100
 _FURTHER_MODES = 2  # modes computed beyond those sought, as modes of other uncoupled parts may be lower
 
@@ -146,7 +145,7 @@ def _check_stiffness(scene: Scene, critical: float) -> None:
         return
     in_plane = np.abs([np.cos(scene.mount.bending_angle), np.sin(scene.mount.bending_angle)])
     names = ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]
-    # The softest spring.
+    # The softest spring at the root; of equal ones, that nearer the plane of rotation.
     spring, _, name = min(zip(scene.mount.root_stiffnesses, -in_plane, names, strict=False))
     bound, remedy = (
         ("the discretization does not resolve so soft a spring", 'give a stiffer one, or "ritz"')
@@ -256,7 +255,7 @@ class _Loci:
     solver : Eigensolver
         Eigensolver of the modes that are sought, which other modes do not affect.
     places : ndarray of int
-        Coordinates of the solver in the model.
+        Indices of the solver's coordinates among those of the model.
     numbers : ndarray of int, shape (m,)
         Numbers of the modes among all, from 1, in the order at rest.
     top : float
@@ -301,7 +300,7 @@ class _Loci:
         return int(np.count_nonzero(np.diff(self._detunings(line, indices) > 0)))
 
     def coincide(self, line: Line, indices: tuple[int, ...]) -> bool:
-        """Whether a line equals a natural frequency, or the sum of two, at every speed, as at a hinge."""
+        """Tell whether a line equals a natural frequency, or a sum of two, at every speed, as on a hinge."""
         return coincides(self._detunings(line, indices), self.values[:, indices].sum(axis=1))
 
     def describe_coincidence(self, kind: str, line: Line, indices: tuple[int, ...]) -> str:

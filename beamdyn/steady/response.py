@@ -44,9 +44,9 @@ from beamdyn.steady.vibration import (
 )
 
 _MOST_HARMONICS = 20  # largest number of interactions accepted, which takes half a minute
-_HIGHEST_SPEED = 0.99  # ratio of the modal basis' highest speed to the critical speed
+_HIGHEST_SPEED = 0.99  # largest speed at which modes of a basis are computed, over the critical speed
 _MOST_MODES = 13  # largest number of modes of "auto", at each of two speeds
-# Number of modes of the first basis about equilibria, as each basis solves the equilibria anew.
+# First number of modes tried about equilibria; not small, as each larger basis solves them anew.
 _FIRST_ABOUT_EQUILIBRIA = 6
 # Number of speeds at which the model error is computed, in addition to that of the largest amplitude.
 _MOST_JUDGED = 4
@@ -88,8 +88,8 @@ class SteadyResponse(StatesModelError):
     line_frequency : ndarray, shape (S, l)
         Frequencies of the lines [Hz].
     line_amplitude, line_amplitude_across : ndarray of complex, shape (S, l)
-        Complex tip deflection a of each line [m] in the direction of bending at the root and across it, 0
-        there where one plane is modelled: the tip's is the sum of Re(a exp(i (j theta + k chi))).
+        Complex amplitude a of each line [m] in the direction of bending at the root and across it (0 where
+        one plane is modelled): the tip deflection is the sum of Re(a exp(i (j theta + k chi))).
     harmonics : ndarray of int, shape (l, 2)
         Harmonic (j, k) of each line.
     warnings : tuple of str
@@ -251,8 +251,9 @@ def steady_response(
     speeds : sequence of float
         Speeds [rad/s], ascending.
     modes : int or "auto"
-        Number of modes at rest of each field.  "auto" takes modes at the slowest and at the fastest
-        speed: the smallest modal basis whose truncation error meets the tolerance.
+        Number of modes at rest of each uncoupled displacement (such as bending in each plane).  "auto" takes
+        modes at the slowest and at the fastest speed: the smallest modal basis whose truncation error meets
+        the tolerance.
     harmonics : int, optional
         Number of interactions with the periodic stiffness whose lines are kept: 0 keeps the lines of the
         load, 1 also those that their product with the stiffness adds, and so on.  If not given, as many
@@ -346,7 +347,7 @@ class ResponseRequest(FieldsOnly):
         )
 
     def solve_with(self, scene: Scene, _: str = "") -> SolvedValues:
-        """Solve amplitudes of another scene with as many modes, or more if only one has large deflection."""
+        """Solve amplitudes of another scene with as many modes, more if just one has large deflection."""
         modes = self.basis.modes or 1
         other = replace(self, scene=scene, discretization=ensure_size(scene, self.discretization, modes))
         if scene.physics.large_deflection != self.scene.physics.large_deflection:

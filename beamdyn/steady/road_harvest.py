@@ -26,7 +26,7 @@ _TOLERANCE = 1e-5  # tolerance of the linear model that gives the root mean squa
 
 @dataclass(frozen=True)
 class RoadHarvest:
-    """What a random road adds to a `Harvest` at its S speeds, over which the wheel rolls.
+    """Harvest that a random road under the wheel adds to a `Harvest` at its S speeds.
 
     Mean power adds to that of steady motion, as the two are not correlated; root mean squares are those by
     the road alone, about the steady motion.  The parametric term is left out, as in `random_response`.
@@ -68,7 +68,7 @@ class RoadHarvest:
 
 
 def check_road(scene: Scene, road: object) -> None:
-    """Refuse what is no roughness of a road, and a scene without a rolling wheel or without damping."""
+    """Refuse a road that is no `RoadRoughness`, and a scene without a rolling wheel or without damping."""
     kind("road", road, RoadRoughness, 'RoadRoughness("C")')
     random_input(scene, 1.0, cast("RoadRoughness", road), None)
     check_damped(scene)
@@ -123,7 +123,7 @@ def _warnings(
     missed: np.ndarray,
     amplitude: np.ndarray,
 ) -> Iterator[str]:
-    """Yield what limits the answer: deflection, the parametric term, resonances that the road misses."""
+    """Yield warnings: large deflection, the parametric term left out, resonances the road does not excite."""
     reached = np.nan_to_num(amplitude + SEVERAL * road.deflection)
     yield from warn_of_deflection(reached, scene.beam.length, speeds)
     if change.max() > _LARGE:

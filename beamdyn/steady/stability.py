@@ -37,7 +37,7 @@ _ROUNDING = 1e-9  # ratio of real part to largest eigenvalue that is rounding er
 _SETTLED = 1e-6
 _MOST_INTERACTIONS = 4  # largest number of interactions beyond the resonant harmonics
 _MOST_OUTSIDE = 0.1  # largest fraction of an eigenvector in the outermost harmonics
-_SAME_RATE = 0.05  # difference between copies of one growth rate, over the contribution of the resonance
+_SAME_RATE = 0.05  # difference of copies of one growth rate, over the part of the rate by the resonance
 _NEAREST = 8  # number of eigenvalues followed from one number of interactions to the next
 _OFF = 1e-4  # relative offset of the shift from an eigenvalue, at which the shifted matrix would be singular
 _SINGULAR = (
@@ -94,7 +94,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
 
 
 def fastest_growth(parts: Sequence[PeriodicSystem]) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the growth rate (S,) of a free motion of uncoupled parts, and its error [1/s]."""
+    """Compute the largest growth rate (S,) of free motion among uncoupled parts, and its error [1/s]."""
     rates, errors = np.swapaxes([growth_rate(part) for part in parts], 0, 1)
     largest = rates.max(axis=0)
     above, below = errors + (rates - largest), errors + (largest - rates)
@@ -122,7 +122,7 @@ def _largest_real_part(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
 
 
 def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]:
-    """Build the first-order equations of free motion: a constant matrix, and one by harmonic.
+    """Build the first-order equations of free motion: constant A, and spectra c with their matrices B.
 
     y' = (A + sum_h c_h B e^(i h.phi)) y for y = (w q, q'), with w [rad/s] so that both parts have one size.
     """
@@ -146,7 +146,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
 
 
 def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute eigenvalues (S, 2 n) and vectors (S, 2 n, 2 n) of A; without damping from the stiffness."""
+    """Compute eigenvalues (S, 2 n) and vectors (S, 2 n, 2 n) of A; undamped, from mass and stiffness."""
     if system.mean[1].any():
         return np.linalg.eig(A)
     modes, n = MeanModes.of_system(system), system.size
@@ -159,7 +159,7 @@ def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.n
 def _balance(
     sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Scale non-oscillating decaying modes so that they act on others as much as others on them.
+    """Scale decaying modes that do not oscillate to act on others as much as others act on them.
 
     With the scale of oscillating modes, the slow decay of a circuit with a large resistance would act on all
     others by discs that grow with that resistance.
@@ -220,7 +220,7 @@ class _MeanMotion:
         opposite = (h[:, None] == -h[None]).all(axis=2).argmax(axis=1)
         product = np.abs(coupling[..., opposite] * np.swapaxes(coupling, 1, 2))
         own = np.arange(product.shape[1])
-        # H and -h, of opposite gaps, cancel: a varying frequency does not shift the growth rate.
+        # Harmonics h and -h have opposite gaps and cancel: a varying frequency does not shift the rate.
         product[:, own, own] = 0
         with np.errstate(divide="ignore", invalid="ignore"):
             shift = np.where(product > 0, product / np.abs(self.gap(harmonics)), 0.0).sum(axis=(2, 3))
@@ -254,7 +254,7 @@ class _MeanMotion:
         undamped = np.abs(np.real(self.sigma)).max(axis=1) <= _ROUNDING * np.abs(self.sigma).max(axis=1)
         rows = np.flatnonzero(undamped & overlap.any(axis=(1, 2, 3)))
         overlap[rows] = self[rows]._overlap(harmonics, self[rows].shrunk_radius(harmonics))
-        # The levels begin with the fewest interactions.
+        # The first stationary harmonic found is the one by the fewest interactions.
         reached = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)[1:]
         pairs = np.array([h for level in reached for h in level])
         for i in np.flatnonzero(overlap.any(axis=(1, 2, 3))):

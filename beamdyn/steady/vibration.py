@@ -39,7 +39,7 @@ _MOST_UNKNOWNS = 2**17  # number of unknowns solved for at once, which fit the p
 # Order of the tip's axes: the direction of bending, the one across, the one along.
 _ACROSS_THEN_ALONG = [1, 2, 0]
 _ROUNDING = 1e-15  # relative error where no harmonic is neglected
-_NO_FREQUENCY = 1e-8  # ratio of a frequency to a clamped beam's that is 0 within rounding
+_NO_FREQUENCY = 1e-8  # frequency, over a clamped beam's, below which it counts as 0
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class Vibration:
     lost: dict[str, np.ndarray]
 
     def stability(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Compute growth rates of free motion, errors, status, and whether it is undecided: (S,) each."""
+        """Compute growth rates of free motion, errors, status, and whether stability is undecided: (S,)."""
         rate, error = np.full((2, len(self.static)), np.nan)
         if (known := ~self.without_rate).any():
             rate[known], error[known] = fastest_growth([part[known] for part, _ in self.parts])
@@ -145,8 +145,8 @@ def _about_equilibria(
 def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
     """Find coordinates (S, n) in equilibrium at each speed; nan where the branch has none.
 
-    The branch from rest is followed upwards, the other one downwards from the fastest speed that has it: past
-    the end of either, there is no more.
+    The branch that begins at rest is followed to rising speeds, the other branch to falling ones from the
+    fastest speed that has it; the search ends where a branch ends.
     """
     solver = model.solver
     assert isinstance(solver, DeflectedSolver)
@@ -242,7 +242,7 @@ def _solve_harmonics(
             if used:
                 q = solve_harmonic_balance(system[part], harmonics[kept])
                 finer = np.einsum("shn,sdn->sdh", q, tips[part])
-            if used >= first:  # the level before is used only to estimate the error
+            if used >= first:  # the level below `first` only serves to estimate the error
                 total = sizes_of(finer).sum(axis=1)
                 distance = sizes_of(finer - c[part, :, kept]).sum(axis=1) / np.where(total == 0, 1, total)
                 error[part] = _ROUNDING if exact else distance

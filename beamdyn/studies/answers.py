@@ -49,11 +49,11 @@ class DesignAnswers:
     value, error : ndarray, shape (R, S, k)
         Answers, nan where there is none, and their estimated relative errors.
     status : ndarray of str, shape (R, S, k)
-        States.
+        Status of each answer.
     cautions : tuple of Caution
         Limits of the answers.
     method : str
-        How they were found.
+        Method by which the answers were found.
     """
 
     value: np.ndarray
@@ -78,7 +78,7 @@ class AnswerArrays:
     Attributes
     ----------
     value, error : ndarray, shape (N, S, k)
-        As of `DesignAnswers`.
+        Answers and their estimated relative errors, as in `DesignAnswers`.
     """
 
     shape: tuple[int, int, int]
@@ -133,7 +133,7 @@ class AnswerArrays:
 def caution_where(which: Any, kind: str, size: np.ndarray | float, said: str) -> Iterable[Caution]:
     """Make a caution for the selected designs and speeds (R, S), weighted by the largest size.
 
-    None if none is.
+    Nothing is yielded if none is selected.
     """
     if which.any():
         yield Caution(kind, int(which.sum()), float(np.max(np.broadcast_to(size, which.shape)[which])), said)

@@ -29,7 +29,7 @@ from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, warn_of_stati
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
 from beamdyn.studies.similar import PencilFamily, SimilarDesigns
 
-# Target where there is a body at the tip: with a looser one, bases miss modes in layers.
+# Target of the error with a body at the tip: with a looser one, bases miss modes with thin boundary layers.
 _WITH_TIP_BODY = 1e-7
 # Most entries of matrices solved in one batch, so that they fit into the processor's cache.
 _ENTRIES = 300_000
@@ -44,7 +44,7 @@ class BasisAnswers:
     arrays : tuple of ndarray, shape (R, ...)
         The answers.
     met : ndarray of bool, shape (R,)
-        Whether their errors meet the target, or rounding.
+        Whether each design's errors meet the target, or are those of rounding.
     """
 
     arrays: tuple[np.ndarray, ...]
@@ -62,7 +62,7 @@ class Refinement:
     Parameters
     ----------
     reference : Scene
-        Their reference.
+        Reference scene of the designs.
     modes : int
         Number of modes.
     discretization : {"ritz"} or Ritz
@@ -84,7 +84,7 @@ class Refinement:
 
     @property
     def _target(self) -> float:
-        """Relative error to aim at; with a body at the tip, small enough to resolve a layer there."""
+        """Relative error to aim at; with a body at the tip, small enough to resolve its boundary layer."""
         target = DEFAULT_TARGET if self.tolerance is None else self.tolerance
         return target if self.reference.beam.tip is None else min(target, _WITH_TIP_BODY)
 
@@ -112,7 +112,7 @@ class Refinement:
         def solve_finer(pending: np.ndarray) -> np.ndarray | None:
             """Solve the pending designs in the next basis.
 
-            Return those that miss the target, None after the last.
+            Return the designs that miss the target, or None after the last basis.
             """
             nonlocal answers, functions
             if (basis := next(bases, None)) is None:
@@ -171,7 +171,7 @@ class SolvedDesigns:
     error : ndarray, shape (R, S, k)
         Estimated relative error of the frequencies.
     deflection : ndarray, shape (R, S)
-        Static tip deflection by rotation over the length, its size; nan from the critical speed on.
+        Magnitude of the static tip deflection by rotation, over the length; nan from the critical speed on.
     functions : int
         Largest number of functions that was needed.
     """
@@ -194,9 +194,9 @@ def solve_frequencies(
     refinement : Refinement
         The bases, and the number of modes.
     speeds : ndarray, shape (N, S)
-        Speeds of each [rad/s].
+        Speeds of each design [rad/s].
     ratio : ndarray, shape (N,), optional
-        Damping ratio of each; undamped if not given.
+        Damping ratio of each design; undamped if not given.
     """
 
     def solve(rows: np.ndarray, basis: Discretization) -> BasisAnswers:
@@ -261,7 +261,7 @@ def _cautions_of_theory(
 def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
     """Make a caution about designs that have no answer (R, S, k) because of rounding.
 
-    None if all have one.
+    Nothing is yielded if all have one.
     """
     said = Statement(" there is no answer: rounding of the matrices leaves none", kind=NO_ANSWER)
     return caution_where((status == REFUSED).any(axis=2), "d", 0.0, said)
@@ -279,7 +279,7 @@ def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Ca
 def stacks_of(
     designs: SimilarDesigns, rows: np.ndarray, basis: Discretization
 ) -> tuple[PencilStack, PencilStack, PencilFamily, np.ndarray]:
-    """Return the matrices of designs in a basis and in the coarser one, their family and weights."""
+    """Return the matrices of designs in a basis and the coarser one, their `PencilFamily` and weights."""
     family, weights = designs.family(basis), designs.weights(rows)
     stack = family.stack(weights)
     if family.coarse is not None:
@@ -309,7 +309,7 @@ def critical_speeds_of(
     refinement : Refinement
         The bases; its number of modes is not used.
     single : callable
-        Answers the designs of some rows one by one: where no argument and no basis decides.
+        Function that answers designs of given rows one by one, where no proof and no basis has decided.
     """
     shape = designs.count, 1, 1
     value, error, status = np.full(shape, np.inf), np.zeros(shape), np.full(shape, DOES_NOT_BUCKLE)
@@ -348,7 +348,7 @@ def _search(
         found = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top, designs.estimate(basis))
         speed, error, rounding = (values[:, 0, 0] for values in found)
         met = np.isfinite(speed) & (error <= np.maximum(refinement.target_of(basis), 3 * rounding))
-        # Where the beam does not buckle in this basis, a single call decides whether it ever does.
+        # Where the beam does not buckle in this basis, `single` decides whether it ever does.
         return BasisAnswers((speed / time, error, met.astype(float)), met | np.isinf(speed))
 
     speed, error, met = refinement.solve(len(rows), 1, solve)[0] or [np.full(len(rows), np.nan)] * 3
@@ -356,7 +356,7 @@ def _search(
 
 
 def _stiffened(designs: SimilarDesigns) -> np.ndarray:
-    """Whether it is proven, for each design (N,), that rotation stiffens it against every deflection."""
+    """Tell for which designs (N,) it is proven that rotation stiffens them against every deflection."""
     two = designs.reference.physics.planes == 2
     with_inertia = [designs.tip[name] != 0 for name in ("transverse_inertia", "axial_inertia")]
     if designs.reference.beam.point_masses:
@@ -364,12 +364,12 @@ def _stiffened(designs: SimilarDesigns) -> np.ndarray:
     tilting = designs.tip["transverse_inertia"] - designs.tip["axial_inertia"]
     if not two:
         return _is_stiffened(designs, designs.in_plane, tilting)
-    apart = ~np.any(with_inertia, axis=0)  # equal inertias: otherwise the twist turns the body
+    apart = ~np.any(with_inertia, axis=0)  # bodies with inertia are not covered in two planes
     return apart & np.all([_is_stiffened(designs, np.array(c2), np.array(0.0)) for c2 in (0.0, 1.0)], axis=0)
 
 
 def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray) -> np.ndarray:
-    """Whether the form F of `beamdyn.modes.buckling` is positive, without its term of the string, (N,).
+    """Tell whether F of `beamdyn.modes.buckling` is positive without its first integral: (N,).
 
     Parameters
     ----------

@@ -44,8 +44,8 @@ _FAILURES = (ValueError, ArithmeticError)
 class SpeedAnswer(NamedTuple):
     """Answer of one design at S speeds: values, errors and statuses (S, k), and its warnings.
 
-    `warned` says at which speeds these hold; at all if it is None.  `refusals` say why there is no answer,
-    `effects` what those left out would change in its numbers at the first speed.
+    `warned` tells at which speeds the warnings hold; at all if it is None.  `refusals` say why there is no
+    answer; `effects` returns the changes of the answer at the first speed by effects left out.
     """
 
     value: np.ndarray
@@ -72,9 +72,9 @@ class SingleDesigns(FieldsOnly):
     question : StudyQuestion
         Question that is asked of the designs.
     columns : mapping of str to ndarray, shape (N,)
-        Their inputs, but for the speed.
+        Inputs of the designs, except the speed.
     speeds : ndarray, shape (N, S)
-        Speeds of each [rad/s]; (N, 1), and not used, where the answer belongs to none.
+        Speeds of each design [rad/s]; (N, 1), and not used, where the answer belongs to no speed.
     """
 
     question: StudyQuestion
@@ -114,7 +114,7 @@ def _caution(
 
 
 def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
-    """Answer one design at its speeds: at all at once, or one by one where that is refused."""
+    """Answer one design at all its speeds at once, or at one after the other where that is refused."""
     try:
         return _ANALYSES[question.what](question, with_numbers(question.scene, design), speeds)
     except _FAILURES as error:
@@ -193,7 +193,7 @@ def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> S
 
 def _answer_amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
     found = steady_response(scene, np.unique(speeds), **_options_of_responses(question))
-    # Converts the errors, which are relative to the bound.
+    # The errors are relative to `bound`: convert them to absolute ones.
     error = (found.error + found.mode_error) * found.bound
     warned = found.is_warned if found.warnings else None
     return _at_each(speeds, found, (found.amplitude, error, np.asarray(found.status)), warned)
@@ -295,7 +295,7 @@ def left_out_of_design(
 def join_effects(each: Sequence[LeftOutEffects | None], numbers: int) -> LeftOutEffects:
     """Join the effects of p designs with m numbers each to one of shape (p, m).
 
-    Nan where a design has none.
+    Changes are nan where a design has no effects.
     """
     known = [effects for effects in each if effects is not None]
     names = dict.fromkeys(name for effects in known for name in effects.changes)

@@ -23,20 +23,20 @@ What: TypeAlias = Literal[
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of answer.
+    """A kind of answer that a study may give, such as natural frequencies.
 
     Parameters
     ----------
     word : str
-        Name of one number.
+        Name of one number of the answer, such as "frequency".
     unit : str
         Its unit.
     has_speed : bool
-        Whether it belongs to a speed, which may be varied.
+        Whether the answer belongs to a speed, which may be varied.
     options : tuple of str
-        On which of the options "speed", "modes" and "window" it depends.
+        Those of the options "speed", "modes" and "window" on which the answer depends.
     needs_motion : bool
-        Whether it is one of the scene's motion.
+        Whether the answer depends on the scene's motion.
     """
 
     word: str
@@ -77,7 +77,7 @@ class StudyQuestion:
     window : tuple of float
         Window of time of a peak [s].
     resonances : sequence of PossibleCrossing
-        Those that crossings are sorted by.
+        The crossings whose speeds are the numbers of an answer, in this order.
     """
 
     scene: Scene

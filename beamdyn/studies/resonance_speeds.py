@@ -50,7 +50,7 @@ class PossibleCrossing:
     Parameters
     ----------
     kind : {"forced", "parametric"}
-        As of `Crossing`.
+        Kind, as of `Crossing`.
     line : Line
         The line.
     mode : int
@@ -68,7 +68,7 @@ class PossibleCrossing:
 
     @property
     def key(self) -> tuple[str, float, int]:
-        """Key of its line and mode; see `crossing_key`."""
+        """Key of the line and the mode; see `crossing_key`."""
         return crossing_key(self)
 
     @property
@@ -133,7 +133,7 @@ def crossings_of(
     scene : Scene
         The scene that is varied: its motion and gravity excite the beam.
     resonances : sequence of PossibleCrossing
-        Those that are sought, c in all.
+        The c crossings that are sought.
     top : float
         Top speed [rad/s].
     """

@@ -1,4 +1,4 @@
-"""Designs that differ in numbers only: one beam with other tip bodies, springs, radii, angles and speeds.
+"""Designs of one shape: one reference beam with other tip bodies, springs, radii, angles and speeds.
 
 Beams of one shape, whose mass per length, stiffness and length are s_m, s_k and s_L times a reference's,
 vibrate as the reference does with the tip body's mass over s_m s_L, its moments of inertia over s_m s_L^3,
@@ -6,14 +6,14 @@ offset and radius over s_L, springs at the root times s_L/s_k, and the speed tim
 
     T = sqrt(s_m s_L^4 / s_k);
 
-its frequencies over T are theirs.  The matrices of the reference are polynomials of few quantities.  In one
-plane of bending they are linear in the mass of the body, its inertia J_n, (J_e - J_1)/J_n, in r cos(phi), in
-the squared cosine of the bending angle and in the spring, quadratic in the offset.  In two planes they are
-linear in the moments of inertia, in the springs, and in the stiffness in the second direction over that in
-the first, and have 1, cos(2 psi) and sin(2 psi) of the bending angle psi.  They are interpolated between the
-extremes of all designs.  Any mixture of the extremes must be a scene, but among moments of inertia one could
-exceed the sum of the other two.  So the body's second moments of mass are mixed instead: the moments of
-inertia are sums of two of them, and any that are not negative are those of a body.
+the reference's frequencies over T are those of the beams.  Its matrices are polynomials of few quantities.
+In one plane of bending they are linear in the mass of the body, its inertia J_n, (J_e - J_1)/J_n, in
+r cos(phi), in the squared cosine of the bending angle and in the spring, quadratic in the offset.  In two
+planes they are linear in the moments of inertia, in the springs, and in the stiffness in the second direction
+over that in the first, and combinations of 1, cos(2 psi) and sin(2 psi) of the bending angle psi.  They are
+interpolated between the extremes of all designs.  Any mixture of the extremes must be a scene, but a mixed
+moment of inertia could exceed the sum of the other two.  So the body's second moments of mass are mixed
+instead: the moments of inertia are sums of two of them, and any that are not negative are those of a body.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ SIMILAR = {
     *(f"mount.{name}" for name in (*_OF_MOUNT, *_SPRINGS)),
     *_WITHOUT_EFFECT,
 }
-# Quantities on which the matrices depend as polynomials, and the degrees; on the angle as trigonometric ones.
+# Quantities on which the matrices depend as polynomials, with the degrees; on "angle" as trigonometric ones.
 _DEGREES = {
     **{"mass": 1, "offset": 2, "inertia": 1, "tilt": 1, "axial": 1, "in_plane": 1, "spring": 1},
     **{"along_beam": 1, "along_bending": 1, "along_axis": 1},
@@ -75,14 +75,14 @@ _DEGREES = {
 _ANGLES = np.array([0.0, 1.0, 2.0]) * math.pi / 3  # nodes of the trigonometric interpolation [rad]
 _MOST_NODES = 512  # largest number of scenes that are assembled, which takes some seconds
 _NODES_EACH = 8  # largest number of scenes per answer: with more, single calls are as fast
-# Rounding errors over those of one clamped plane of bending, as for single scenes.
+# Ratios of rounding errors to those of one clamped plane of bending, as for single scenes.
 _ROUNDING_ON_SPRINGS, _ROUNDING_OF_PLANES = 2.0, 3.0
 
 Nodes = tuple[tuple[str, tuple[float, ...]], ...]
 
 
 def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
-    """Whether the designs of a study over some inputs are beams of one shape, to be solved in one basis."""
+    """Tell whether designs of a study over some inputs are beams of one shape, to be solved in one basis."""
     plain = scene.physics in (Physics(), Physics(planes=2)) and not scene.chooses_physics
     lumped = bool(scene.beam.point_masses) and bool(names & POWERS.keys())
     apart = scene.physics.planes == 1 or scene.beam.second_bending_stiffness is not None
@@ -105,7 +105,8 @@ class SimilarDesigns(FieldsOnly):
     columns : mapping of str to ndarray, shape (N,)
         Inputs of each design.
     nodes : tuple of (str, tuple of float), optional
-        Values of each quantity between which the matrices are interpolated, where designs are some of many.
+        Values of each quantity between which the matrices are interpolated, if designs are part of a larger
+        set.
     """
 
     reference: Scene
@@ -125,7 +126,7 @@ class SimilarDesigns(FieldsOnly):
     # Similarity -----------------------------------------------------------------------------------
 
     def _scale(self, which: int) -> np.ndarray:
-        """Mass per length (0) or a stiffness (1, 2, 3) over the reference's, (N,): see `POWERS`."""
+        """Compute mass per length (0) or a stiffness (1, 2, 3) over the reference's, (N,): see `POWERS`."""
         scale = np.ones(self.count)
         for name, powers in POWERS.items():
             if name in self.columns:
@@ -148,7 +149,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def strain(self) -> np.ndarray:
-        """Axial strain over the reference's at corresponding speeds, (N,)."""
+        """Axial strain of each design over the reference's at the corresponding speed, (N,)."""
         return self._scale(1) / (self.length**2 * self._scale(2))
 
     # Quantities of which the matrices are polynomials ---------------------------------------------
@@ -161,7 +162,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def tip(self) -> dict[str, np.ndarray]:
-        """Properties (N,) of the tip body that the reference beam has in each design, by name."""
+        """Properties (N,) of the tip body on the reference beam that represents each design, by name."""
         tip, mass = self.reference.beam.tip or TipMass(0.0), self._scale(0) * self.length
         given = {name: self._given(f"beam.tip.{name}", getattr(tip, name) or 0.0) for name in _OF_TIP}
         if tip.transverse_inertia is None:
@@ -171,9 +172,9 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def _springs(self) -> dict[str, np.ndarray]:
-        """Springs (N,) at the root that the reference beam has in each design [N m/rad].
+        """Springs (N,) at the root of the reference beam that represents each design [N m/rad].
 
-        Inf where clamped.
+        They are inf where the root is clamped.
         """
         stiffer = self.length / self._scale(1)
         return {name: self._of_mount(name) * stiffer for name in _SPRINGS[: self._planes]}
@@ -233,7 +234,7 @@ class SimilarDesigns(FieldsOnly):
         return nodes_of([self]) if self.nodes is None else self.nodes
 
     def has_few_nodes(self, answers: int) -> bool:
-        """Whether few enough scenes are assembled for a number of answers."""
+        """Tell whether few enough scenes have to be assembled for a number of answers."""
         most = min(_MOST_NODES, _NODES_EACH * answers)
         return math.prod(len(values) for _, values in self._nodes) <= most
 
@@ -268,7 +269,7 @@ class SimilarDesigns(FieldsOnly):
     def strains(self, speeds: np.ndarray) -> np.ndarray:
         """Compute the largest axial strain of each design at its speeds (N, S) [rad/s].
 
-        Nan if it is not known.
+        The strain is nan if it is not known.
         """
         per_square = np.abs(self.weights(np.arange(self.count)) @ _forces(self.reference, self._nodes)).max(
             axis=1
@@ -293,15 +294,15 @@ class PencilFamily:
     Parameters
     ----------
     K0 : ndarray, shape (n, n) or (T, n, n)
-        Stiffness at rest of all, or of each.
+        Stiffness at rest: one matrix for all node scenes, or one of each.
     M, K2 : ndarray, shape (T, n, n)
         Mass, and stiffness per squared speed.
     loads : ndarray, shape (T, d, n)
         Loads under a unit acceleration of the root in the d directions of bending.
     tips : ndarray, shape (d, n)
-        Tip deflections in these per coordinate.
+        Tip deflections in the directions of bending per coordinate.
     coarse : ndarray of int, optional
-        Coordinates of the coarser basis; None where that has other functions.
+        Indices of the coordinates that the coarser basis has; None where it has other functions.
     """
 
     K0: np.ndarray

@@ -37,7 +37,7 @@ from beamdyn.studies.sensitivities.sensitivity_result import numbers_of
 from beamdyn.studies.study import speed_of_study, study
 from beamdyn.studies.study_result import Study
 
-# Name of the argument that is refused, as nonlinear equations give no derivatives.
+# Argument that the refusal of derivatives names for nonlinear equations.
 _NONLINEAR = "physics.large_deflection"
 
 
@@ -47,7 +47,7 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.Sprea
     Parameters
     ----------
     question : StudyQuestion
-        The question; one of crossings with their resonances.
+        The question; if it asks for crossings, with its `resonances`.
     inputs : sequence of SpreadInput
         The inputs.
     """
@@ -67,7 +67,7 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.Sprea
                 found = frequency_sensitivities(scene, *of_modes, tolerance=question.tolerance, **options)
     except ValueError as error:
         return KnownDerivatives(warnings=_said(error))
-    # Columns follow the order of the answers; nan for missing crossings, and the lowest of several.
+    # Columns follow the order of the answers: nan for missing crossings, the lowest if there are several.
     none = np.full(len(found.inputs), np.nan)
     places = {name: k for k, name in reversed([*enumerate(found.answers)])}
     value, error = (
@@ -220,7 +220,7 @@ def spread(
 
 @dataclass
 class _StudyAnswers:
-    """Answers of designs by studies; all have the numbers of the first study's answers, in its order."""
+    """Answers of designs by studies, with the same columns as the first study's answers."""
 
     scene: Scene
     what: Any
@@ -257,7 +257,7 @@ class _StudyAnswers:
 
     @property
     def _progress(self) -> Progress | None:
-        """Report progress over all designs so far, as worst cases need a number not known in advance."""
+        """Callback for progress over all designs so far: worst cases need a number not known in advance."""
         said, before = self.options["progress"], self._done
         return said if not before else said and (lambda done, total: said(before + done, before + total))
 
@@ -281,8 +281,8 @@ def check_tolerances(
     Raises
     ------
     InvalidValue
-        If there are none, an input is unknown or not in the scene, or a tolerance is none or reaches values
-        that the input cannot have.
+        If no tolerances are given, an input is unknown or not in the scene, or a tolerance is not valid or
+        reaches values that the input cannot have.
     """
     if not isinstance(inputs, Mapping) or not inputs:
         raise InvalidValue("inputs", inputs, "it names no input", _REMEDY)
@@ -338,7 +338,7 @@ def _in_si(name: str, text: str, unit: str) -> tolerances.Convert:
 
 
 def check_reach(scene: Scene, given: tolerances.SpreadInput) -> None:
-    """Refuse a tolerance with an end at which no scene can be made, other inputs being nominal."""
+    """Refuse a tolerance with an end at which the scene is not valid, other inputs being nominal."""
     for end in given.distribution.reach:
         try:
             with_numbers(scene, {given.name: end})

@@ -40,7 +40,7 @@ VERSIONS = (
     scipy.__version__,
 )  # packages whose versions affect the bits of stored answers
 _KIND = "beamdyn study"
-_BATCHED, _SINGLE = 1024, 16  # number of answers in a task, for designs solved in batches and for single ones
+_BATCHED, _SINGLE = 1024, 16  # number of answers in a task, for designs solved in batches and one by one
 _AT_ONCE = 100_000  # number of designs whose quantities are compared at once
 # Largest number of inputs of which all combinations of smallest and largest values are checked first.
 _MOST_CORNERS = 10
@@ -77,10 +77,10 @@ def study(
         The scene; its motion is used for crossings, amplitudes and peaks.
     vary : mapping of str to sequence of float
         Values in SI of each input, by its name in scene files: "beam.thickness", "beam.tip.mass",
-        "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; numbers of
-        the motion, of amplitudes and peaks, such as "motion.road.wavelength"; and
-        "beam.scale.bending_stiffness" and the like, factors of properties as they are along the beam.
-        Sides and material are those of a rectangular section.
+        "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; for
+        amplitudes, peaks, strains and power also numbers of the motion, such as "motion.road.wavelength"; and
+        factors of properties that vary along the beam, such as "beam.scale.bending_stiffness".  Sides and
+        material are those of a rectangular section.
     what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain", "power"}
         The answer: natural frequencies; the speed at which the beam buckles; the speeds at which each mode
         meets each line of the excitation; the steady amplitude of the tip; its largest deflection in a
@@ -141,7 +141,7 @@ def study(
         )
     modes = checks.count("modes", MODES if modes is None else modes)
     tolerance = None if tolerance is None else checks.within("tolerance", tolerance, *TOLERANCES)
-    # Answers at one motion depend on the motion's numbers.
+    # Only answers that need a motion depend on the motion's numbers.
     of_motion = (each.name for each in designs.inputs if is_of_motion(each.name))
     if not KINDS[what].needs_motion and (name := next(of_motion, None)):
         bound = (
@@ -197,7 +197,7 @@ def _check_inputs(vary: Any) -> tuple[VariedInput, ...]:
 def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -> float:
     """Return the speed [rad/s] of designs without one of their own.
 
-    Refuse it where the answer cannot have it.
+    Refuse the speed where the answer cannot have it.
 
     Parameters
     ----------
@@ -234,7 +234,7 @@ def check_window(window: tuple[float, float]) -> tuple[float, float]:
 
 
 def _check_scenes(scene: Scene, designs: Designs) -> None:
-    """Check that all designs are scenes, by those of extreme values: bounds are monotone in each input."""
+    """Check that all designs are valid scenes, by extreme values only: bounds are monotone in each input."""
     few = len(designs.inputs) <= _MOST_CORNERS
     try:
         for design in designs.extremes() if few else ():
@@ -268,9 +268,9 @@ class SimilarTask:
     designs : SimilarDesigns
         N designs.
     columns : mapping of str to ndarray, shape (N,)
-        Their inputs, but for the speed.
+        Inputs of the designs, except the speed.
     speeds : ndarray, shape (N, S)
-        Speeds of each [rad/s].
+        Speeds of each design [rad/s].
     """
 
     question: StudyQuestion
@@ -304,7 +304,7 @@ class _Request:
 
     @cached_property
     def others(self) -> Designs:
-        """The designs without their speeds as an input."""
+        """The designs without the speed as an input."""
         return self.designs.without(SPEED)
 
     @cached_property
@@ -314,7 +314,7 @@ class _Request:
 
     @property
     def together(self) -> bool:
-        """Whether each design has one speed of its own."""
+        """Whether the speed is varied together with other inputs, so that each design has its own speed."""
         return self.designs.combine == "zip" and self.own_speeds is not None and bool(self.others.inputs)
 
     @property
@@ -323,7 +323,7 @@ class _Request:
         return 1 if self.together or self.own_speeds is None else len(self.own_speeds)
 
     def check(self) -> None:
-        """Refuse the request if any design is no scene, before anything is computed."""
+        """Refuse the request if any design is no valid scene, before anything is computed."""
         if self.own_speeds is not None:
             check_speeds(self.own_speeds, SPEED)
         if self.others.inputs:
@@ -336,9 +336,9 @@ class _Request:
             raise checks.InvalidValue("tolerance", question.tolerance, bound, "leave it out")
 
     def solve(self, run: TaskRunner) -> AnswerArrays:
-        """Compute the answers: in one basis where designs differ in numbers only, else one by one.
+        """Compute the answers: in one basis where designs are beams of one shape, else one by one.
 
-        The size of tasks follows from the request alone; of a response all speeds are solved at once.
+        The size of tasks follows from the request alone; a response is solved at all speeds at once.
         """
         found = AnswerArrays((self.others.count, self.speeds, self.question.numbers))
         size = _BATCHED if self.is_similar else _SINGLE
@@ -378,7 +378,7 @@ class _Request:
 
     @cached_property
     def is_similar(self) -> bool:
-        """Whether designs differ in numbers only, so that one basis serves all."""
+        """Whether designs are beams of one shape, so that one basis serves all."""
         question, names = self.question, {each.name for each in self.others.inputs}
         scene, is_batched = question.scene, question.what in _BATCHED_KINDS
         if not is_batched or not differ_in_numbers_only(scene, names - {"model.damping_ratio"}):

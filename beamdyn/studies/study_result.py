@@ -38,8 +38,9 @@ class Study(StatesModelError):
     """An answer over combinations of inputs; made by `study`.
 
     The shape (n1, ..., nd) has an axis for each input, in order, or one for all that are taken together.
-    `error` is that of the numbers; `model_error` (p, m) and `left_out`, computed when asked for, are what the
-    physics left out would change at the designs of `left_out_places` (p); `left_out_at` says it of any.
+    `error` is the numerical error; `model_error` (p, m) and `left_out`, computed when asked for, are what the
+    physics left out would change at the p designs of `left_out_places`; `left_out_at` computes it for any
+    design.
 
     Parameters
     ----------
@@ -53,8 +54,8 @@ class Study(StatesModelError):
     combine : {"product", "zip"}
         Whether the inputs are combined each with each, or taken together.
     labels : tuple of str, length m
-        What the m numbers of a design are: its modes, or modes and the lines that they meet; empty where it
-        has one number.
+        Names of the m numbers of a design's answer: its modes, or modes and the lines that they meet; empty
+        if it has one number.
     value : ndarray, shape (n1, ..., nd, m) or (n1, ..., nd)
         Frequencies of m modes [Hz], nan where a mode does not vibrate; critical speeds [rad/s], inf where
         the beam does not buckle; resonance speeds [rad/s], nan where a mode meets a line at none up to the
@@ -66,7 +67,7 @@ class Study(StatesModelError):
         to the top speed" or "not excited"; of a response as for `steady_response`; of a peak "done" or
         "failed"; "refused" where there is no answer.
     warnings : tuple of str
-        What limits the answer, and of how many designs.
+        Limits of the answers, and for how many designs each holds.
     provenance : Provenance
         How it was found.
     typed_units : mapping
@@ -99,7 +100,7 @@ class Study(StatesModelError):
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """The question, number of designs, range of the answer and error in a line; see `Result.headline`."""
+        """Yield question, number of designs, range of the answer and error; see `Result.headline`."""
         names = joined(", ", (InputName(each.name) for each in self.inputs))
         yield Words(f"{self.what} of {counted(self.designs.count, 'design')} over ", names)
         yield spanned(self.value, self.unit)
@@ -125,9 +126,10 @@ class Study(StatesModelError):
 
     @property
     def answered(self) -> np.ndarray:
-        """Which designs have an answer, shape (n1, ..., nd): also that nothing buckles or resonates.
+        """Whether each design has an answer, shape (n1, ..., nd); no buckling or resonance is an answer, too.
 
-        A design has none that is refused, or not stable at its speed, or whose critical speed is not found.
+        There is no answer for a design that is refused or unstable at its speed, or whose critical speed is
+        not found.
         """
         there = ~np.isin(self.status, NO_ANSWERS)
         return np.asarray(there.all(axis=-1)) if self.labels else there
@@ -143,8 +145,8 @@ class Study(StatesModelError):
     def left_out_places(self) -> tuple[tuple[int, ...], ...]:
         """Places of the designs at which the model error is computed: (p) tuples (i1, ..., id).
 
-        The extremes of the inputs and others spread evenly; of amplitudes and peaks, which take long, the
-        largest.
+        These are the extremes of the inputs and others spread evenly; for amplitudes and peaks, which take
+        long, only the design with the largest answer.
         """
         if self.question.kind.needs_motion:
             known = np.isfinite(self.value)
@@ -202,10 +204,10 @@ class Study(StatesModelError):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw each answer over one input, or as a map over two with lines of equal value.
 
-        The present design is marked.  Of a third input some values have maps of their own; further ones have
-        their first value.  Where there is no answer the picture is hatched, and says why; frequencies over
-        speed have the lines that excite them.  Several answers over one input have a panel each in a new
-        figure; in axes that are given they are curves, beside what is there.
+        The scene's own values are marked.  Some values of a third input have maps of their own; further
+        inputs have their first value.  Where there is no answer the picture is hatched, and says why;
+        frequencies over speed have the lines that excite them.  Several answers over one input have a panel
+        each in a new figure; in given axes they are curves.
         """
         inputs, answers = self._picture
         if ax is None or len(answers) == 1 or sum(len(each.values) > 1 for each in inputs) > 1:
@@ -213,7 +215,7 @@ class Study(StatesModelError):
         return self._plot_curves(ax, *self._picture)
 
     def _plot_curves(self, ax: Axes, inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> Axes:
-        """Draw each answer as a curve over the one input that varies, in axes that may have others."""
+        """Draw each answer as a curve over the one input that varies, in axes that may have other curves."""
         over = max(range(len(inputs)), key=lambda k: len(inputs[k].values))
         x = inputs[over].values
         order = np.argsort(x, kind="stable")

@@ -4,9 +4,11 @@ The motion q of a run, inserted in the equations of a larger model, leaves a res
 known along the path.  The difference e of both motions obeys e'' + C e' + K(t) e = R.  It is found in the
 modes that the larger model has in each stretch of the run: the slow ones as oscillators whose frequency
 follows the stiffness, y = Im(exp(i theta) (a + int exp(-i theta) R / sqrt(w) dt)) / sqrt(w) with theta' = w
-(Liouville and Green); those too fast for the samples of the run follow the residual, and ring by as much as
-that jumps.  So no step has to be solved again.  What couples the modes of a stretch, as its stiffness departs
-from the mean, is a force on each by the motion of the others: it is found by passes that use the last ones'.
+(Liouville and Green); those too fast for the samples of the run follow the residual quasi-statically, and
+vibrate freely after its jumps.  So no step has to be solved again.  As the stiffness of a stretch departs
+from
+its mean, the modes are coupled: each feels a force by the motion of the others, which the pass before has
+found.
 
 References
 ----------
@@ -61,7 +63,7 @@ class _Residual:
     damping : ndarray, shape (n, n)
         Damping matrix of the larger model.
     factors : ndarray, shape (l + k m + m, n)
-        Residual per unit of each load, of each coordinate times each quantity, and of each velocity.
+        Residual per unit of each of l loads, of each coordinate times each quantity, and of each velocity.
     embedding : ndarray, shape (n, m)
         Coordinates of the larger model by those of the run.
     """
@@ -75,7 +77,7 @@ class _Residual:
 
     @classmethod
     def of(cls, system: ModalSystem, larger: ModalSystem) -> _Residual | None:
-        """Build the residual of a system's motion; None if a larger one lacks its modes or is gyroscopic."""
+        """Make the residual of a system's motion; None if `larger` lacks its modes or is gyroscopic."""
         few, many = (_shapes(each.equations) for each in (system, larger))
         stiffness, damping, _ = larger.equations.matrices
         if few.shape[0] != many.shape[0] or not set(damping) <= {"unity"}:
@@ -175,8 +177,8 @@ def distance_along_path(
 def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
     """Estimate the tip's amplitude [m] by changes of the load's slope at samples, added as random.
 
-    A change of slope excites a mode of frequency w by the change over w^3.  A jump between two samples, where
-    the jump is spread over a time h, by w h times as much.
+    A change of slope excites a mode of frequency w by the change over w^3.  A jump of the load, spread over
+    the time h between two samples, excites it by w h times as much.
     """
     middle = steps.piece_start + steps.piece_width / 2
     root = residual.larger.root(middle)

@@ -19,11 +19,11 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.system import ModalSystem
 
-_STEP = 1e-5  # relative step of differences: the tangent only guides Newton's method
+_STEP = 1e-5  # relative step of finite differences: the tangent only guides Newton's method
 
 
 class DriveInSpace(NamedTuple):
-    """Motion of the root that drives the beam, at the nodes of a step.
+    """Motion of the root that drives the beam, at the s nodes of a step.
 
     Parameters
     ----------
@@ -239,12 +239,12 @@ class EvaluationInSpace:
 
     @cached_property
     def _tangents(self) -> np.ndarray:
-        """Derivatives (3, s, n, n) by coordinates, rates and accelerations."""
+        """Derivatives (3, s, n, n) of the residual by coordinates, rates and accelerations."""
         (q, v, a), n, moving = self.motion, self.system.size, self.system.moving
         step = _STEP * (np.abs(self.motion).max(axis=(1, 2)) + 1 / np.abs(self.system.elastica.angles).max())
         steps, still = step[:, None, None, None] * np.eye(n)[:, None], np.zeros((n, 1, n))
         moved = moving(q + steps[0], v + still, self.drive.carrier).residual(a + still)
-        # Coordinates that stay are turned once.
+        # The shape does not change with rates and accelerations, and is computed once for both.
         rates, accelerations = np.concatenate([steps[1], still]), np.concatenate([still, steps[2]])
         at_same = moving(q, v + rates, self.drive.carrier).residual(a + accelerations)
         change = np.concatenate([moved, at_same]).reshape(3, n, *q.shape) - self.residual

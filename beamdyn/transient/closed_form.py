@@ -89,7 +89,7 @@ class _Harmonics:
     def coupling(self, sums: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
         """Make the function from a motion q (..., k, n) to forces (..., k, n) of the varying stiffness."""
         varying = np.abs(self.stiffness).any(axis=(1, 2))
-        # Index of the sum that leads to each sum; k where there is none.
+        # Index of each sum less each frequency of the stiffness; k where that is no sum.
         source = _places(sums, sums - self.frequency[varying, None])
         factors = self.stiffness[varying].swapaxes(1, 2)
 
@@ -177,7 +177,7 @@ def _free(
     n, sums = len(K), harmonics.sums(order)
     values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
     upper = np.imag(values) > 0
-    # A vibration does not oscillate, or there are too many terms.
+    # There is no result if a vibration does not oscillate, or there are too many terms.
     if upper.sum() != n or n * len(sums) > 4 * _MOST_HARMONICS:
         return None
     exponent, shape = values[upper], vectors[:n, upper].T

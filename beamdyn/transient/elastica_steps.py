@@ -5,8 +5,8 @@ coordinates there are v + h sum A_ij a_j and q + c_i h v + h^2 sum A2_ij a_j.  N
 to rounding, with the derivatives of the equations at all nodes.  The method is symmetric in time and has no
 numerical damping, so that energy does not drift.
 
-A run with two more stages in the same steps, of an order higher by four, shows the first run's error, with
-its growth by the equations.  The second run is the result: its own error is far smaller.
+The difference from a second run with two more stages in the same steps, of an order higher by four, is the
+first run's error, as it has accumulated.  The second run is the result: its own error is far smaller.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ from beamdyn.transient.trajectory import Trajectory
 
 _ITERATIONS = 30  # largest number of iterations of Newton's method in a step
 _CONVERGED = 1e-13  # relative error of the accelerations at which the iteration ends
-_LEAST_REDUCTION = 1e-3  # smallest ratio of errors in an iteration that the last two changes may indicate
+_LEAST_REDUCTION = 1e-3  # least reduction of the error by an iteration that is believed
 _STALLED = 1e-9  # relative error of the accelerations below which a stalled iteration has converged
 # Residual over the elastic force below which a stalled iteration has converged, where accelerations are
 # small.
@@ -132,7 +132,7 @@ def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[S
         change = np.maximum(change, difference * np.abs(system.equations.tips).max(axis=0))
         tip = max(tip, float(np.abs(_tips(system, first) - _tips(system, second)).max()))
     modes = tip * change / max(change.sum(), 1e-300)
-    # The phase errors of its steps are those of a straight beam.
+    # The phase errors are those of a straight beam in the longest step.
     longest = max(fine, key=lambda segment: segment.h)
     starts = np.array([(longest.start + longest.end - longest.h) / 2])
     maps, finer = (step_maps(straight, starts, longest.h, tableau(s)).step for s in (STAGES, _FINER))

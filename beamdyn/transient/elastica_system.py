@@ -1,12 +1,13 @@
 """Equations of motion for large deflection in one plane, in modal coordinates, for the integrators.
 
-The equations are those of the beam in space with one curvature, in their cheapest form.  Positions are
-sums over the slope angles, p_i = sum_j P_ji (cos theta_j, sin theta_j), so that the mass enters by one matrix
-of the angles, H = P m P': the forces are
+The equations are those of the beam in space with one curvature, in their cheapest form.  The positions p_i of
+masses m_i are sums over the slope angles theta_j, p_i = sum_j P_ji (cos theta_j, sin theta_j), so that the
+mass enters by one matrix H = P m P'.  The generalized forces on the angles are
 
     F = -sin theta (H X + a_1 g) + cos theta (H Y + a_2 g) + (moments of inertia),   g = P m,
 
-with X, Y the changes along the beam of the acceleration along b1 and e, as seen from the ground.
+with the root's acceleration a_1, a_2 along b1 (the beam's axis at the root) and e (the direction of bending),
+and the second time derivatives X, Y of (cos theta, sin theta) in these directions, as seen from the ground.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ class ElasticaSystem(BeamInSpaceSystem):
 
     @cached_property
     def positions(self) -> np.ndarray:
-        """Matrix (N + 1, N + 1 + k) from cosines or sines of slope angles to positions of the masses [m]."""
+        """Matrix P (N + 1, N + 1 + k): positions of the masses [m] per cosine or sine of each angle."""
         stations, masses = self.elastica.beam.stations, self.elastica.beam.masses
         positions = np.zeros((stations.sections, stations.count))
         positions[:-1] = stations.to_all(np.eye(stations.sections - 1))
@@ -75,7 +76,7 @@ class ElasticaSystem(BeamInSpaceSystem):
 
     @cached_property
     def kernel_and_moments(self) -> np.ndarray:
-        """Matrix (N + 2, N + 1): the negative kernel, and below it a row of moments.
+        """Matrix (N + 2, N + 1): the negative mass matrix `kernel`, and below it a row of moments.
 
         The moments [kg m] act at the slope angles under a unit acceleration of the root.
         """

@@ -37,8 +37,8 @@ _TIMES_COMPARED = 257  # number of times at which the equations are compared wit
 _BALANCE = 1e-13  # residual force in equilibrium, over the largest force, that is rounding error
 _SERIES_SHARE = 0.1  # fraction of the tolerance for the truncated series of weakly modulated steps
 _ORDER_ACROSS_SAMPLES = 3  # order of the error of steps within which the acceleration has kinks
-_FEW_STEPS = 4  # number of samples in a step from which on the step counts as long
-_CEILED = 1.02  # ratio of a whole number of steps, some hundreds, to the wanted number, which is rounded up
+_FEW_STEPS = 4  # steps of more samples than this are cut to one sample before they are cut further
+_CEILED = 1.02  # factor of a step size: steps get shorter when their number, some hundreds, is rounded up
 
 
 def integrate(
@@ -160,7 +160,7 @@ def _attempt_record(start: _Start, step_size: StepSize, before: Attempt | None) 
 
 
 def _judged(system: ModalSystem, step_size: StepSize, path: Trajectory, order: int) -> Attempt:
-    """Complete a run by its error, largest deflection at the ends of steps, and name of its method."""
+    """Add to a run its error, the largest deflection at the ends of steps, and its method's name."""
     error = estimate_time_error(system, path.segments, system.tips)
     largest = max(float(magnitude(s.state[:, 1 : system.size + 1], system.tips).max()) for s in path.segments)
     steps = sum(len(s.acceleration) for s in path.segments)

@@ -1,9 +1,9 @@
 """Changes of a transient's largest deflection by the effects that its model leaves out.
 
-An effect that changes the lowest natural frequencies by so little that neither their phase at the end of the
-run nor the deflection changes visibly is judged by the first frequency; any other by running again with it.
-With large deflection a run takes far longer: it is done where the run is short, else the change is estimated
-from the static deflection and the backbone.
+Where an effect hardly changes the lowest natural frequencies and their phase at the end of the run, its
+change of the deflection is estimated from that of the first frequency; otherwise the run is repeated with the
+effect.  A run with large deflection takes far longer: it is repeated where it is short, else the change is
+estimated from the static deflection and the backbone.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _BY_BACKBONE = (
 def left_out_of_transient(
     problem: TransientProblem, found: Solution, window: tuple[float, float] | None = None
 ) -> LeftOutEffects:
-    """Find what each effect changes in the largest deflection of a run, or in a window [s]: of shape ()."""
+    """Find what each effect changes in the largest deflection of a run, or of its window [s]: shape ()."""
     if problem.scene.tip_load.acts:
         return nothing_known(problem.scene, LOADED)
     largest, samples = _peak(found, window), len(found.path.samples[0])

@@ -1,4 +1,4 @@
-"""The problem that a transient solves, its integration, and larger problems for comparison."""
+"""The problem of a transient, its integration, and problems with more modes for comparison."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class TransientProblem(FieldsOnly):
     def system(self) -> AnySystem:
         """Return the equations of the run, without the coordinates that stay at rest."""
         if self.scene.bends_in_space or self.scene.tip_load.acts:
-            # Few scenes need it.
+            # Imported here, as few scenes need it.
             from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 
             return BeamInSpaceSystem.of_model(self.model, self.basis, self.motion)
@@ -199,7 +199,7 @@ class TransientProblem(FieldsOnly):
         return replace(self, basis=basis, discretization=discretization, initial=initial)
 
     def _refined_of_same_functions(self) -> Self | None:
-        """Return the problem with more modes of the same discretization, if it suffices, to save a choice."""
+        """Return the problem with more modes of the same discretization; None if it has too few functions."""
         finer = self.refined()
         if finer is None or finer.basis.modes is None:
             return finer
@@ -227,7 +227,7 @@ class TransientProblem(FieldsOnly):
         return solved and (solved.system, solved.path)
 
     def distance_with_more_modes(self, path: Trajectory, own: ModalSystem) -> float | None:
-        """Estimate the tip's distance from that with the modes of `refined` [m] along a path; or None."""
+        """Estimate the tip's distance [m] along a path from that with more modes; None where not possible."""
         finer = self._refined_of_same_functions()
         if finer is None or not isinstance(system := finer.system(), ModalSystem):
             return None
@@ -289,7 +289,7 @@ class LoadAtOnce(SteadyLoad):
 
     @cached_property
     def values(self) -> dict[Quantity, float]:
-        """Quantities that differ from 0, with the push."""
+        """Quantities that differ from 0, with `push` added to the root's transverse acceleration."""
         values = dict(self.quantities or {})
         values["root_transverse"] = values.get("root_transverse", 0.0) + self.push
         return {quantity: value for quantity, value in values.items() if value}

@@ -3,8 +3,8 @@
 Such a motion is smooth between samples only, and Gauss collocation needs coefficients that are smooth over a
 step.  So each coefficient is replaced, over each step, by the polynomial of degree s - 1 nearest to it in the
 mean square, with s stages.  What this leaves out is orthogonal to all polynomials of that degree, and the
-response of a mode over a step is nearly one: at the ends of the steps its work all but vanishes.  Between
-them it shows in the deflection, where the error estimate sees it (`time_error`).
+response of a mode over a step is nearly such a polynomial: what is left out hardly changes the state at the
+ends of the steps.  Between them it changes the deflection, which the error estimate includes (`time_error`).
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _FEWEST_PIECES = 16  # smallest number of pieces between samples: fewer are inte
 _MOST_STEPS_IN_PIECE = 16
 _PIECES_AT_ONCE = 4096  # number of pieces in the steps of a block, whose matrices fit into memory
 _SLACK = 1e-6  # fraction of a step that rounding may add to it
-# Largest and smallest number of steps that are expanded about one mean motion.
+# Largest and smallest number of equal steps whose maps are expanded about one mean motion.
 _EQUAL_STEPS, _FEWEST_EQUAL = 1024, 128
 _SAME_LENGTH = 1e-6  # fraction of a step by which lengths and ends of equal steps may differ
 # Pieces in a step, and nodes or stages in each: with so many pieces, fewer nodes are as exact.
@@ -47,7 +47,7 @@ class StepCounter(Protocol):
 
 
 def is_record(system: ModalSystem, t_end: float, step_size: StepCounter) -> bool:
-    """Whether a motion has breakpoints about as dense as the steps, as a sampled motion has."""
+    """Tell whether a motion has breakpoints about as dense as the steps, as a sampled motion has."""
     pieces = len(smooth_piece_ends(system.motion, t_end)) - 1
     few = _MOST_STEPS_IN_PIECE * pieces
     return pieces >= _FEWEST_PIECES and step_size.count_steps(system, 0.0, t_end) <= few
@@ -111,10 +111,10 @@ class RecordSteps:
         return [slice(a, b) for a, b in pairwise(ends)]
 
     def are_equal(self, block: slice) -> bool:
-        """Whether the steps of a block have one piece each and equal lengths, without accumulating drift."""
+        """Tell whether the steps of a block have one piece each and equal lengths that do not drift."""
         ends = np.append(self.start[block], self.start[block.stop - 1] + self.h[block.stop - 1])
         grid = np.linspace(ends[0], ends[-1], len(ends))
-        # Lengths that drift differ little between neighbours, but their differences add up.
+        # Differences of lengths may be small between neighbours, but add up over the block.
         off = np.abs(ends - grid).max()
         return bool(off <= _SAME_LENGTH * (grid[1] - grid[0]) and (self.counts[block] == 1).all())
 
@@ -143,7 +143,7 @@ class RecordSteps:
         offset = (self.piece_start - self.start[owner]) / self.h[owner]
         inside = legendre.legvander(2 * (offset[:, None] + share[:, None] * within.c) - 1, s - 1)
         at_nodes = legendre.legvander(2 * table.c - 1, s - 1) * (2 * np.arange(s) + 1)
-        # Weights of a piece in its step.
+        # Weights by which values at a piece's nodes add to those at the nodes of its step.
         weights = share[:, None, None] * within.b[:, None] * (inside @ at_nodes.T)
         values = (getattr(root, f.name) for f in fields(RootMotion))
         return RootMotion(*(np.add.reduceat((v[:, None] @ weights)[:, 0], self.first) for v in values))

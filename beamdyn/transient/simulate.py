@@ -47,11 +47,11 @@ def simulate(
     t_end : float
         End of the run [s].
     modes : int, "auto" or None
-        Number of modes at rest of each field.  "auto" takes modes at the slowest and at the fastest
-        speed: the smallest modal basis whose truncation error meets the tolerance.  The search stops before
-        that with a warning where the next basis would take minutes: past 5e7 steps times squared number of
-        coordinates, or past 5e6 if the last modes added reduced the error to no less than a quarter.  None
-        keeps all functions of the discretization.
+        Number of modes at rest of each uncoupled displacement (such as bending in each plane).  "auto" takes
+        modes at the slowest and at the fastest speed: the smallest modal basis whose truncation error meets
+        the tolerance.  The search stops before that with a warning where the next basis would take minutes:
+        past 5e7 steps times squared number of coordinates, or past 5e6 if the last modes added reduced the
+        error to no less than a quarter.  None keeps all functions of the discretization.
     tolerance : float
         Target of the time-integration error, and with ``modes="auto"`` also of the modal truncation error,
         each relative to the largest tip deflection.  An error that exceeds it is named in `warnings`.  If no

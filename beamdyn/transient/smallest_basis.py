@@ -19,7 +19,7 @@ from beamdyn.transient.transient import Transient, TransientRequest, warn_of_mis
 
 # Largest work of a run, its steps times its squared size (some seconds), for which "auto" adds further modes.
 _MOST_WORK = 5e7
-# Largest such work if the modes added last have divided the truncation error by less than _FAST.
+# The same limit, if the modes added last have divided the truncation error by less than _FAST.
 _SLOW_WORK = 5e6
 _FAST = 4.0
 # Up to the first number of modes, one more mode may divide the truncation error by the second number.
@@ -67,7 +67,7 @@ def _search(request: TransientRequest) -> Transient:
 
 
 def _refine_better(at_rest: Transient, at_speeds: Transient, tolerance: float) -> Transient:
-    """Refine modes at rest or, far from the tolerance, modes at speeds if these converge faster.
+    """Return the run with modes at rest if it is near the tolerance, else the better of both refined runs.
 
     Both are refined before they are compared, as few modes tell little about convergence.
     """

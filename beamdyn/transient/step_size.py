@@ -58,7 +58,7 @@ class StepSize:
         speed = np.abs(system.motion.at(t).speed).max(axis=1)
         multiple = max((line.multiple for line in system.motion.lines), default=0.0)
         _, K, _ = system.coefficients(t)
-        # A circuit's flux, a coordinate without stiffness, comes first.
+        # Eigenvalue 0 is the flux of a circuit, a coordinate without stiffness.
         first = int(system.equations.voltage is not None)
         squared = np.sort(np.abs(np.linalg.eigvals(K)), axis=-1)[:, :, max(self.modes - 1, first)]
         natural = np.sqrt(squared.max(axis=1))
@@ -71,7 +71,7 @@ class StepSize:
         The error falls with the step size to the power `order`.
         """
         cumulative = np.cumsum((error.modes * error.unresolved)[::-1])[::-1]
-        # Errors of all higher modes together are below this bound.
+        # The errors of all modes beyond this number are together below a quarter of the bound.
         modes = int((cumulative > bound / 4).sum())
         if modes > self.modes:  # the step is only as short as the highest resolved mode requires
             share = min(bound / 4 / cumulative[modes - 1], _LOOSEST_TOLERANCE)

@@ -158,7 +158,7 @@ class Sweep(StatesModelError):
         return left_out_of_transient(run.request, run.solution, self.window).at(np.newaxis)
 
     def is_warned(self, tolerance: float) -> np.ndarray:
-        """Whether a warning applies at each speed, (S,), for a run with the given tolerance."""
+        """Tell for each speed, (S,), whether a warning applies, for runs with the given tolerance."""
         if any(warn_of_missed_modes(self.mode_error, tolerance, "")):
             return np.ones(len(self.speeds), dtype=bool)
         return np.array([any(_warnings(self._at(i), tolerance)) for i in range(len(self.speeds))])
@@ -211,8 +211,9 @@ def sweep(
     t_end : float, optional
         End of each run [s]; the window's end if not given.
     modes : int or "auto"
-        Number of modes at rest of each field.  "auto" takes modes at the slowest and at the fastest
-        speed of each case: as few as meet the tolerance by their truncation error at five of the speeds.
+        Number of modes at rest of each uncoupled displacement (such as bending in each plane).  "auto" takes
+        modes at the slowest and at the fastest speed of each case: as few as meet the tolerance by their
+        truncation error at five of the speeds.
     tolerance : float
         Target of the time-integration error, and with ``modes="auto"`` also of the modal truncation error,
         each relative to the largest deflection of a case.
@@ -258,7 +259,7 @@ def sweep(
     runner = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress, SweepInterrupted)
     basis = given_basis(modes)
     scene = choose_for_motion(scene, end_speeds(request, cases), basis and basis.modes, request.tolerance)
-    # The times of the choice must not affect keys of the store.
+    # The record of the choice has computing times, which must not affect keys of the store.
     request = replace(request, scene=replace(scene, physics_choice=None))
     _check_speeds(request := replace(request, basis=basis or first_basis(request, cases)), cases)
     if store is not None or executor is not None or runner.workers > 1:
@@ -366,7 +367,7 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
 def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[float]]:
     """Call a function in a thread, with an event that is set when its result is no longer wanted.
 
-    An error in the context, such as an interrupt, sets the event and does not wait for the function's end.
+    An error in the body of the `with`, such as an interrupt, sets the event without waiting for the function.
     """
     thread, unwanted = ThreadPoolExecutor(1), Event()
     try:

@@ -99,7 +99,7 @@ class ModalSystem:
         return C, self.equations.matrix(0, root), self.equations.load(root)
 
     def modulated(self, start: float, end: float) -> ModulatedSystem | None:
-        """Split the equations from start to end [s]: a part that follows the speed, a varying stiffness.
+        """Split the equations from start to end [s] into a part that follows the speed, and the rest.
 
         The result is None if damping or gyroscopic terms vary in another way.
         """
@@ -155,7 +155,7 @@ class ModalSystem:
         excess: Callable[[MotionSample, RootMotion], list[np.ndarray]],
         lines: np.ndarray,
     ) -> ModulatedSystem:
-        """Build the equations in which quantities vary the stiffness by their excess over a slow part."""
+        """Build equations whose stiffness varies by the difference of quantities from a slow part."""
         stiffness, loads = self.equations.matrices[0], self.equations.vectors
 
         def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

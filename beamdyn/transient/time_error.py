@@ -245,7 +245,7 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
     middle = steps.piece_start + steps.piece_width / 2
     slope = np.diff(system.equations.load(system.root(middle)), axis=0) / np.diff(middle)[:, None]
     bend = np.pad(np.abs(np.diff(slope, axis=0)).sum(axis=1), 1, mode="edge")
-    # The bends of the load change displacements by the cube of the step.
+    # Changes of the load's slope change displacements in proportion to the cube of the step.
     kinds = steps.h, steps.h**3 * np.maximum.reduceat(bend, steps.first)
     worst = np.unique([np.argsort(kind)[-_MOST_OF_A_KIND:] for kind in kinds])
     spread = choose_checked_steps(count, most)

@@ -196,7 +196,7 @@ def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -
 def sample_tip(system: AnySystem, path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Sample the tip's deflection on a path: times (k,) [s] and deflections (k, 1 or 2) [m]."""
     if isinstance(system, ModalSystem) and isinstance(path, Trajectory):
-        # These are far fewer numbers than all coordinates.
+        # Sampling the tip alone takes far fewer numbers than sampling all coordinates.
         t, deflections, _ = path.projected(system.tips).samples
         return t, deflections
     t, q, _ = path.samples

@@ -34,11 +34,11 @@ from beamdyn.transient.root_strain import RootStrain
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import Path, Trajectory, in_direction, magnitude_of, sample_tip
 
-# Ratio of the refined run's distance to the largest deflection that still bounds the error.
+# Largest distance of the refined run, over the largest deflection, from which the error is estimated.
 _LIMIT_DIFFERENCE = 0.3
 _TIMES_COMPARED = 20_000  # number of times at which two runs are compared; at most twice as many are used
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
-# Share of the time error of a path in the truncation error of modes that is found along this path.
+# Share of a path's time-integration error in the modal truncation error that is found along this path.
 _OF_TIME_ERROR = 0.1
 # Computed attributes that a copy with further warnings keeps.
 _COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"

@@ -69,7 +69,7 @@ class ModulatedSystem:
 
 
 class _Steps(NamedTuple):
-    """Equal steps of length h from time `first` [s], with their collocation and the accuracy of all."""
+    """Equal steps of length h from time `first` [s], with their tableau and the accuracy after all steps."""
 
     system: ModulatedSystem
     first: float

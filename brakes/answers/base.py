@@ -197,12 +197,10 @@ class BrakeType(ABC, Generic[FileModel]):
        once; else from `TableBrakeType`, which solves them one by one. Make an instance named ``BRAKE`` at the
        end of the module.
     5. `solve` raises ValueError for bad input. A design without an answer is not an exception: `solve`
-    returns
-       an `Answer` whose `refusals` say why, so that its tables are still shown; a command then ends with
-       exit code 1. `NoAnswer` is raised only if nothing can be shown.
+       returns an `Answer` whose `refusals` say why, so that its tables are still shown; a command then
+       ends with exit code 1. `NoAnswer` is raised only if nothing can be shown.
     6. An `Output` takes its number, in SI, from the `Answer`, as an array if the design has arrays.
-    `take_fields`
-       makes outputs of those fields of a result whose `Meaning` gives words and unit.
+       `take_fields` makes outputs of those fields of a result whose `Meaning` gives words and unit.
     7. ``examples/name.toml``, or ``brakes/app/bases/name.toml``, is the example that the screen opens with.
     8. Add a line to `brakes.answers.STANDARD`, which adds the command and the screen.
 
@@ -379,7 +377,7 @@ class BrakeType(ABC, Generic[FileModel]):
         asked = SweepRequest(design, tables, axes, combine, run)
         made, warnings = self.sweep_cases(asked, [*wanted, ERROR])
         given = {entry.name: getattr(made, entry.name) for entry in fields(made)}
-        # The last entry is that of the error.
+        # The last of the results is the error, which has a field of its own.
         given |= {key: given[key][:-1] for key in ("results", "result_units", "found")}
         more = {"design": plain(design.model_dump()), "provenance": self._provenance(start)}
         return BrakeSweep(**given, **more, error=made.found[-1]), warnings

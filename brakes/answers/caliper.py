@@ -360,7 +360,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         Raises
         ------
         NoAnswer
-            If it cannot be assembled, does not reach the end of its stroke, or has not one motion.
+            If it cannot be assembled, does not reach the end of its stroke, or its mobility is not 1.
         ValueError
             If the numbers are out of range.
         """
@@ -408,7 +408,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         return (*_OUTPUTS, *planar.joint_outputs(core.mechanism, lambda answer: answer.run.magnitudes))
 
     def default_results(self, design: CaliperInput | MechanismInput) -> str:
-        """Name of the first output, which a sweep shows if none is named."""
+        """Return the name of the first output, which a sweep shows if none is named."""
         return self.outputs(design)[0].name
 
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
@@ -416,7 +416,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         return inputs_of_tables(tables)
 
     def idle(self, entries: Mapping[str, str]) -> Iterable[str]:
-        """Return the paths of inputs that have no effect because only calipers use them, if it is none."""
+        """Return the paths of inputs that only calipers use, which have no effect on other mechanisms."""
         return idle_inputs(entries)
 
     def sweep_inputs(self, design: CaliperInput | MechanismInput, tables: Mapping[str, Any]) -> list[Input]:

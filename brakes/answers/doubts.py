@@ -40,7 +40,7 @@ def with_less_and_more(design: Any, path: str, solve: Callable[[Any], Answer]) -
     """
     friction, found = part_at(design, path), list[Answer]()
     for part in (1 - PART, 1 + PART) if friction else ():
-        # The friction may exceed what a file may have, or the brake may lock.
+        # The varied friction may be out of its bounds, or lock the brake.
         with suppress(InvalidValue, NoAnswer):
             found.append(solve(with_parts(design, {path: part * friction})))
     return found
@@ -49,7 +49,7 @@ def with_less_and_more(design: Any, path: str, solve: Callable[[Any], Answer]) -
 def hangs_on_friction(
     design: Any, path: str, of: str, result: Callable[[Any], float], unit: str, none: str
 ) -> str:
-    """State how a result changes with 10 % less and more friction, in the same form as for other brakes.
+    """State how a result changes with 10 % less and more friction, in a sentence of the same form for all.
 
     Parameters
     ----------

@@ -34,7 +34,7 @@ _SHOE = (
 
 
 def _outputs(shoes: int) -> tuple[Output, ...]:
-    """Describe all numbers of a brake with `shoes` shoes; names of those of a shoe end in its number."""
+    """Describe all numbers of a brake with `shoes` shoes; names of a shoe's numbers end in its index."""
     return take_from(lambda answer: answer.result, _WHOLE) + tuple(
         Output(f"{o.name}_{i + 1}", f"{o.words}, shoe {i + 1}", o.of, o.unit, o.scale)
         for i in range(shoes)

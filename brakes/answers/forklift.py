@@ -81,7 +81,7 @@ _OF_LININGS = "forces.lining_friction", "the linings, which limit it,: Stopping 
 
 
 def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> tuple[Output, ...]:
-    """Describe the numbers of answers to stages; with stop or forces also the given ones of the pedal."""
+    """Describe the numbers of the stages, followed by the outputs `pedal` if stop or forces are shown."""
     groups = {
         "vehicle": take_from(lambda answer: answer.stop, _VEHICLE),
         "kinematics": take_from(lambda answer: answer.motion, _MOTION),
@@ -320,7 +320,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
         geometry = motion or (design.levers and design.levers.core)
         if "forces" in shown and design.forces and geometry is not None:
             piston_force, friction = design.forces.piston_force, design.forces.lining_friction
-            if chained is not None:  # if the wheel locks, the torque needs less friction
+            if chained is not None:  # locked wheels limit the torque: it does not show the linings' friction
                 piston_force, friction = chained.braked.actuation.actuator_force, None
             with of_file({"friction": "lining_friction"}):
                 forces = internal_forces(

@@ -30,7 +30,7 @@ def truck_handles(stop: Stop) -> list[Handle]:
     turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # rotates row vectors
 
     def on_slope(label: str, at: Sequence[Any], values: Values) -> Handle:
-        """Make a handle at coordinates along and normal to the slope, which `values` takes, too."""
+        """Make a handle at a point, whose coordinates along and normal to the slope `values` takes."""
         place, back = _pair(np.array(at, dtype=float) @ turn), turn.T
         return Handle(label, place, lambda x, y: values(*_pair((x, y) @ back)), step=0.01, grain=1e-3)
 
@@ -109,7 +109,7 @@ def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float
 
 
 def _find_contact(motion: ShoeMotion, progress: float, x: float, y: float) -> dict[str, float]:
-    """Find the contact angle whose point is drawn in the direction of (x, y); at rest also the clearance."""
+    """Find the contact angle whose point is drawn in the direction of (x, y), and at rest the clearance."""
 
     def residual(angle: np.ndarray) -> np.ndarray:
         other = _move_changed(motion.geometry, motion, contact_angle=float(angle))
@@ -126,7 +126,7 @@ def _move_changed(geometry: DuoServo, motion: ShoeMotion, **changed: object) -> 
 
 
 def _iterate(start: np.ndarray, residual: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Add the residual until it is negligible, or the brake impossible, which its fields then refuse."""
+    """Iterate x + residual(x) until the residual is negligible; end early where no brake has these values."""
     for _ in range(_ITERATIONS):
         try:
             step = residual(start)

@@ -149,7 +149,7 @@ class MechanismAnswer(planar.PlanarAnswer):
     def warnings(self) -> Sequence[str]:
         """Warnings of statics, toggle positions, and directions in which friction holds the mechanism."""
         said = [*self.last.warnings]
-        if self.motion is not None:  # warn of joints that the motion shows to be doubtful
+        if self.motion is not None:  # toggle positions, and joints whose inputs do not suit the motion
             said += [toggle.message for toggle in self.motion.toggles]
             angles = {body: self.motion.position.angle(body) for body in self._mechanism.bodies}
             said += [words for joint in self._mechanism.joints for words in joint.doubts(angles)]

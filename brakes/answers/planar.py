@@ -142,7 +142,7 @@ class MechanismFriction(Result):
         return self.over or self.drawn
 
     def locking(self, answered: bool) -> list[str]:
-        """Return sentences on directions of motion that are not "determined", with or without an answer."""
+        """Return sentences on undetermined directions of motion: those with an answer, or those without."""
         return [
             Words(name, ": ", way.message)
             for name, way in self._moving(self.last)
@@ -151,7 +151,7 @@ class MechanismFriction(Result):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Sentences on directions in which no force moves it, a contact opens or a cable slackens."""
+        """Sentences on directions in which the mechanism jams, a contact opens or a cable slackens."""
         return self.locking(answered=False)
 
     @property

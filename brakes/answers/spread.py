@@ -58,8 +58,8 @@ def spread_of_brake(
     Raises
     ------
     ValueError
-        If an input or a result is not known, or a tolerance is none or reaches values that an input cannot
-        have.
+        If an input or a result is not known, or a tolerance is not valid or reaches values that an input
+        cannot have.
     NoAnswer
         If no design has an answer.
     """
@@ -85,7 +85,7 @@ def nominal_of(design: Any, entry: Input, option: str = SPREAD) -> tuple[float, 
     Raises
     ------
     InvalidValue
-        If the design has none.
+        If the design has no value of this input.
     """
     value = part_at(design, entry.path)
     if not isinstance(value, int | float):

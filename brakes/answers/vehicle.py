@@ -145,7 +145,7 @@ class VehicleAnswer(Answer):
     def tables(self) -> list[RenderableType]:
         """Make the tables of both directions, of wanted values that do not exist, and of the lever."""
         ways = [*self.ways.values()]
-        # These outputs are in the row of words, and in the table of stops.
+        # Outputs that other rows and tables show: the status in words, and the stop.
         elsewhere = {"holds", *(each.name for each in _SLOWING)}
         others = with_less_and_more(self.design, "road.friction", BRAKE.solve)
         doubtful = [[other.ways[axle] for other in others] for axle in self.ways]
@@ -170,7 +170,7 @@ class VehicleAnswer(Answer):
         return tables
 
     def _doubt(self) -> str:
-        """State the largest slope on which it holds in both directions, with less and more tyre friction."""
+        """State the largest slope on which the vehicle holds both ways, with less and more tyre friction."""
 
         def largest(design: VehicleInput) -> float:
             ways = BRAKE.solve(design).ways.values()
@@ -207,7 +207,7 @@ class VehicleAnswer(Answer):
 def _failures(way: OneDirection) -> list[str]:
     """Return sentences on a vehicle that does not hold, and on one that does not stop, in one direction.
 
-    Of many designs only the stop has a sentence; the output `holds` tells which of them hold.
+    For many designs only the stop has a sentence; the output `holds` tells which of them hold.
     """
     holding, slowing = way.holding, way.slowing
     said = [f"it {slowing.message}"] if slowing is not None and not np.all(slowing.stops) else []
@@ -275,7 +275,7 @@ def _solve_way(
 
 
 def _solve_stop(design: VehicleInput, limits: vehicle.Braking, force: Any) -> vehicle.Slowing | None:
-    """Solve the stop of one way: by its own force, the lever's, or the hardest at which no wheel locks."""
+    """Solve the stop in one direction: with its own force, the lever's, or the largest without locking."""
     if design.stop is None:
         return None
     approach, road, share = design.stop.core, design.road.core, design.braking.front_share

@@ -236,7 +236,7 @@ def _renamed(value: Any, old: str, new: str) -> Any:
 def _with_references(
     tables: dict[str, Any], names: Iterable[str], keys: Sequence[str], old: str, new: str
 ) -> dict[str, Any]:
-    """Replace a name where the tables `names`, or lists of tables, refer to it by one of the keys `keys`."""
+    """Replace a name where a key of `keys` has it as value, in the tables (or lists of them) `names`."""
 
     def changed(table: Any) -> Any:
         if isinstance(table, list):

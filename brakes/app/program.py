@@ -52,7 +52,7 @@ def check_mechanism(text: str, source: str) -> MechanismInput:
     Raises
     ------
     ConfigError
-        If it is of another kind, or has a name that the form's paths cannot hold.
+        If the file names a caliper, or a point has a name that the form's paths cannot hold.
     """
     design = parse_mechanism(text, source)
     if not isinstance(design, MechanismInput):

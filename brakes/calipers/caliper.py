@@ -234,7 +234,7 @@ class Caliper:
         squeeze, release = (float(e.amplitudes[self.cable][0]) for e in (band.squeeze, band.release))
         ways = {name: way for name, way in band.ways.items() if way is not band.without}
         wrong = {name: way for name, way in ways.items() if way.status != "determined"}
-        # A contact that opens is reported rather than a way that locks.
+        # If one direction of motion locks and a contact opens in the other, the contact is reported.
         worst = max(
             (way.status for way in wrong.values()), key=lambda s: s != "self-locking", default="determined"
         )

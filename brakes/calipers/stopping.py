@@ -237,7 +237,7 @@ def stop(
         distance = float(path[-1])
         peak = max(float(pad_force(s)) for s in path if s < math.inf) if energy else 0.0
     else:
-        peak = not_negative("pad_force", pad_force, "N")  # greatest force of a pad that is asked for
+        peak = not_negative("pad_force", pad_force, "N")  # largest pad force, without limits by the road
         distance = energy / (factor * min(peak, most)) if peak else math.inf
     limit = "grip" if grip < pitch * (1 - EQUAL) else "pitching over"
     limited_by = "brake" if peak <= most * (1 + EQUAL) else limit

@@ -11,9 +11,9 @@ Without a load this is explicit. With a load, T1 is the fixed point of an increa
 the iteration from T0 rises and is bounded by the least fixed point, the one that the stop reaches first. A
 fixed point exists if the torque stays above the load on the way: T1 - L q / C then increases, and T1 is
 bracketed.
-Where the lining fades to the load before, the brake never stops the load. Between stops T - T_a falls by
-exp(-h t / C). Without a load each stop heats by J w^2 / (2 C): the temperatures of the stops follow an
-affine map, which contracts by exp(-h t / C) and so has one limit.
+Where the lining's torque fades to that of the load before, the brake never stops the load. Between stops T -
+T_a falls by exp(-h t / C). Without a load each stop heats by J w^2 / (2 C): the temperatures of the stops
+follow an affine map, which contracts by exp(-h t / C) and so has one limit.
 """
 
 from __future__ import annotations
@@ -344,7 +344,7 @@ def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndar
     high = np.where(np.isfinite(path.last), path.last, most)
 
     def over(end: np.ndarray) -> np.ndarray:
-        """Tell whether the stop has ended, or its lining has faded to the load, below a temperature."""
+        """Tell whether the stop ends, or its torque fades to that of the load, below a temperature [K]."""
         return path.stopped(start, end) | (path.least(start, end) <= load)
 
     # Without a curve the stop ends at `most`, which rounding may put just past `high`.

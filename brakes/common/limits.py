@@ -20,7 +20,7 @@ LIMITS = MappingProxyType(  # largest force [N], and who states it, by what pres
 
 
 def passes(limb: str, force: Numbers) -> bool:
-    """Whether a force [N], or any of many, is above the limit of a limb, a key of `LIMITS`."""
+    """Tell whether a force [N], or any of many, is above the limit of a limb, a key of `LIMITS`."""
     return bool(np.max(force) > LIMITS[limb][0] * (1 + EDGE))
 
 

@@ -102,7 +102,7 @@ class _StopInput(CoreSection):
 
     @cached_property
     def core(self) -> StoppingDistance:
-        """The stop without pad force; it checks the inputs."""
+        """The stop without pad force, whose computation checks the inputs."""
         return self.with_force(0.0)
 
     def with_force(self, pad_force: float) -> StoppingDistance:

@@ -228,7 +228,7 @@ def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
 
 
 def _table(path: str) -> str:
-    """Name of the table in an input's path."""
+    """Return the name of the table in an input's path."""
     return path.partition(".")[0]
 
 

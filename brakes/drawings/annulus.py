@@ -21,7 +21,7 @@ def draw_disc(result: MachineResult) -> Drawing:
     """Draw the disc from the front, with the friction of both pads together; for a single case."""
     disc = result.brake
     assert isinstance(disc, DiscBrake)
-    # The sense is the direction of the friction at the top of the disc.
+    # `sense` is the direction along x of the friction at the top of the disc.
     r, sense = float(disc.reference_radius), 1.0 if result.reverse else -1.0
     drag = float(result.torque) / r
     arrows = ForceArrows(0.8 * r / drag if drag else 0.0)
@@ -53,7 +53,7 @@ def draw_cone(result: MachineResult) -> Drawing:
 
 
 def _with_force(arrows: ForceArrows, result: MachineResult, words: str) -> Drawing:
-    """Finish the drawing of a section by the actuating force along its axis, and by title and key."""
+    """Finish the drawing of a section: add the actuating force along its axis, title and key."""
     arrows.add((0.0, 0.0), np.array([float(result.force), 0.0]), "P", "load", ends_here=True)
     title = f"Pressed by {float(result.force):.5g} N; torque {float(result.torque):.5g} N m"
     return arrows.drawing(title, words, {"load": "actuating force P"})

@@ -19,7 +19,7 @@ _SCALES = {"deg": 180 / np.pi, "mm": 1e3}
 
 
 def beside_charts(drawing: Drawing, charts: Sequence[Chart]) -> Figure:
-    """Draw a brake, with its charts below each other beside it."""
+    """Draw a brake and, beside it, its charts one below the other."""
     figure = Figure(figsize=(11.5, 7.0))
     draw_in(figure, (0.005, 0.01, 0.55, 0.98), drawing)
     rows = len(charts)
@@ -80,7 +80,7 @@ def factor_chart(result: MachineResult) -> Chart:
 def over_friction(
     title: str, curves: Sequence[ChartCurve], marks: Sequence[ChartMark], near: float | None
 ) -> Chart:
-    """Make a chart of C* over friction; of one without bound, up to a multiple of a usual value."""
+    """Make a chart of C* over friction; a C* without bound is drawn up to a multiple of a usual value."""
     high = None if near is None else max(2.5 * near, 1.0)
     factor = ChartAxis("C* = torque / (force radius)", low=0.0, high=high)
     return Chart(title, ChartAxis("friction of the linings", low=0.0), factor, curves, marks=marks)

@@ -128,7 +128,7 @@ def _size(position: Position) -> float:
 
 
 def force_scale(forces: Sequence[parts.OuterForce], size: float) -> float:
-    """Scale of arrows [m/N] that makes the longest one a fixed fraction of a size [m]."""
+    """Compute the scale of arrows [m/N] that makes the longest one a fixed fraction of a size [m]."""
     known = np.array([np.linalg.norm(outer.force) for outer in forces])
     largest = float(known[np.isfinite(known)].max(initial=0.0))
     return _LONGEST * size / largest if largest else 0.0

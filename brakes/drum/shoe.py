@@ -130,7 +130,7 @@ class Shoe:
         return self.pin_angle if self.pressure_zero == "pivot" else 0.0 * np.asarray(self.pin_angle)
 
     def shape(self, alpha: np.ndarray) -> np.ndarray:
-        """Shape of the pressure at angles alpha [rad]: sin(alpha - delta), or 1 if it is uniform."""
+        """Compute the pressure's shape at angles alpha [rad]: sin(alpha - delta), or 1 if uniform."""
         return np.sin(alpha - self.phase) if self.pressure_law == "wear" else np.ones_like(alpha)
 
     @property

@@ -115,7 +115,7 @@ def solve_with_friction(
     driven, slip = rate[:, [system.loads[driver]]], rate[:, list(system.friction.values())]
     check_moves(system, driver, driven)
     still = rank_tolerance(system.rounding)
-    # These are the signs of sliding while the driver's coordinate grows.
+    # Signs of the sliding velocities while the driver's coordinate grows.
     sliding = np.where(np.abs(slip) > still, np.sign(slip * driven), 0.0)
     squeeze, release = (_branch(mechanism, position, balance, without, s * sliding) for s in (1.0, -1.0))
     return FrictionalEquilibrium(squeeze, release, without)
@@ -203,12 +203,12 @@ def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:
 
 
 def _rounding(system: System) -> float:
-    """Force relative to the largest that counts as rounding."""
+    """Return the force, relative to the largest, up to which a force counts as rounding."""
     return max(_NOTHING, 100 * system.rounding)
 
 
 def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarray) -> Statement:
-    """Compose a warning of joints (S, F) that press with no force at positions (S,) that offsets jam."""
+    """Compose a warning: at positions (S,) offsets jam the joints (S, F), which press with no force."""
     names = [name for k, name in enumerate(mechanism.friction) if unpressed[jams, k].any()]
     press = "press" if len(names) > 1 else "presses"
     remedy = "reduce friction, or guide it over a greater length"

@@ -340,7 +340,7 @@ def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, fl
 
 
 def _start(mechanism: Mechanism, driver: str, *measured: str) -> tuple[System, Node, int]:
-    """Prepare a curve: system, assembled position with growing driver, and the driver's index in the loads.
+    """Return what a curve starts from: system, assembled position with growing driver, driver's load index.
 
     `measured` are loads that must have a coordinate; else there is a ValueError.
     """

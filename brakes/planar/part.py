@@ -64,7 +64,7 @@ def check_inputs(core: object, prefix: str = "") -> None:
     Raises
     ------
     ValueError
-        With the first that is refused.
+        For the first input that is refused.
     """
     for name, wanted, listed, optional, described in _wanted(type(core)):
         value = getattr(core, name)

@@ -312,7 +312,10 @@ def is_answer(status: str, forces: ArrayLike) -> bool:
 
 
 def tolerance(system: System) -> float:
-    """Force relative to the largest that counts as zero; rounding grows with the distance of the drawing."""
+    """Return the force, relative to the largest, up to which a force counts as zero.
+
+    It grows with the drawing's distance from (0, 0), as the rounding of coordinates does.
+    """
     return max(_BALANCED, 1e3 * system.rounding)
 
 

@@ -20,7 +20,7 @@ from beamdyn.common.results.result import Result
 from brakes.forklift import Levers, equilibrium_equations
 
 _TOLERANCE = 1e-12  # tolerance of the largest residual of the equations, in units of T/r and r
-_DIVERGED = 1e30  # residual, in the same units, above which the iteration counts as diverged
+_DIVERGED = 1e30  # residual, in units of T/r and r, above which the iteration counts as diverged
 SCALED_START = (-1.5, 0.1, 0.1, 0.7, 0.6, 0.1, 0.05, -0.3, 0.5, 1.4)
 
 

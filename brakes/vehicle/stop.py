@@ -326,7 +326,7 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
 
 def _broadcast(truck: Truck, conditions: StopConditions, strongest: Numbers) -> Sequence[np.ndarray]:
     """Broadcast the conditions with truck and brakes, whose shapes must fit."""
-    # Serves for its shape alone.
+    # A sum that has the shape of the truck's numbers; its value is not used.
     one_case = truck.cg[0] + truck.cg[1] + truck.front_wheel_radius + truck.wheelbase
     together(truck=one_case, most_torque=strongest, **conditions.numbers)
     return np.broadcast_arrays(*conditions.numbers.values(), one_case, strongest)[:-2]
@@ -338,8 +338,8 @@ def _slow_down(V: np.ndarray, A: np.ndarray, t2: np.ndarray, stops: np.ndarray) 
     Returns
     -------
     tuple of ndarray
-        Whether it comes to rest in the rise time; speed lost [m/s] and way [m] in the rise; way after it, and
-        time from the begin of braking to rest [s], both inf where it does not stop.
+        Whether it comes to rest in the rise time; speed lost [m/s] and distance [m] in the rise; distance
+        after it [m] and time from the beginning of braking to rest [s], both inf where it does not stop.
     """
     v2 = V + A * t2 / 2
     in_rise = v2 <= LEAST_MARGIN * V
@@ -353,7 +353,7 @@ def _slow_down(V: np.ndarray, A: np.ndarray, t2: np.ndarray, stops: np.ndarray) 
 
 
 def _rounding(truck: Truck, conditions: StopConditions) -> Numbers:
-    """Bound of the rounding error of the deceleration, relative to the terms that it is the difference of."""
+    """Bound the rounding error of the deceleration, relative to the terms whose difference it is."""
     size = (1 + conditions.friction) * truck.sizes_of_coordinates / (truck.wheelbase - truck.cg[0])
     return ROUNDING * (4 + size)
 

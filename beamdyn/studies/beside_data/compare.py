@@ -88,7 +88,7 @@ def compare(
 
 
 def measured_rows(scene: Scene, data: MeasuredFrequencies) -> list[_MeasuredRow]:
-    """The measured frequencies at each speed beside the scene's modes; arguments as of `compare`."""
+    """Pair the measured frequencies at each speed with the scene's modes; arguments as of `compare`."""
     check_scene(scene)
     kind("data", data, MeasuredFrequencies, "read a file by bd.read_measurements")
     if data.positions is not None:
@@ -104,7 +104,7 @@ def doubts_of_unit(rows: Sequence[_MeasuredRow]) -> Iterator[Statement]:
 
 
 def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
-    """The comparison of frequencies without explanations and doubts; arguments as of `compare`."""
+    """Compare frequencies, without explaining deviations or doubting units; arguments as of `compare`."""
     start = perf_counter()
     return _compared(scene, measured_rows(scene, data), start)
 
@@ -200,7 +200,7 @@ class _MeasuredRow:
 
     @cached_property
     def of_shapes(self) -> np.ndarray | None:
-        """Likeness (m, n) of measured and computed shapes, or else of the kinds that labels name."""
+        """Modal assurance criterion (m, n) of shapes, or else agreement with the kinds that labels name."""
         data, modes = self.data, self.modes
         if data.shapes is None:
             return likeness_of_kinds(data.labels, modes.kinds, len(modes.frequency))
@@ -248,7 +248,7 @@ class _MeasuredRow:
     def resembling(self) -> Iterator[str]:
         """Yield, for each value without a mode, the mode that its shape resembles most.
 
-        Empty text for all others.
+        The text is empty for all others.
         """
         known = np.flatnonzero(self._known)
         for column, place in zip(known.tolist(), self._place.tolist(), strict=True):

@@ -177,7 +177,7 @@ def _at_root(outputs: Callable[[np.ndarray], np.ndarray], place: int, t: np.ndar
 
 
 def _end_of_run(scene: Scene, last: float, more: float) -> float:
-    """Return the time [s] at which a run ends: after the last measured one, as far as the motion lasts."""
+    """Return the end of a run [s]: `more` after the last measured time, but not after the motion's end."""
     end = math.inf if scene.motion is None else scene.motion.end
     return max(min(last + more, end), last)
 
@@ -213,7 +213,7 @@ def _delay(
 
 
 def _least(misfit: Callable[[float], float], limits: tuple[float, float], accuracy: float) -> float:
-    """Find the delay [s] between two limits with the least misfit, by a grid and a bounded search."""
+    """Find the delay [s] between two limits with the least misfit: on a grid, then by bounded search."""
     tried = np.linspace(*limits, _DELAYS)
     best, step = tried[int(np.argmin([misfit(each) for each in tried]))], tried[1] - tried[0]
     between = max(best - step, tried[0]), min(best + step, tried[-1])

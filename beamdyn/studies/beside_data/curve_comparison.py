@@ -139,7 +139,7 @@ class CurveComparison(Result):
 
     @property
     def in_digits(self) -> np.ndarray:
-        """Whether largest value and whole differ by no more than the last digits of the data, shape (C,)."""
+        """Whether curves differ, in peak and rms, by no more than half of the last digit, shape (C,)."""
         half = self.rounding[self.places, np.arange(len(self.name))]
         within = _rms(self.measured - self.computed) <= _rms(self.rounding)
         return within & (np.abs(self.peak - self.computed_peak) <= half)
@@ -165,7 +165,7 @@ class CurveComparison(Result):
 
     @property
     def agrees(self) -> bool:
-        """Whether all curves agree within their own uncertainty, half of their last digit and our error."""
+        """Whether all curves agree within their uncertainty, half of their last digit and numerical error."""
         return set(self.verdict) == {AGREES}
 
     def to_dict(self) -> dict[str, Any]:
@@ -283,7 +283,7 @@ class CurveComparison(Result):
 
 
 def say(value: float, unit: str) -> str:
-    """Word a value with few digits and its unit; lengths are worded by the medium that shows them."""
+    """Word a value with few digits and its unit; each medium shows lengths in its own unit."""
     rounded = float(f"{value:.{_DIGITS}g}")
     return amount(rounded) if unit == "m" else f"{rounded:.{_DIGITS}g} {unit}".rstrip()
 

@@ -34,7 +34,7 @@ _STEP = 1e-4  # difference on either side of a variable of size 1, for derivativ
 _HZ = 1 / (2 * np.pi)
 # Number of computed modes beyond the number of measured ones, among which partners are sought.
 _MORE_MODES = 3
-_TRIED = 4  # number of places tried for each start of a fit
+_TRIED = 4  # number of points (values of all variables) tried for each start of a fit
 _PAIRINGS = 3  # number of times that measured frequencies are paired anew within a fit
 
 
@@ -65,7 +65,7 @@ class Fitting:
 
     @cached_property
     def start(self) -> Scene:
-        """The scene from which fits begin, with a finite spring or a body wherever its number is free."""
+        """The scene from which fits begin, with a root spring or tip body where a free number needs it."""
         return opened(self.scene, [number.path for number in self.numbers])
 
     @cached_property
@@ -97,7 +97,7 @@ class Fitting:
 
     @property
     def flat(self) -> float:
-        """Slope of the sum of squares that counts as zero: the tolerance over the relative weights."""
+        """Slope of the sum of squares that counts as zero: the tolerance over squared relative weights."""
         return self.tolerance * float(np.nanmedian((self.data.frequency / self.weight) ** 2))
 
     @property
@@ -142,9 +142,9 @@ class FittedModes:
         return np.array([pair(data.frequency[i], self.frequency[i], self._likeness(i)) for i in rows])
 
     def _likeness(self, row: int) -> np.ndarray | None:
-        """Compute the likeness (m, n) of measured and computed shapes at a speed.
+        """Compute the modal assurance criterion (m, n) of measured and computed shapes at a speed.
 
-        None where none were measured.
+        Return None where no shapes were measured.
         """
         data, equations, vectors = self.fitting.data, self.model.equations, self._solved[1][row]
         if data.shapes is None:
@@ -194,7 +194,7 @@ class FittedModes:
 
 @dataclass(frozen=True)
 class Fitted:
-    """The end of one fit: modes, pairs and sum of squares.
+    """The result of one fit: modes, pairs and sum of squares.
 
     Parameters
     ----------
@@ -263,16 +263,16 @@ def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fi
 def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> Fitted:
     """Return the best of several fits, which start where the frequencies are nearest to the measured ones.
 
-    These places are the scene's own numbers and random ones, `_TRIED` for each start.
+    The starts are chosen among the scene's own numbers and random ones, `_TRIED` for each start.
 
     Parameters
     ----------
     fitting : Fitting
         What is to be fitted.
     starts : int
-        Most starts, from the nearest of the places tried.
+        Largest number of starts, from the nearest of the points tried.
     seed : int
-        Of the random starts.
+        Seed of the random starts.
     most : int
         Largest number of scenes whose modes are computed, in all fits together.
     enough : float

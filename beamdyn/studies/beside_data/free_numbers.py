@@ -1,7 +1,8 @@
 """Numbers of a scene that a fit may change, as variables of size 1 with bounds.
 
-A spring at the root is its compliance, the size of the beam's stiffness over the spring: frequencies are
-nearly linear in that, and a clamped root is 0.  All others are shares of their value, or of the beam's size.
+The variable of a spring at the root is its compliance, the beam's bending stiffness over the spring's:
+frequencies are nearly linear in it, and it is 0 for a clamped root.  The variables of all other numbers are
+the numbers over their values in the scene, or over the beam's corresponding size if that is larger.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ SPRINGS = ("mount.root_stiffness", "mount.second_root_stiffness")
 _STEP = 0.01  # `SceneNumber.step` as a share of the size of a number
 _RIGID = 1e-6  # smallest compliance in a fit
 _CLAMPED = 1e-5  # compliance below which the root counts as clamped
-_FIRST = 0.1  # first value of a variable whose spring or body the scene does not have
+_FIRST = 0.1  # start value of a variable whose spring or body the scene does not have
 _SOFTEST = 1e3
 _TIMES = 10.0  # a number is sought between a tenth of its value and ten times it
 _TURN = math.pi / 2  # an angle is sought within a right angle on either side
@@ -90,7 +91,8 @@ class FreeNumber:
     def place(self, share: float) -> float:
         """Return the variable at a share, from 0 to 1, of the range in which fits begin.
 
-        It is any compliance from stiff to soft, half to twice the size, or up to the size where it may be 0.
+        A compliance ranges from 0.02 to 5, a positive number from half to twice its scale; a number that
+        may be 0 over one scale about its value.
         """
         low, high = self.limits
         if self.is_compliance or low > 0:

@@ -123,7 +123,7 @@ class FrequencyComparison(Result):
 
     @property
     def agrees(self) -> bool:
-        """Whether all values agree within their own uncertainty, half of their last digit and our error."""
+        """Whether all values agree within their uncertainty, half of their last digit and numerical error."""
         return set(self.verdict) == {AGREES}
 
     def to_dict(self) -> dict[str, Any]:
@@ -158,7 +158,7 @@ class FrequencyComparison(Result):
         yield from self._explained()
 
     def _alone(self, k: int) -> Words:
-        """Word that measured value k has no mode, and what may have it."""
+        """Word that measured value k has no computed mode, and what may be the reason."""
         setting = Setting("physics", torsion=True)
         twists = TORSION in self.label[k].lower()
         advice = ["; with ", setting, " it may have one"] if twists else []

@@ -22,7 +22,7 @@ from beamdyn.studies.beside_data.frequency_comparison import NOTHING, FrequencyC
 from beamdyn.studies.beside_data.separability import NotSeparable
 from beamdyn.studies.beside_data.single_numbers import say_value
 
-_DIGITS = 4  # of the numbers in a line
+_DIGITS = 4  # significant digits of numbers in a line of text
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ class Identification(Result):
     names, units : tuple of str, shape (p,)
         The numbers, by their names in scene files, and their SI units.
     given, value : ndarray, shape (p,)
-        Values in the scene, and found [unit]; nan where the data do not tell the number, inf of a clamped
-        root.
+        Values in the scene, and found [unit]; nan where the data do not determine the number, inf for a
+        clamped root.
     low, high : ndarray, shape (p,)
         Ends of the 95 % interval [unit], within the bounds of the number; nan where it is not known.
     covariance : ndarray, shape (p, p)
@@ -52,9 +52,9 @@ class Identification(Result):
     scatter : float
         Root mean square deviation over the measured frequency, for the degrees of freedom that remain.
     outliers : tuple of str
-        Values that lie further off than in one of a hundred such sets of data by chance; none is left out.
+        Values so far off that chance gives one in less than one of a hundred data sets; they are kept.
     solves : int
-        Number of solved eigenproblems: of one scene at all speeds each.
+        Number of scenes whose eigenproblems were solved, each at all speeds.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
@@ -102,7 +102,7 @@ class Identification(Result):
         Raises
         ------
         ValueError
-            If the data do not tell all of them.
+            If the data do not determine all numbers.
         """
         if np.isnan(self.value).any():
             lost = ", ".join(

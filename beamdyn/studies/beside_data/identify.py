@@ -42,9 +42,9 @@ def identify(
 ) -> Identification:
     """Find numbers of a scene from measured natural frequencies, by bounded least squares.
 
-    Where all frequencies are off by one factor of two units, a warning says so, as of `bd.compare`.
-    Deviations count over the uncertainties of the data; where these are not known, over the frequencies, and
-    the uncertainty follows from the deviations.  At most 40 solves are made for each number.
+    Where all frequencies are off by the ratio of two units, a warning says so, as of `bd.compare`.
+    Deviations are divided by the uncertainties of the data or, where these are not known, by the frequencies,
+    and the uncertainty follows from the deviations.  At most 40 solves are made for each number.
 
     Parameters
     ----------
@@ -56,9 +56,9 @@ def identify(
         The unknown numbers by their names in scene files, such as "beam.thickness", each with its least and
         largest value [SI], or None for bounds that follow from its kind.
     starts : int
-        Most starts: from the numbers of the scene, or random ones that are nearer to the data.
+        Largest number of starts: from the scene's numbers, or from random ones that are nearer to the data.
     seed : int
-        Of the random starts.
+        Seed of the random starts.
 
     Returns
     -------
@@ -149,7 +149,7 @@ class _Told:
 
     @cached_property
     def _uncertainty(self) -> np.ndarray:
-        """Standard deviation of each residual (N,), at least that of the finest frequency assumed."""
+        """Standard deviation of each residual (N,), at least that of a relative uncertainty of `FINEST`."""
         least = FINEST * self._measured / self._fitting.weight[self.fit.pairs != NO_MODE]
         return np.maximum(np.nan_to_num(self._deviation), least)
 
@@ -166,7 +166,7 @@ class _Told:
     def _intervals(self) -> np.ndarray:
         """Ends (p, 2) of the confidence intervals.
 
-        Around the unbounded optimum where a bound holds a number.
+        They are centred on the unbounded optimum, also where a bound limits a number.
         """
         quantile = special.ndtri(0.5 + _LEVEL / 2)
         if not self.known:

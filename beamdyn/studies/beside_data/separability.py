@@ -1,8 +1,8 @@
-"""What data tell of numbers together: covariance, numbers that are not told apart, and what would tell them.
+"""Which numbers data determine: covariance, numbers not determined separately, and data that would help.
 
 With J the derivatives of residuals over their uncertainties by the variables of size 1, J = U S V^T, a change
-of size 1/s along a column of V changes the data by one uncertainty.  Bounds of the numbers count as if 1/s
-were ten at most.  A number that may change by its whole size unnoticed is not told by the data.
+of size 1/s along a column of V changes the data by one uncertainty.  As numbers are bounded, 1/s counts as
+ten at most.  A number that may change by its whole size unnoticed is not determined by the data.
 Uncertainties count as a millionth of the frequency at least, so that no verdict hangs on rounding.
 """
 
@@ -25,7 +25,7 @@ FINEST = 1e-6  # smallest relative uncertainty of a frequency that this verdict 
 # Least share of `LARGEST` that a direction adds to a number's error if its name shall be listed.
 _TAKES_PART = 0.5
 _BOUND = 0.1  # singular values below it count as this one: bounds are about ten sizes apart
-_TOLD = 0.05  # least relative change of a measurement along a direction, if it shall tell that direction
+_TOLD = 0.05  # least relative change of a measurement along a direction, for it to determine that direction
 _STEP = 1e-3
 _BODY = 0.2  # mass of a known body, over that of the beam, with which a measurement is suggested
 _FASTER = 2.0  # speed suggested for a measurement, over the largest one of the data
@@ -36,7 +36,7 @@ _PLACES = np.linspace(0.0, 1.0, 201)
 
 @dataclass(frozen=True)
 class Information:
-    """What residuals tell of p variables, by the singular values of their derivatives.
+    """How well residuals determine p variables, by the singular values of their derivatives.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def not_separable(modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]])
 
 
 def _telling(modes: FittedModes, direction: np.ndarray) -> list[str]:
-    """Return names of measurements that change along a direction of the variables."""
+    """Name the measurements that change along a direction of the variables."""
     low, high = modes.fitting.limits
     ends = [np.clip(modes.x + step * direction, low, high) for step in (-_STEP, _STEP)]
     change = float(np.linalg.norm(ends[1] - ends[0]))

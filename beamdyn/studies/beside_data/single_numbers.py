@@ -1,4 +1,4 @@
-"""Explanations of deviations by one number of a scene that is changed alone."""
+"""Explanations of deviations: single numbers of a scene that would explain them if changed alone."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _WITHIN = {  # numbers that may be wrong, and the largest factor by which each m
 _HEAVIEST = 2.0  # largest mass of a body at the tip, over that of the beam
 _SOLVES = 25  # largest number of scenes whose modes are computed for the fit of one number
 _TOLERANCE = 1e-7  # relative change of a number at which its fit ends
-# Least relative change of a frequency by a whole change of a number, below which it explains nothing.
+# Relative change of a frequency by a change of a number by its whole size, below which it explains nothing.
 _MATTERS = 1e-3
 _DIGITS = 3  # significant digits of values in sentences
 _WHOLE = 6  # digits before the decimal point up to which a rounded value is written without an exponent
@@ -154,7 +154,7 @@ def _explanation(
 def say_value(value: float, unit: str, digits: int = _DIGITS, units: DisplayUnits = SI_UNITS) -> str:
     """Word a value with a number of significant digits and its unit, as each medium shows it.
 
-    Python has it in SI, files in mm, GPa and g; lengths in the unit of the scene, where it has one.
+    Python shows SI, files mm, GPa and g; lengths have the unit of the scene, where it has one.
     """
     if math.isinf(value):
         return "clamped"

@@ -29,17 +29,17 @@ def wrong_unit(
 ) -> Iterator[Statement]:
     """Yield a statement if all values are off by one factor, and that is the ratio of two units.
 
-    The values over the factor are paired as all are.  It is said where each then has a mode within 10 %, and
-    the ratios of measured to computed values differ by less than half of what they do as they are read.
+    The values divided by the factor are paired with modes anew.  The statement is made if each then has a
+    mode within 10 %, and the ratios of measured to computed values scatter less than half as much as before.
 
     Parameters
     ----------
     measured : sequence of ndarray, each of shape (m,)
         Frequencies at each speed [Hz]; nan where none was measured.
     computed : sequence of ndarray, each of shape (n,)
-        Those of the model [Hz].
+        Frequencies of the model at each speed [Hz].
     likeness : sequence of ndarray, each of shape (m, n), or None
-        Likeness of the shapes, as `pair` takes it.
+        Modal assurance criterion of the shapes, as for `pair`.
     """
     if sum(int(np.isfinite(each).sum()) for each in measured) < _FEWEST:
         return

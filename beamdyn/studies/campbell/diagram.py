@@ -47,11 +47,11 @@ class Campbell(StatesModelError):
     Parameters
     ----------
     labels : tuple of str
-        One a scene.
+        Label of each scene.
     names : tuple of tuple of str
         Names of the modes of each scene: "flap 1", "edge 1" by the direction in which they mostly bend at the
-        first speed; "mode 1" of a beam that does not point outward where it has one plane, or its bending
-        angle is no whole number of quarter turns.
+        first speed; "mode 1" where the bending angle is no whole number of quarter turns, or a beam with one
+        plane does not point outward.
     loci : tuple of Locus
         Natural frequencies of each scene, tracked, with errors and confidence.
     lines : tuple of Line
@@ -115,7 +115,7 @@ class Campbell(StatesModelError):
 
     @property
     def display_units(self) -> DisplayUnits:
-        """Units of tables, columns and pictures; for speeds the unit that was asked for."""
+        """Units of tables, columns and pictures, with the unit of speeds that was asked for."""
         return vars(self).get("_display_units") or super().display_units.with_others({"speed": self.unit})
 
     @cached_property
@@ -376,7 +376,7 @@ def _within_speeds(name: str, value: float, speeds: np.ndarray) -> float:
 def _name_modes(locus: Locus) -> tuple[str, ...]:
     """Name the modes by the direction in which each mostly bends at the first speed, or by its kind."""
     words, mount = [word for _, word in name_directions(locus.scene)], locus.scene.mount
-    # A negative cosine: the beam points outward.
+    # With a negative cosine the beam points outward, as a blade.
     is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0
     if "flap" not in words or not is_blade:
         return locus.names()
@@ -408,7 +408,7 @@ def _bound(
 ) -> tuple[list[tuple[str, FrequencyBounds]], list[str]]:
     """Compute guaranteed bounds of each scene at a speed.
 
-    Return them, their warnings, and why others have none.
+    Return bounds, warnings, and the reasons why other scenes have no bounds.
     """
     bounded, refused = [], []
     for label, names, locus in named:

@@ -219,7 +219,7 @@ class Margin:
     speed : float
         The speed at which it is nearest [rad/s].
     frequency : float
-        Natural frequency there [Hz].
+        Natural frequency at that speed [Hz].
     margin : float
         Frequency of the line over the natural frequency, less one: negative where the line is below; 0
         where they cross.

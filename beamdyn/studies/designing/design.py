@@ -42,9 +42,9 @@ def design(
 ) -> FoundDesign:
     """Find numbers of a scene, within bounds, whose answers are what is wanted.
 
-    Of many designs that meet all targets the one is found whose answer is the best, if a target says so, else
-    the one nearest to the scene: by logarithms of numbers over those of their bounds.  If no design is found
-    that meets them, the result says so and is the nearest.  At most 60 designs are computed.
+    Of the designs that meet all targets the result is the one with the best answer, if a target asks for it,
+    else the one nearest to the scene, by shares of the (logarithmic) ranges.  If no design is found that
+    meets all targets, the result says so and is the nearest to them.  At most 60 designs are computed.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def design(
     targets : sequence of Target
         What the answers shall be.
     seed : int
-        Of the random designs with which a search over several numbers begins.
+        Seed of the random designs with which a search over several numbers begins.
     discretization, tolerance
         As for `study`.
 
@@ -95,7 +95,7 @@ def design(
 
 
 def _check_free(scene: Scene, free: Mapping[str, tuple[float, float] | None]) -> tuple[VariedInput, ...]:
-    """Check the free numbers and their bounds, all of whose combinations must be scenes."""
+    """Check the free numbers and their bounds; a scene must exist for each combination of bounds."""
     if not isinstance(free, Mapping) or not 0 < len(free) <= MOST_NUMBERS:
         bound = f"give 1 to {MOST_NUMBERS} numbers with their bounds"
         raise InvalidValue("free", free, bound, 'such as {"beam.thickness": (1e-4, 4e-4)}')
@@ -134,7 +134,7 @@ def _check_targets(targets: object) -> tuple[Target, ...]:
 
 @dataclass(frozen=True)
 class _BestDesign:
-    """The best design of a search, as shares (p,) of the ranges, and the statements about it."""
+    """The best design of a search, as shares x (p,) of the ranges, and statements about it."""
 
     search: Search
     x: np.ndarray
@@ -158,7 +158,7 @@ class _BestDesign:
         return rounded
 
     def _is_idle(self, k: int) -> bool:
-        """Whether no answer changes when number k takes its farther bound."""
+        """Tell whether no answer changes when number k takes its farther bound."""
         far = self.x.copy()
         far[k] = 0.0 if self.x[k] > 0.5 else 1.0
         with suppress(Spent):
@@ -168,7 +168,7 @@ class _BestDesign:
         return False
 
     def with_unmoved(self) -> _BestDesign:
-        """The design with each number without effect where the scene has it, and no search has moved it."""
+        """Return the design in which numbers without effect have the scene's values."""
         moved = np.where((self._slopes == 0).all(axis=0), self.search.own, self.x)
         if (moved == self.x).all():
             return self
@@ -178,7 +178,7 @@ class _BestDesign:
         return self
 
     def _limits(self) -> Iterator[str]:
-        """Yield a sentence for each bound and limit that the design lies at."""
+        """Yield a sentence for each bound of a number and each limit of an answer that the design reaches."""
         for each, x in zip(self.search.ranges.inputs, self.x.tolist(), strict=True):
             if x <= _AT or x >= 1 - _AT:
                 at = "smallest" if x <= _AT else "largest"
@@ -188,14 +188,14 @@ class _BestDesign:
                 yield target.says
 
     def _only_one_way(self) -> bool:
-        """Whether each missed answer depends on each number in one direction only, over all designs computed.
+        """Tell whether missed answers are monotone in each number, over all designs computed.
 
         The design then lies at the bounds that are best for each of these answers.
         """
         designs = self.search.designs
         excess = self.search.excess(designs)
         for k in np.flatnonzero(~self._met):
-            # The direction of each number that reduces the miss.
+            # The sign of the change of each number that brings the answer nearer to the target.
             better = -np.sign(self._excess[k]) * np.sign(self._slopes[k])
             if self.search.targets[k].at_most is not None:
                 better = -better
@@ -209,7 +209,7 @@ class _BestDesign:
         return not self._met.all()
 
     def result(self, given: np.ndarray, start: float) -> FoundDesign:
-        """The result of a search that began at a time."""
+        """Make the result of a search that began at a time of `perf_counter` [s]."""
         search, x, proofs = self.search, self.x, Proofs(self.search, self.x)
         value, error = (each[0] for each in search.known(x[None]))
         studies = [search.studied(asked, x[None]) for asked in search.asked]

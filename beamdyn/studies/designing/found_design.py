@@ -118,7 +118,7 @@ class FoundDesign(Result):
 
     @property
     def without_effect(self) -> tuple[str, ...]:
-        """Names of the numbers that change none of the answers, as the derivatives here tell."""
+        """Names of the numbers that change none of the answers, by the derivatives at this design."""
         return tuple(
             name
             for name, each in zip(self.names, self.derivative.T, strict=True)
@@ -161,7 +161,7 @@ class FoundDesign(Result):
             yield Words("Limited by: ", joined("; ", self.limited_by), ".")
 
     def _ways(self) -> str:
-        """How the answers follow the numbers, where each does so one way."""
+        """Word that the answers depend on each number in one direction, or on none."""
         still = len(self.without_effect)
         if still == len(self.names):
             return "are the same"

@@ -2,8 +2,8 @@
 
 Two arguments hold for all designs, computed or not, within the stated errors of those that are computed.
 A number that raises an answer (`beamdyn.studies.designing.quotients`) rules out all smaller values where the
-answer is too low, and all larger ones where it is too high.  And designs that are similar to each other
-(`beamdyn.studies.similar`) differ by one factor of all their answers, which is known without solving.
+answer is too low, and all larger ones where it is too high.  And the answers of designs that are similar
+to each other (`beamdyn.studies.similar`) all differ by one factor, which is known without solving.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from beamdyn.studies.designing.search import Search
 from beamdyn.studies.designing.target import Target, say_number
 from beamdyn.studies.similar import POWERS, SimilarDesigns, differ_in_numbers_only
 
-_SURE = 2.0  # errors of an answer by which it misses a target, or more, where a proof rests on that
-_EXACT = 1e-10  # relative margin of bounds and targets, which are met at least so exactly
-_AT = 1e-13  # share of a range within which a design lies at its end
+_SURE = 2.0  # number of its errors by which an answer at least misses a target, for a proof to rest on that
+_EXACT = 1e-10  # relative tolerance within which bounds and targets count as met
+_AT = 1e-13  # distance from a bound, as a share of the range, within which a design lies at it
 _VERBS = {1: "raises", -1: "lowers", 0: "does not change"}
 
 
 class _RuledOut(NamedTuple):
-    """Designs between two, of shares (p,), all of which miss a target: by too low or too high an answer."""
+    """A box of designs between two corners (p,), all with too low or all with too high an answer."""
 
     low: np.ndarray
     high: np.ndarray
@@ -41,7 +41,7 @@ class _RuledOut(NamedTuple):
 
 
 class _Limits(NamedTuple):
-    """Logarithms of the least and the largest factor from one design to others, by a target or by bounds."""
+    """Logarithms of the least and largest factor between two designs' answers, by a target or by bounds."""
 
     says: str
     least: float
@@ -50,14 +50,14 @@ class _Limits(NamedTuple):
 
 @dataclass(frozen=True)
 class Proofs:
-    """What is proven of all designs in the bounds, by those that a search has computed.
+    """Proofs about all designs in the bounds, from the designs that a search has computed.
 
     Parameters
     ----------
     search : Search
         The search.
     x : ndarray, shape (p,)
-        Shares of the design that it has found.
+        Shares of the ranges that give the design found.
     """
 
     search: Search
@@ -95,18 +95,18 @@ class Proofs:
 
     @cached_property
     def _ways(self) -> list[np.ndarray | None]:
-        """Ways (p,) in which the numbers change each target's answer, 1, -1 or 0; None where not known."""
+        """Signs (p,) of the change of each target's answer by the numbers, 1, -1 or 0; None if not known."""
         search = self.search
         corners = [with_numbers(search.scene, each) for each in Designs(search.ranges.inputs).extremes()]
         known = {what: [ways(corner, what) for corner in corners] for what in QUOTIENTS}
         return [_common(known[t.what], self._names) if _is_quotient(t) else None for t in search.targets]
 
     def _is_too_low(self, k: int, excess: float) -> bool:
-        """Whether an answer that misses target k is too low, and not too high."""
+        """Tell whether an answer that misses target k is too low, and not too high."""
         return bool(excess < 0) == (self.search.targets[k].at_most is None)
 
     def _helps(self, k: int, excess: float) -> np.ndarray | None:
-        """The way in which each number (p,) brings an answer nearer to target k that it misses, if known."""
+        """Return the sign of each number's change (p,) that brings an answer nearer to target k, if known."""
         ways = self._ways[k]
         return ways if ways is None or self._is_too_low(k, excess) else -ways
 
@@ -118,7 +118,7 @@ class Proofs:
         return f"{' and '.join(told)} {QUOTIENTS[what]}"
 
     def _ruled_out(self) -> Iterator[_RuledOut]:
-        """Yield all designs that are no better for a target than one computed, which surely misses it."""
+        """Yield boxes of designs that are no better for a target than one computed that surely misses it."""
         designs = self.search.designs
         (value, error), missed = self.search.known(designs), self.search.missed(designs)
         sure, excess = np.isfinite(value) & (missed > _SURE * error), self.search.excess(designs)
@@ -128,7 +128,7 @@ class Proofs:
                 yield _RuledOut(low, high, k, self._is_too_low(k, excess[i, k]))
 
     def _covered(self, parts: Sequence[_RuledOut], j: int) -> Iterator[str]:
-        """Yield why one part, or two that meet in number j, are all designs."""
+        """Yield reasons why one box of designs, or two that meet along number j, cover all designs."""
         others = np.arange(len(self.x)) != j
         wide = [each for each in parts if not ((each.low > _AT) | (each.high < 1 - _AT))[others].any()]
         below = max(
@@ -171,13 +171,13 @@ class Proofs:
 
     @property
     def _are_similar(self) -> bool:
-        """Whether stiffness and mass of all sections change by one factor each, and with them all else."""
+        """Whether only the length and common factors of the sections' stiffness and mass vary."""
         scene, names = self.search.scene, {*self._names}
         alone = names <= POWERS.keys() and is_bare(scene.beam) and is_clamped(scene)
         return alone and scene.physics == Physics() and differ_in_numbers_only(scene, names)
 
     def _in_the_bounds(self) -> _Limits:
-        """The factors of designs in the bounds, by powers of the numbers: between those at the corners."""
+        """Return the range of factors of designs in the bounds: from powers of the numbers at the corners."""
         ranges = self.search.ranges
         corners = [*Designs(ranges.inputs).extremes()]
         columns = {name: np.array([each[name] for each in corners]) for name in self._names}
@@ -186,7 +186,7 @@ class Proofs:
         return _Limits("the bounds", float(factors.min()) - _EXACT, float(factors.max()) + _EXACT)
 
     def _by_targets(self) -> Iterator[_Limits]:
-        """Yield the factors with which the answers meet each target, within their errors."""
+        """Yield the range of factors with which the answers meet each target, within their errors."""
         value, error = (each[0] for each in self.search.known(self.x[None]))
         for target, own, of_own in zip(self.search.targets, value.tolist(), error.tolist(), strict=True):
             # Frequencies at rest of similar designs differ by the factor alone.  Critical speeds do only if
@@ -200,14 +200,14 @@ class Proofs:
 
 
 def _is_quotient(target: Target) -> bool:
-    """Whether a target is a value or a limit of an answer that is a quotient."""
+    """Tell whether a target is a value or a limit of an answer that is a quotient."""
     return target.what in QUOTIENTS and not target.speed and target.best is None
 
 
 def _common(known: Sequence[dict[str, int]], names: Sequence[str]) -> np.ndarray | None:
-    """The ways of some numbers (p,) in several scenes; None where two are opposite, or one is not known.
+    """Return the signs (p,) of changes by numbers in several scenes; None if they differ or are not known.
 
-    A number without effect in some of the scenes raises or lowers as in the others.
+    A number without effect in some scenes has the sign of the others.
     """
     if not all(name in each for each in known for name in names):
         return None

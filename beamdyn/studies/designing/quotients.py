@@ -17,7 +17,7 @@ a body at the tip with its centre of mass at L + e
 
     m (R - L - e) (int_0^L w'^2 + e w'(L)^2) + m d^2 (w(L) + e w'(L))^2,
 
-and what its inertia adds has either sign.  Derivation: docs/conventions.md, section Equations.
+    and the part of its inertia has either sign.  Derivation: docs/conventions.md, section Equations.
 """
 
 from __future__ import annotations
@@ -42,15 +42,15 @@ _THICKNESS: dict[str, int] = dict.fromkeys(("beam.thickness", f"{SCALE}thickness
 _WIDTH = "beam.width", f"{SCALE}width"
 _TIP_MASS, _TIP_INERTIA, _LENGTH = {"beam.tip.mass": -1}, {"beam.tip.inertia": -1}, {"beam.length": -1}
 _NO_EFFECT = dict.fromkeys(("mount.radius", "mount.setting_angle", "mount.bending_angle"), 0)
-_FAR = 1.5  # R over the length from which on a longer beam buckles earlier: see `_of_buckling`
-_ROUNDING = 4 * np.finfo(float).eps  # relative, of distances that are equal but for it
+_FAR = 1.5  # R over the length above which a longer beam buckles at a lower speed: see `_of_buckling`
+_ROUNDING = 4 * np.finfo(float).eps  # relative rounding error of distances
 
 
 def ways(scene: Scene, what: str) -> dict[str, int]:
     """Find which numbers raise (1), lower (-1) or do not change (0) the quotient of every deflection.
 
-    Each does so whatever the values of the others, as long as what the scene must be for it remains true.
-    That is linear in each number: it holds in all bounds if it holds at all corners.
+    Each does so whatever the values of the others, as long as the scene meets the conditions for it.  These
+    are linear in each number: they hold for all numbers in the bounds if they hold at all corners.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def ways(scene: Scene, what: str) -> dict[str, int]:
     Returns
     -------
     dict of str to int
-        By the names of the numbers in scene files; empty where the answer is no such quotient.
+        1, -1 or 0 by the numbers' names in scene files; empty where the answer is no such quotient.
     """
     undamped = scene.damping == NO_DAMPING and scene.beam.electrodes is None
     if what not in QUOTIENTS or not undamped or scene.physics != Physics() or scene.mount.precone:
@@ -71,29 +71,31 @@ def ways(scene: Scene, what: str) -> dict[str, int]:
 
 
 def is_bare(beam: Beam) -> bool:
-    """Whether the sections are all the mass of a beam."""
+    """Tell whether a beam has no mass but that of its sections."""
     tip = beam.tip or TipMass(0.0)
     return not (beam.point_masses or tip.mass or _has_inertia(tip))
 
 
 def is_clamped(scene: Scene) -> bool:
-    """Whether the root is clamped and no springs hold the beam, so that sections have all elastic energy."""
+    """Tell whether the root is clamped and no spring holds the beam, so that sections have all energy."""
     return bool(np.isinf(scene.mount.root_stiffness)) and not scene.beam.point_springs
 
 
 def _sides(beam: Beam) -> dict[str, int]:
-    """Find those among sides of sections that have all elastic energy: as h^3 b by thickness h and width b.
+    """Find how thickness h and width b of sections change the quotient, if sections have all elastic energy.
 
-    What divides it is as h b of sections, and as it was of bodies, whose share must not be negative.
+    The energy is proportional to h^3 b.  Of the divisor, the share of sections is proportional to h b, and
+    that of bodies, which must not be negative, does not change.
     """
     return _THICKNESS | dict.fromkeys(_WIDTH, 0 if is_bare(beam) else 1)
 
 
 def _at_rest(scene: Scene) -> dict[str, int]:
-    """Find those of V/T.
+    """Find which numbers raise, lower or do not change V/T.
 
-    With a clamped root and no springs V is as 1/L^3 by length L, over w(x/L).  T is as L of sections, and
-    falls by the square of L at most, of what turns a body, unless that has an offset.
+    With a clamped root and no springs, for a given w(x/L), V is proportional to 1/L^3.  The share of sections
+    in T is proportional to L, and that of a body falls with L^-2 at most, by its rotation, if it has no
+    offset.
     """
     beam, tip = scene.beam, scene.beam.tip or TipMass(0.0)
     found = _STIFFNESS | _MASS | _TIP_MASS | _TIP_INERTIA | _NO_EFFECT
@@ -105,15 +107,15 @@ def _at_rest(scene: Scene) -> dict[str, int]:
 
 
 def _of_buckling(scene: Scene) -> dict[str, int]:
-    """Find those of V/G.
+    """Find which numbers raise, lower or do not change V/G.
 
     G rises with R.  Where R is at least the distance of all masses from the root, no share of G is negative,
-    and G rises with each mass; else it does if sections are all the mass, with which it is in proportion.
-    Over w(x/L), with a clamped root and no springs, the shares in G/V of sections and of a tip mass are
+    and G rises with each mass.  If there is no mass but the sections', G is proportional to it for any R.
+    With a clamped root and no springs, for a given w(x/L), the shares of sections and a tip mass in G/V are
 
         L^3 R a - L^4 b + d^2 L^4 c  with b <= a,    L^2 R a - L^3 a + d^2 L^3 c,
 
-    times what does not depend on L; they rise with L where R is at least 4/3 L, and 3/2 L.
+    times constants; they rise with L where R is at least 4/3 L and 3/2 L, respectively.
     """
     beam, tip = scene.beam, scene.beam.tip or TipMass(0.0)
     inward = exact_cos_sin(scene.mount.setting_angle)[0]

@@ -31,10 +31,10 @@ from beamdyn.studies.study_result import Study
 MOST_SOLVES = 60  # largest number of designs that a search computes
 _EXACT = 1e-10  # relative miss of a target that counts as none, if the error of the answer is no larger
 _STEP = 1e-5  # step of differences within a search, as a share of the range of a number
-DIFFERENCE = 1e-3  # step of the differences that give the derivatives of answers, as such a share
-_CLOSE = 1e-13  # interval to which a root is bracketed, as such a share
-_AT_END = 1e-9  # distance within which a minimization is at a bound, as such a share
-_SCANNED, _SPREAD = 9, 4  # designs with which the search begins: of one number, and for each of several
+DIFFERENCE = 1e-3  # step of the differences for the derivatives of answers, as a share of a range
+_CLOSE = 1e-13  # interval to which a root is bracketed, as a share of a range
+_AT_END = 1e-9  # distance from a bound within which a minimization is at it, as a share of a range
+_SCANNED, _SPREAD = 9, 4  # number of first designs: over a single number, and per number if there are several
 _ROUNDING = 4 * np.finfo(float).eps
 _FLAT = 1e-12  # change of the objective at which a minimization ends
 # Largest miss, as a logarithm, that Newton's steps remove, and the number of these steps.
@@ -104,7 +104,7 @@ class Search:
     discretization, tolerance
         As for `study`.
     spare : int
-        Designs that are left for the last steps.
+        Number of designs that are kept for the last steps.
     """
 
     scene: Scene
@@ -120,7 +120,7 @@ class Search:
 
     @cached_property
     def asked(self) -> dict[Asked, list[int]]:
-        """The questions for studies, each with the indices of the targets that need its answer."""
+        """Questions for studies, each with the indices of the targets that need its answer."""
         found: dict[Asked, list[int]] = {}
         for k, target in enumerate(self.targets):
             found.setdefault(target.asked, []).append(k)
@@ -137,7 +137,7 @@ class Search:
             return study(self.scene, vary, **asked._asdict(), modes=modes, **how)
 
     def _answers(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Answers, nan where there is none and inf beyond the top speed, and relative errors (N, m)."""
+        """Compute answers (nan if there is none, inf beyond the top speed) and relative errors (N, m)."""
         value = np.full((len(shares), len(self.targets)), np.nan)
         error = np.zeros(value.shape)
         for asked, targets in self.asked.items():
@@ -148,7 +148,7 @@ class Search:
             for k in targets:
                 place = self.targets[k].place(found.labels)
                 if place is not None:
-                    # No crossing up to the top speed.
+                    # Without a crossing up to the top speed the answer is inf.
                     beyond = np.where(found.status == NO_RESONANCE, np.inf, found.value)
                     value[:, k], error[:, k] = (
                         each.reshape(len(shares), -1)[:, place] for each in (beyond, found.error)
@@ -163,7 +163,7 @@ class Search:
         Raises
         ------
         Spent
-            If these are more than the search may still compute.
+            If there are more such designs than the search may still compute.
         """
         new = np.array([x for x in shares if x.tobytes() not in self._computed])
         if len(new):
@@ -198,7 +198,7 @@ class Search:
         return np.where(missed <= _EXACT, 0.0, missed)
 
     def met(self, shares: np.ndarray) -> np.ndarray:
-        """Whether designs that are computed meet the targets (N, m), within the errors of the answers."""
+        """Tell which targets designs (N, p) meet within the errors of the answers: shape (N, m)."""
         error = self.known(shares)[1]
         return self.missed(shares) <= np.where(np.isfinite(error), error, 0.0)
 
@@ -231,7 +231,7 @@ class Search:
         with suppress(Spent):
             replace(self, spare=len(self.own) + _CORRECTIONS)._explore(
                 seed
-            )  # the copy shares its table of computed designs with this search
+            )  # the copy stores its designs in the table of this search
         with suppress(Spent):
             self._correct(self.ranked(self.designs)[0])
         return self.ranked(self.designs)[0]
@@ -365,17 +365,17 @@ def _step_within(slopes: np.ndarray, excess: np.ndarray, x: np.ndarray) -> np.nd
 
 
 def _at(function: Function) -> Callable[[np.ndarray], Any]:
-    """A function of one design (p,), of one of many."""
+    """Turn a function of designs (N, p) into one of a single design (p,)."""
     return lambda x: function(_within(x)[None])[0]
 
 
 def _within(x: np.ndarray) -> np.ndarray:
-    """Shares (p,) within the ranges, at the ends of which steps of a minimization that round off end."""
+    """Return shares (p,) clipped to the ranges, and set to a bound from which they differ by rounding."""
     return np.where(x < _AT_END, 0.0, np.where(x > 1 - _AT_END, 1.0, x))
 
 
 def _slopes(function: Function, x: np.ndarray) -> np.ndarray:
-    """Differences (..., p) of a function at a design (p,) over a small step, away from the upper bound."""
+    """Compute derivatives (..., p) of a function at a design (p,) by differences within the bounds."""
     x = _within(x)
     steps = np.where(x + _STEP <= 1, _STEP, -_STEP)
     values = function(np.vstack([x, x + np.diag(steps)]))

@@ -29,7 +29,7 @@ class Asked(NamedTuple):
 
 @dataclass(frozen=True)
 class Target:
-    """What an answer of a design shall be: a value, within a limit, or the largest or smallest.
+    """Target for an answer of a design: a value, a limit, or to be the largest or smallest.
 
     Exactly one of `equals`, `at_least`, `at_most` and `best` is given.
 
@@ -124,7 +124,7 @@ class Target:
         return next((k for k, label in enumerate(labels) if label in (wanted, f"{wanted} (forced)")), None)
 
     def excess(self, value: np.ndarray) -> np.ndarray:
-        """Compute the logarithm of answers over what is wanted, or how much better than the limit they are.
+        """Compute the logarithm of answers over the wanted value, or by how much they keep a limit.
 
         It is 0 where a value or limit is met exactly, and positive where a limit is kept; for an answer that
         is to be as small or as large as possible, it is larger for a better answer.  Answers of beams are
@@ -175,5 +175,5 @@ def _compressed(excess: np.ndarray) -> np.ndarray:
 
 
 def say_number(value: float, unit: str) -> str:
-    """Word a value with six digits and its unit, as each medium shows it."""
+    """Word a value with six digits and its unit; each medium, such as files, may show another unit."""
     return Speeds(value) if unit == "rad/s" else say_value(value, unit, 6)

@@ -1,4 +1,4 @@
-"""The largest Lyapunov exponent of free motion whose coefficients have two rates that do not meet again.
+"""The largest Lyapunov exponent of free motion whose coefficients have two incommensurate rates.
 
 There is no period and no monodromy matrix.  Over a period T of the faster phase, a state is mapped by a
 matrix A that depends on the slower phase theta there, smoothly and periodically.  The map over m such periods
@@ -44,10 +44,9 @@ from beamdyn.transient.system import ModalSystem
 
 _STAGES = 8
 _FIRST, _MOST = 8, 128  # harmonics of the slower phase at the first attempt, and at the last
-# Most periods of the faster phase that are integrated, so that their ends cover the circle of the slower
-# phase.
+# Most periods of the faster phase that are integrated for their ends to sample the slower phase's circle.
 _PERIODS = 4096
-# Condition number of the harmonics at these ends, above which the ends do not cover the circle.
+# Condition number of the harmonics at these ends, above which the ends do not sample the circle.
 _SPREAD = 30.0
 _RESOLVED = 1e-12  # size of the last harmonics, over that of the matrix, at which they count as resolved
 _GRID = 4  # values of the slower phase for each harmonic
@@ -111,7 +110,10 @@ def largest_exponent(scene: Scene, equations: Equations) -> LargestExponent:
 
 @dataclass(frozen=True)
 class Cocycle:
-    """The map over a period [s], as harmonics -M to M of the slower phase (2 M + 1, m, m), and their tail."""
+    """The map over a period [s] as harmonics -M to M of the slower phase (2 M + 1, m, m).
+
+    `tail` is the size of the last harmonics, over the largest.
+    """
 
     harmonics: np.ndarray
     period: float
@@ -205,7 +207,7 @@ def _turned(B: np.ndarray, angle: float) -> np.ndarray:
 def _mean(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Compute means over a grid of phases, and their errors from means over every other phase.
 
-    Inf if unresolved.
+    The errors are inf where the grid does not resolve the values.
     """
     even, odd = values[::2].mean(axis=0), values[1::2].mean(axis=0)
     apart = np.abs(even - odd)
@@ -215,7 +217,7 @@ def _mean(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _fine_enough(B: np.ndarray) -> np.ndarray | None:
     """Refine matrices to a grid that resolves a product of two of them; None if the finest grid does not.
 
-    The product has twice the harmonics of its factors: these are negligible in the upper half of the grid's.
+    A product has twice the harmonics of its factors, which must be negligible in the grid's upper half.
     """
     norms = np.linalg.norm(B, axis=(1, 2))
     if norms.min() < _EVEN * norms.max():
@@ -235,7 +237,7 @@ def _fine_enough(B: np.ndarray) -> np.ndarray | None:
 
 
 def _cover(alpha: float, most: int) -> tuple[int, np.ndarray]:
-    """Return a number of periods whose ends cover the circle, and the harmonics at these ends."""
+    """Return a number of periods whose ends sample the slower phase's circle, and harmonics at these ends."""
     count = min(3 * (2 * most + 1), _PERIODS)
     while True:
         basis = np.exp(1j * np.outer(alpha * np.arange(count), np.arange(-most, most + 1)))

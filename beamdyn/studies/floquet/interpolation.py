@@ -61,7 +61,7 @@ class ChebyshevAxis:
     def coefficients(self, samples: np.ndarray, axis: int) -> np.ndarray:
         """Return Chebyshev coefficients along an axis from samples at the nodes.
 
-        The samples if degree is None.
+        Without a polynomial (degree None) these are the samples themselves.
         """
         if self.degree is None:
             return samples
@@ -115,8 +115,8 @@ def interpolate_on_grid(
     Parameters
     ----------
     function : callable
-        The function: it takes pairs of numbers, also between the given values, and returns an array (k,) of
-        each.
+        The function: it takes pairs of numbers, also between the given values, and returns an array (k,) for
+        each pair.
     values : tuple of ndarray, shapes (A,) and (B,)
         Values of the two numbers on the grid.
     tolerance : callable

@@ -24,19 +24,19 @@ from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 _STEP, _FIRST, _LEAST = 1 / 20, 1 / 160, 1e-6
 _WIDER = 2.0  # largest ratio of a step along a curve to the step before
 _TURNS, _FIRST_TURNS = 0.9, 0.2  # least cosine of the angle between steps, later and at the first step
-# Half width of the range in which the limit is sought, over the one used before, and its least value.
+# Factor by which the half width of a bracket about the limit is reduced, and its least value.
 _NARROWER, _NARROWEST = 0.25, 1e-7
 _FINE = 1e-11  # accuracy of a root, as a share of the ranges of the two numbers
 # Distances, as shares of the ranges, at which the verdicts on both sides of a point are tried.
 _ERRORS = (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)
 _MOST = 400  # largest number of points of a curve in each direction
-# Distance from the border of the chart, over a piece of the curve, within which the piece ends there.
+# Distance from the border of the chart, over the length of a segment, within which a segment ends there.
 _ROUNDED = 1e-9
 _SLACK = 0.5  # share of a cell by which a curve of straight pieces may miss an edge that the limit crosses
 
 
 class LimitPoint(NamedTuple):
-    """A point of a limit: shares of the ranges (2,), error, and the multiplier that leaves the circle."""
+    """A point of a limit: shares of the ranges (2,), error, and multiplier that leaves the unit circle."""
 
     place: np.ndarray
     error: float
@@ -63,7 +63,7 @@ class LimitTracer:
     _known: dict[bytes, Multipliers] = field(default_factory=dict)
 
     def curves(self) -> list[list[LimitPoint]]:
-        """Follow all limits, each once: a curve that passes the beginning of another replaces it."""
+        """Follow all limits, each once: a curve that passes the start of an earlier curve replaces that."""
         found: list[tuple[list[LimitPoint], np.ndarray, np.ndarray]] = []
         for low, high in self._edges():
             if any(_crosses(curve, low, high) for curve, *_ in found):
@@ -115,7 +115,7 @@ class LimitTracer:
     # The curve --------------------------------------------------------------------------------------
 
     def _edges(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield the edges of the chart from a stable to an unstable end, each end as shares (2,)."""
+        """Yield the ends, as shares (2,), of the grid's edges from a stable to an unstable point."""
         values = [(i.values - i.values[0]) / max(float(np.ptp(i.values)), 1e-300) for i in self.inputs]
         grid = np.stack(np.meshgrid(*values, indexing="ij"), axis=-1)
         for axis in (0, 1):
@@ -126,7 +126,7 @@ class LimitTracer:
                 yield from zip(at[low][crossed], at[high][crossed], strict=True)
 
     def _between(self, low: np.ndarray, high: np.ndarray) -> LimitPoint:
-        """Find the limit on an edge of the chart, given by its ends."""
+        """Find the limit on an edge of the grid, given by its ends."""
         x = toms748(lambda x: self._beyond(low + x * (high - low)), 0.0, 1.0, xtol=_FINE)
         return self._point(low + x * (high - low), (high - low) / np.linalg.norm(high - low))
 
@@ -160,9 +160,8 @@ class LimitTracer:
     ) -> tuple[LimitPoint | None, float]:
         """Find the limit on the normal of a place, and the half width that brackets it.
 
-        None if there is none.
-
-        A narrow tongue has another limit close by, so that the width must be less than its own.
+        The limit is None if it is not found.  As a narrow tongue has another limit close by, the width is
+        reduced until only one is bracketed.
         """
         half = width
         while half > _NARROWEST:
@@ -177,7 +176,7 @@ class LimitTracer:
 
 
 def _nearest(found: Multipliers) -> tuple[float, complex]:
-    """Return the least distance of two undamped multipliers that may leave the circle, and their middle."""
+    """Return least distance and mean of two undamped multipliers that may leave the unit circle."""
     value, sign = found.value[0], np.zeros(0) if found.sign is None else found.sign[0]
     apart = np.abs(value[:, None] - value)
     barred = (sign[:, None] * sign > 0) | np.eye(len(value), dtype=bool)
@@ -193,14 +192,14 @@ def _room(place: np.ndarray, along: np.ndarray) -> float:
 
 
 def _within_border(place: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return the direction along the border on which a place (2,) lies, on the side of a normal."""
+    """Return the direction of the border on which a place (2,) lies, pointing to the side of a normal."""
     on = np.minimum(place, 1 - place)
     along = np.where(np.arange(2) == on.argmin(), 0.0, np.sign(normal))
     return along if along.any() else normal
 
 
 def _crosses(curve: list[LimitPoint], low: np.ndarray, high: np.ndarray) -> bool:
-    """Whether a curve crosses an edge of the chart, with unstable motion on the same side."""
+    """Tell whether a curve crosses an edge of the grid, with unstable motion on the same side."""
     axis = int(np.abs(high - low).argmax())
     way, slack = np.sign(high - low)[axis], _SLACK * abs(high - low)[axis]
     ends = sorted((low[axis], high[axis]))

@@ -70,7 +70,8 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
     Returns
     -------
     Monodromy
-        Of this scene.  Its error is estimated by a second solution, with two thirds of the steps.
+        The scene's monodromy matrix; its error is estimated by a second solution with two thirds of the
+        steps.
     """
     assert scene.motion is not None
     system = ModalSystem(equations, scene.motion)
@@ -86,7 +87,7 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
 
 
 def _scale(equations: Equations, period: float) -> np.ndarray:
-    """Return factors (2 n,) of the state: for displacements the frequencies at rest, or the period's."""
+    """Return factors (2 n,) of the state: for displacements the frequency at rest, or that of the period."""
     frequency = np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"])))
     frequency = np.where(frequency > 0, frequency, 2 * math.pi / period)
     return np.concatenate([frequency, np.ones(equations.size)])

@@ -1,7 +1,7 @@
 """Floquet multipliers, the eigenvalues of monodromy matrices, and the stability that follows from them.
 
 To first order, an error d of a matrix moves a multiplier by at most k d.  Here k is its condition number:
-the norms of its left and right eigenvector, multiplied, over their inner product.  Where two multipliers
+the product of the norms of its left and right eigenvector over their inner product.  Where two multipliers
 meet, k is unbounded, but k times their distance is not: the two are m +- sqrt(s), and an error D of s moves
 them by at most sqrt(D).
 
@@ -66,7 +66,7 @@ class Multipliers:
         return np.select([outside, stable], [UNSTABLE, STABLE], UNDECIDED)
 
     def _may_leave(self, sign: np.ndarray) -> np.ndarray:
-        """Whether multipliers of undamped motion may lie off the unit circle, as they meet others, (P,)."""
+        """Tell whether multipliers of undamped motion that meet may lie off the unit circle: (P,)."""
         reach = self.error[:, :, None] + self.error[:, None, :]
         meet = np.abs(self.value[:, :, None] - self.value[:, None, :]) <= reach
         of_one_sign = sign[:, :, None] * sign[:, None, :] > 0

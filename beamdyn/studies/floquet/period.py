@@ -12,8 +12,8 @@ from beamdyn.scene.motion import Rotation
 from beamdyn.scene.names_elsewhere import REPEATING
 from beamdyn.scene.scene import Scene
 
-MOST_TURNS = 64  # largest number of periods of the first phase after which all phases must meet again
-_MOST_OTHERS = MOST_TURNS**2  # largest number of periods of any other phase in that time
+MOST_TURNS = 64  # largest number of periods of the first phase in a common period of all phases
+_MOST_OTHERS = MOST_TURNS**2  # largest number of periods of any other phase in a common period
 _COMMENSURATE = 1e-12  # relative distance of a ratio of rates from a fraction, that counts as rounding
 
 
@@ -25,7 +25,7 @@ class Period(NamedTuple):
     time : float
         The time [s].
     turns : int
-        Turns of the first phase in it.
+        Turns of the first phase in this time.
     """
 
     time: float
@@ -57,7 +57,7 @@ def rates_of(scene: Scene) -> tuple[float, ...]:
 
 
 def meet_again(scene: Scene) -> bool:
-    """Whether all phases of the motion repeat together within the time that `period_of` allows."""
+    """Tell whether the phases of the motion have a common period within the limits of `period_of`."""
     rates = rates_of(scene)
     return all(_is_fraction(rate / rates[0]) for rate in rates)
 
@@ -68,7 +68,8 @@ def period_of(scene: Scene) -> Period:
     Raises
     ------
     InvalidValue
-        As `rates_of`, or if its phases do not meet again within 64 periods of the first, or 4096 of another.
+        As `rates_of`, or if the phases have no common period within 64 periods of the first, or 4096 of
+        another.
     """
     rates = rates_of(scene)
     turns = math.lcm(*(_fraction(rate, rates[0]).denominator for rate in rates))
@@ -76,7 +77,7 @@ def period_of(scene: Scene) -> Period:
 
 
 def _is_fraction(ratio: float) -> bool:
-    """Whether a ratio is that of two small whole numbers, within rounding."""
+    """Tell whether a ratio is that of two small whole numbers, within rounding."""
     found = Fraction(ratio).limit_denominator(MOST_TURNS)
     return abs(found - Fraction(ratio)) <= _COMMENSURATE * ratio and found.numerator <= _MOST_OTHERS
 

@@ -27,14 +27,14 @@ _STRAIGHT = "stability in periodic motion is that of the straight beam"
 
 @dataclass(frozen=True)
 class PeriodicScenes(FieldsOnly):
-    """Scenes that differ in some numbers from one in periodic motion.
+    """Scenes in periodic motion that differ from a given scene in some numbers.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     modes : int
-        Number of modes at rest of each field.
+        Number of modes at rest of each uncoupled displacement, such as bending in each plane.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     """
@@ -90,7 +90,7 @@ def check_periodic(
 ) -> PeriodicScenes:
     """Check the arguments of an analysis of stability in periodic motion, and choose the physics if "auto".
 
-    Of scenes over some inputs it is that of the extreme one which needs the most effects.
+    If inputs are varied, the physics is that of the extreme scene that needs the most effects.
 
     Raises
     ------

@@ -56,7 +56,7 @@ class FloquetMultipliers(JudgedByRepeating):
         Their estimated errors, nondimensional.
     krein_sign : ndarray, shape (2 n,)
         Without damping 1 or -1 for multipliers on the unit circle, which leave it only where they meet one of
-        the other sign; 0 of others.
+        the other sign; 0 for others.
     period : float
         Period of the equations of motion [s]; with `method` "exponent" that of the faster phase.
     warnings : tuple of str
@@ -64,8 +64,8 @@ class FloquetMultipliers(JudgedByRepeating):
     provenance : Provenance
         How it was computed.
     method : {"multipliers", "exponent"}
-        Of a periodic motion its multipliers, of one with two rates that do not meet again the largest
-        Lyapunov exponent, between two bounds: then there are no multipliers.
+        "multipliers" for a periodic motion; for two rates without a common period "exponent": bounds of the
+        largest Lyapunov exponent, and no multipliers.
 
     Examples
     --------
@@ -103,7 +103,7 @@ class FloquetMultipliers(JudgedByRepeating):
 
     @property
     def spectral_radius(self) -> float:
-        """Growth of free motion over a period: magnitude of the largest multiplier, or from the exponent."""
+        """Growth of free motion over a period: magnitude of the largest multiplier, or by the exponent."""
         known = self.method == MULTIPLIERS
         return float(np.abs(self.multipliers[0])) if known else math.exp(self.growth_rate * self.period)
 
@@ -144,10 +144,10 @@ def floquet_multipliers(
     ----------
     scene : Scene
         The scene, in a motion that repeats itself, such as `PulsatingRotation` or `ShakenCarrier`, or in
-        steady rotation with gravity.  Where two phases of motion, road and gravity do not meet again, the
+        steady rotation with gravity.  Where two phases of motion, road and gravity have no common period, the
         largest Lyapunov exponent decides: `method` says which was used.
     modes : int
-        Number of modes at rest of each field.
+        Number of modes at rest of each uncoupled displacement, such as bending in each plane.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
 
@@ -158,7 +158,7 @@ def floquet_multipliers(
     Raises
     ------
     ValueError
-        If there is no motion, its rates are more than two that do not meet again, or an argument is out of
+        If there is no motion, it has more than two rates without a common period, or an argument is out of
         its range.
 
     References
@@ -199,7 +199,7 @@ def floquet_multipliers(
 
 
 def _by_exponent(scenes: PeriodicScenes, start: float) -> FloquetMultipliers:
-    """Answer by the largest exponent, for a motion whose two rates have no common period."""
+    """Compute the result by the largest exponent, for a motion whose two rates have no common period."""
     scene, (model, _) = scenes.scene, scenes.modal(scenes.scene)
     found = largest_exponent(scene, scenes.equations(scene))
     method = (

@@ -1,8 +1,9 @@
 """Charts of stability over two numbers of a scene in periodic motion.
 
 The monodromy matrix is a smooth function of the numbers of the scene, though its eigenvalues are not: it is
-integrated at a few pairs of numbers and interpolated at all others.  What that leaves undecided is integrated
-by itself; so is every scene where the numbers change after how many turns the phases meet, if they do.
+integrated at a few pairs of numbers and interpolated at all others.  Scenes that remain undecided are
+integrated by themselves; so is every scene if the number of turns in the common period, if any, varies over
+the chart.
 """
 
 from __future__ import annotations
@@ -156,7 +157,7 @@ def stability_chart(
         Values in SI, ascending, of two numbers by their names in scene files, such as "motion.frequency" and
         "motion.fluctuation", or "speed" and "mount.setting_angle".
     modes : int
-        Number of modes at rest of each field.
+        Number of modes at rest of each uncoupled displacement, such as bending in each plane.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     workers : int
@@ -222,7 +223,7 @@ def _check_inputs(vary: Mapping[str, Sequence[float] | np.ndarray]) -> tuple[Var
 
 @dataclass(frozen=True)
 class Points(FieldsOnly):
-    """A task: some of the scenes, by their numbers, whose free motion is to be integrated."""
+    """A task: scenes, given by their numbers, whose free motion is to be integrated."""
 
     scenes: PeriodicScenes
     numbers: tuple[dict[str, float], ...]
@@ -234,7 +235,7 @@ def integrate(points: Points) -> list[Monodromy]:
 
 
 def judge(points: Points) -> list[dict[str, np.ndarray]]:
-    """Return the verdicts of a task: by multipliers, or by the largest exponent without a period."""
+    """Return the verdicts of a task: by multipliers, or where there is no period by the largest exponent."""
     return [_verdict(points.scenes, numbers) for numbers in points.numbers]
 
 
@@ -294,7 +295,7 @@ class _Grid:
         return {name: each.reshape(self.shape) for name, each in found.items()}, integrated + len(undecided)
 
     def _keeps_ratio(self) -> bool:
-        """Whether the phases meet after the same turns all over the chart, by its corners and middles."""
+        """Tell whether the period has the same number of turns all over the chart, by corners and middles."""
         rows, columns = (sorted({0, n // 2, n - 1}) for n in self.shape)
         scenes = [self.scenes.at(Designs(self.inputs).at(i, j)) for i in rows for j in columns]
         rates = [np.array(rates_of(each)) for each in scenes]
@@ -318,7 +319,7 @@ class _Grid:
         return [each for k in sorted(found) for each in found[k]]
 
     def _sets_the_period(self, place: int) -> bool:
-        """Whether the period is inverse to a number, so that its reciprocal is the smoother variable."""
+        """Tell whether the period is inverse to an input, whose reciprocal is then the smoother variable."""
         first, values = self.numbers(0), self.inputs[place].values
         ends = [{**first, self.inputs[place].name: float(values[k])} for k in (0, -1)]
         periods = np.array([period_of(self.scenes.at(end)).time for end in ends])
@@ -353,7 +354,8 @@ class _Grid:
         on_grid = interpolate_on_grid(sampled, (first, second), lambda: max(errors), slice(size**2))
         flat = on_grid.value.reshape(-1, 2 * size**2 + 1)
         matrix, form = flat[:, :-1].reshape(-1, 2, size, size).swapaxes(0, 1)
-        # Bound of the norm of a matrix whose entries all have the interpolation error.
+        # The norm of a matrix is at most its size times the bound of its entries, here the interpolation
+        # error.
         error = np.full(len(flat), max(errors) + size * on_grid.error)
         return Monodromy(
             matrix, error, flat[:, -1], None if True in damped else form, max(turns)

@@ -41,9 +41,9 @@ class Nearby(Generic[Evaluated]):
     values : list
         Matrices at `PLACES` places.
     weights : ndarray, shape (PLACES,)
-        The derivative is their sum times the values [1 / unit of the number].
+        The derivative is the sum of weights times values [1 / unit of the number].
     last : ndarray, shape (PLACES,)
-        Weights of the last term of that polynomial, which bounds what it misses.
+        Weights that give the last term of the interpolating polynomial, which bounds its error.
     width : float
         Half of the interval [unit of the number].
     """
@@ -200,7 +200,7 @@ class PerturbedModes:
         )
 
     def scales(self) -> np.ndarray:
-        """Sizes (k,) of the eigenvalues' derivatives by a relative change of mass and stiffness.
+        """Compute sizes (k,) of the eigenvalues' derivatives by a relative change of mass and stiffness.
 
         All entries of the matrices count as if they had one sign: rounding errors are relative to these.
         """
@@ -219,7 +219,7 @@ class PerturbedModes:
     def _slope(self, k: int) -> complex:
         """Compute the derivative of the dynamic stiffness by the eigenvalue, in mode k.
 
-        It is the product with the mode's left and right eigenvector.
+        This is w^T (2 s M + C + omega G) v with the mode's eigenvectors w and v.
         """
         p, left, right = self.pencil, self.left[:, k], self.right[:, k]
         of_rate = left @ (p.C @ right) + self.speed * (left @ (p.G @ right))
@@ -239,7 +239,7 @@ def _left(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> np.n
     if not pencil.C.any():
         return v.conj()
     P = s**2 * pencil.M + s * (pencil.C + speed * pencil.G) + pencil.K0 + speed**2 * pencil.K2
-    # Includes the mass, as a hinge has no stiffness.
+    # The scale includes the mass, as a hinge has no stiffness.
     scale = np.sqrt(np.diag(pencil.K0) + abs(s) ** 2 * np.diag(pencil.M))
     return scipy.linalg.svd(P.T / np.outer(scale, scale))[2][-1].conj() / scale
 
@@ -276,9 +276,9 @@ class Changes:
     of : tuple of list of PencilChange
         Changes of the model, and those of the coarser one.
     missed : list of PencilChange
-        What those of the model may lack, as their dependence on a number is not resolved.
+        Errors of the model's changes, as polynomials do not fully resolve the dependence on a number.
     rounding : ndarray, shape (n,)
-        Their rounding error, relative to the matrices [1 / unit of the number].
+        Rounding error of the changes, relative to the matrices [1 / unit of the number].
     refusals : tuple of str
         Which numbers cannot change alone, and why: their derivatives are nan.
     """
@@ -333,7 +333,7 @@ def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nea
 
 
 def _last(nearby: Nearby[_Pencils]) -> PencilChange:
-    """Compute the last term of the polynomials for the matrices over a number: small if they resolve."""
+    """Compute the last terms of the polynomials of the matrices: small if the polynomials resolve them."""
     return PencilChange.of([fine for fine, _ in nearby.values], nearby.last)
 
 
@@ -358,7 +358,7 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
 def steady_pencils(model: Model, coarse: np.ndarray | None) -> tuple[SteadyPencil, SteadyPencil]:
     """Return the equations of a model at steady speeds, and those of its coarser model.
 
-    The coarser one's are over the functions at the indices `coarse`, where it has no others.
+    The coarser model uses the functions with the indices `coarse`; None if it has functions of its own.
     """
     fine = model.equations.steady()
     return fine, model.coarser.equations.steady() if coarse is None else fine.part(coarse)

@@ -104,7 +104,7 @@ def frequency_sensitivities(
         derivative = np.vstack([derivative, rate])
         error = np.vstack([error, np.abs(rate - other) + of_shapes])
     lost, words = _without_derivative(found)
-    # The error of the frequency counts, as the derivative is relative to it.
+    # The derivative is proportional to the frequency, and has its relative error besides.
     error += np.where(lost, 0.0, found.error) * np.abs(derivative)
     derivative[:, lost], error[:, lost] = np.nan, np.inf
     answer = (f"mode {k}" for k in range(1, modes + 1)), "Hz", found.frequency
@@ -290,11 +290,13 @@ def _compared(
     changes : Changes
         Changes of the matrices by n numbers.
     rate : callable
-        The change of the answers by the model, 0, or by the coarser one, 1, where their matrices change.
+        Function that gives the change of the answers of the model (0) or the coarser one (1) for changed
+        matrices.
     scale : ndarray, shape (k,), or float
         By how much a relative change of the matrices changes the answers.
     part, unit : callable, float
-        Part of a change that is one of the answers, and their unit.
+        Function that takes the answer's part of a change, such as the imaginary part, and unit of the
+        answers.
     """
     shape, of_models = (len(changes.rounding), np.size(scale)), (*enumerate(changes.of), (0, changes.missed))
     fine, coarse, missed = (

@@ -27,7 +27,7 @@ from beamdyn.scene.scene import Scene
 
 _TOUCHING = 1e-6  # distance between two points, over the length, at which they count as touching
 _STEP = 0.01  # step of a number, as a share of its value or of the usual size of its kind
-_FURTHER = 2  # another scene is solved for this many times as many modes, so that each finds its match
+_FURTHER = 2  # factor of the number of modes of another scene, so that each mode finds its match
 _SAME = 0.2  # relative distance up to which answers of two scenes may be the same one
 _NEAR = 0.8  # least similarity of a name that is suggested for a mistyped one: many names begin alike
 _ACROSS = "beam.tip.offset_across"
@@ -89,7 +89,7 @@ def numbers_of(
     Raises
     ------
     InvalidValue
-        If a name is none of theirs.
+        If the scene has no number of a given name.
     """
     found = {each.name: each for each in _all(scene)}
     if names is None:
@@ -108,7 +108,7 @@ def numbers_of(
 def _all(scene: Scene) -> Iterator[SceneNumber]:
     """Yield the numbers on which frequencies depend.
 
-    For a property that varies along the beam, its factor.
+    A property that varies along the beam is represented by its factor.
     """
     for path in paths_of(scene):
         value = _value_of(scene, path)
@@ -137,7 +137,7 @@ def _has_constant_section(scene: Scene) -> bool:
 
 
 def _matters(scene: Scene, path: str, value: float) -> bool:
-    """Whether frequencies change with a number: not if it is infinite, absent or not modelled."""
+    """Tell whether frequencies change with a number: not if it is infinite, absent or not modelled."""
     table, _, key = path.partition(".")
     if (
         table in ("motion", "tip_load", SPEED)
@@ -274,9 +274,7 @@ class Sensitivities(JudgedByRepeating):
     def _same_answers(self, found: Sensitivities) -> np.ndarray:
         """Return the index (k,) of the nearest answer of another scene's result for each answer.
 
-        -1 if none is near.
-
-        Modes that an effect adds may stand between the others.
+        The index is -1 if none is near.  Modes that an effect adds may lie between the others.
         """
         apart = np.abs(found.value / self.value[:, None] - 1)
         near = np.where(np.isfinite(apart), np.minimum(apart, 1.0), 1.0)
@@ -293,16 +291,16 @@ class Sensitivities(JudgedByRepeating):
 
     @property
     def bending_speed(self) -> float:
-        """Speed [rad/s] at which large deflection is judged: of the frequencies, or the largest answer."""
+        """Speed [rad/s] at which large deflection is judged: of the frequencies, else the largest answer."""
         return self.speed if self.unit == "Hz" else float(np.nanmax(self.value, initial=0.0))
 
     def by(self, name: str) -> np.ndarray:
-        """Return the derivatives by the number of a name, shape (k,).
+        """Return the derivatives by the number with a given name, shape (k,).
 
         Raises
         ------
         ValueError
-            If there is none of this name.
+            If there is no number of this name.
         """
         names = [each.name for each in self.inputs]
         if name not in names:

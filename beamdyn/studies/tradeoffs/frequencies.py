@@ -208,7 +208,7 @@ def _full_call(scene: Scene, speeds: np.ndarray, modes: int, tolerance: float) -
 AS_GIVEN, ALL = "as given", "all of these"
 _FUNCTIONS = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20)
 _NOTHING = 1e-10  # relative change of the frequencies below which an effect is not measured
-_BETTER = 0.5  # share of the model error that more physics must get below to count as a gain
+_BETTER = 0.5  # fraction of the model error below which more physics must reduce it to count as a gain
 _COMPARED = (STRETCH.name,)  # effects that are modelled only for comparisons with papers
 
 
@@ -354,8 +354,8 @@ def _solve_choice(name: str, scene: Scene, speed: float, modes: int) -> Choice:
 
 
 def _count(scene: Scene, modes: int) -> int:
-    """Return the number of modes among which the wanted ones are.
+    """Return the number of lowest modes to compute, among which the wanted ones are.
 
-    A second plane of bending has others between.
+    Modes of a second plane of bending may lie between them.
     """
     return 2 * modes + 2 if scene.physics.planes == 2 else modes

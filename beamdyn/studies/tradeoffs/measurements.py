@@ -51,7 +51,7 @@ class Measurement:
     scatter: float = field(default=0.0, metadata=ADDED_LATER)
 
     def ties_with(self, other: Measurement) -> bool:
-        """Whether the times differ by at most twice the scatter of either."""
+        """Tell whether the times of both differ by at most twice the scatter of either."""
         return abs(self.time - other.time) <= _TIE * max(self.scatter, other.scatter)
 
 
@@ -92,7 +92,7 @@ def number_of(number: int, one: str, many: str) -> str:
 
 
 def pareto_front(measurements: Sequence[Measurement]) -> tuple[Measurement, ...]:
-    """Find the Pareto front: the measurements than which none is better in error or time and as good in both.
+    """Find the Pareto front: measurements that no other equals in error and time while better in one.
 
     Parameters
     ----------
@@ -304,7 +304,7 @@ class _Timed:
 def _repeat_in_turns(timed: Sequence[_Timed], end: float) -> None:
     """Repeat, in turns until a time [s], the settings that may be the cheapest for some number of digits.
 
-    The speed of a machine drifts: settings that were timed one after the other are not told apart by it.
+    As the speed of a machine drifts, settings timed long after each other cannot be compared closely.
     """
     limits = [10.0**-k for k in range(1, _MOST_DIGITS + 1)]
     cheapest = {e: min((min(t.times) for t in timed if t.error <= e), default=nan) for e in limits}
