@@ -24,6 +24,13 @@ def logged(log, name, seconds):
     return name
 
 
+def held(log, name, go):
+    """A task that leaves a line in a log when it begins, and ends when a file is there."""
+    logged(log, name, 0.0)
+    wait_for(Path(go).exists)
+    return name
+
+
 def begun(log):
     return [line.split() for line in Path(log).read_text().splitlines()] if Path(log).exists() else []
 
@@ -66,12 +73,13 @@ def test_results_errors_and_prints():
 
 
 def test_only_the_task_in_flight_runs_again(tmp_path, caplog):
-    log = tmp_path / "log"
+    log, go = tmp_path / "log", tmp_path / "go"
     with Workers(2) as pool:
-        futures = [pool.submit(logged, log, str(k), 0.3) for k in range(6)]
-        wait_for(lambda: len(begun(log)) == 2)
-        name, pid = begun(log)[-1]  # it has only just begun
+        futures = [pool.submit(held, log, str(k), go) for k in range(6)]
+        wait_for(lambda: len(begun(log)) == 2)  # no other begins before these may end
+        name, pid = begun(log)[-1]
         os.kill(int(pid), signal.SIGKILL)
+        go.touch()
         assert sorted(f.result() for f in as_completed(futures)) == list("012345")
     names = [n for n, _ in begun(log)]
     assert {n for n in names if names.count(n) > 1} == {name}
