@@ -24,7 +24,7 @@ def _answer_tables(answer: Answer) -> Group:
 
 
 def _solution_tables(found: Solutions) -> Group:
-    """Tabulate the solutions of a question backwards, with the ranges that show that there are no others."""
+    """Tabulate the solutions of an inverse question, with the ranges that show that there are no others."""
     heads = [f"{name} [{unit}]" if unit else name for name, unit in found.named]
     columns = (f"{found.input} from", "to", found.output, "from", "to")
     ends = ([f"{each:.6g}" for each in (p.start, p.end, p.first, p.last)] for p in found.pieces)

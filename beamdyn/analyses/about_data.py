@@ -160,7 +160,7 @@ def identify(
 
 
 def _untold(found: bd.Identification) -> str:
-    """Word which numbers the data do not determine; empty if they determine all."""
+    """Say which numbers the data do not determine; empty if they determine all."""
     lost = [name for name, value in zip(found.names, found.value, strict=True) if np.isnan(value)]
     return f"the data do not tell {' and '.join(lost)}: see what would help" if lost else ""
 

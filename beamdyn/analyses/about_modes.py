@@ -167,7 +167,7 @@ def _draw_locus(result: bd.Locus, ax: Axes) -> None:
 
 
 def _unstable(result: bd.Modes) -> str:
-    """Word which modes are unstable, with the critical speed; empty if all are stable."""
+    """Say which modes are unstable, with the critical speed; empty if all are stable."""
     unstable = [i for i, status in enumerate(result.status) if status in _GROWING]
     if not unstable:
         return ""

@@ -194,7 +194,7 @@ def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
 
 
 def describe_margin(margin: Margin) -> str:
-    """Word a margin: how far the nearest line is from the natural frequency."""
+    """Describe a margin: how far the nearest line is from the natural frequency."""
     if not margin.margin:
         return f"{margin.line.name} meets it"
     where = "above" if margin.margin > 0 else "below"

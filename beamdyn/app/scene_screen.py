@@ -93,7 +93,7 @@ def drawn(result: Result) -> Figure:
 
 
 def brief(value: float, unit: ShownUnit) -> str:
-    """Word a value in SI with few digits, in the unit shown."""
+    """Format a value in SI with few digits, in the unit shown."""
     return number(unit.of(value), unit.name)
 
 

@@ -71,7 +71,7 @@ def chart(answer: SteadyResponse, _: float = 0.0) -> Sequence[Chart]:
 
 
 def stretches(answer: SteadyResponse) -> np.ndarray:
-    """Word why the response does not hold at each speed (S,); "" where it does."""
+    """Say why the response does not hold at each speed (S,); "" where it does."""
     said = np.where(answer.status == _STABLE, "", answer.status).astype(object)
     large = np.nan_to_num(answer.amplitude) > LARGE_DEFLECTION * answer.scene.beam.length
     said[(said == "") & large] = _PAST_LIMIT

@@ -175,7 +175,7 @@ def tables(answer: Trade) -> Sequence[RenderableType]:
 
 
 def _describe(digit: Digit) -> str:
-    """Word a measurement: the physics and setting of the model, and its time."""
+    """Describe a measurement: the physics and setting of the model, and its time."""
     physics = "physics as given" if digit.family == "as given" else digit.family
     return f"{physics}, {digit.setting}, in {1e3 * digit.time:.3g} ms"
 

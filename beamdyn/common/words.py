@@ -13,7 +13,7 @@ _LONG = 10.0  # lengths from this one on are worded in m everywhere [m]
 
 
 def name_in_words(path: str) -> str:
-    """Word the path of an input as forms and pictures do: "root stiffness" for "root_stiffness"."""
+    """Write the path of an input as forms and pictures do: "root stiffness" for "root_stiffness"."""
     words = path.replace(".", " ").replace("_", " ").split(" ")
     return " ".join(_NAMES.get(word, word) for word in words)
 
@@ -114,12 +114,12 @@ class Setting(Named):
         return (self.table,), self.keys
 
     def on_form(self, heading: str) -> str:
-        """Word the setting as a form does, under the heading of its table."""
+        """Write the setting as a form does, under the heading of its table."""
         return f"{heading}: {_as_toml({key.replace('_', ' '): value for key, value in self.keys.items()})}"
 
 
 def amount(*values: Any, unit: str = "m", digits: int = 6) -> Named:
-    """Word a length, an angle or the coordinates of a point [m or rad]; files and drawings have mm or deg.
+    """Format a length, an angle or the coordinates of a point [m or rad]; files and drawings have mm or deg.
 
     Lengths from 10 m on are in m everywhere.
     """

@@ -231,10 +231,11 @@ def _interpolation(points: int) -> np.ndarray:
 def _build_forces(
     spaces: MomentSpaces, stiffness: str, derivatives: int, direction: int
 ) -> tuple[np.ndarray, np.ndarray | None]:
-    """Compute forces or moments in one direction at the nodes, (n, N), and mark those of the coarser basis.
+    """Compute n forces or moments in one direction at the N nodes, and mark those of the coarser basis.
 
-    The first forces are polynomials; displacements by them cause the others by inertia and by tension.  The
-    marks (n,) tell which forces the coarser basis has, too; they are None if it has different ones.
+    They act against `stiffness`, and their `derivatives`-th derivative is a load.  The first are polynomials;
+    the others are caused by the inertia and tension of the displacements that the first cause.  The marks
+    (n,) tell which of them the coarser basis has, too; they are None if it has different ones.
     """
     beam, parts, causes = spaces.beam, spaces.polynomials, []
     # Loads: stiffness against the displacement, order of the displacement's derivative, and weight.

@@ -403,7 +403,7 @@ def _own(section: type[Section]) -> list[str]:
 
 
 def _needed(section: type[Section]) -> str:
-    """Word the required keys that only this kind of beam has."""
+    """List the required keys that only this kind of beam has."""
     return " and ".join(name for name in _own(section) if section.model_fields[name].is_required())
 
 

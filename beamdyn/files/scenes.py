@@ -61,7 +61,7 @@ def with_numbers_in_text(text: str, values: Mapping[str, float], head: Iterable[
 
 
 def _written(path: str, value: float) -> str:
-    """Word a number as the file has it: text with its unit."""
+    """Format a number as the file has it: text with its unit."""
     if math.isinf(value):
         return '"inf"'
     unit = unit_of(path)

@@ -37,6 +37,8 @@ def check_linear(
 ) -> tuple[Scene, float]:
     """Check arguments of a linear analysis; return the scene with its physics chosen, and the speed [rad/s].
 
+    `barred` names further effects that the choice of physics must not add, each with the reason.
+
     Raises
     ------
     InvalidValue
@@ -222,7 +224,7 @@ def _model_up_to(
 
 
 def evaluate_also(refined: Refined, evaluate: Evaluation) -> Refined:
-    """Evaluate another quantity by the models that refined a value, with its error."""
+    """Evaluate another quantity, and its error, with the models from which a value was found."""
     return _with_error(refined.model, evaluate(refined.model), refined.larger, evaluate)
 
 

@@ -175,7 +175,7 @@ def as_excitation(name: str, given: Any) -> Excitation:
 
 
 def place_in_words(position: float | None, direction: str) -> str:
-    """Word a point of the beam and a direction, such as "at 0.03 m, across"."""
+    """Describe a point of the beam and a direction, such as "at 0.03 m, across"."""
     place = "at the tip" if position is None else f"at {position:.6g} m"
     return f"{place}, {direction}" if direction == ACROSS else place
 

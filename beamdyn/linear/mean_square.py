@@ -102,7 +102,7 @@ class PartialFractions:
 
 @dataclass(frozen=True)
 class PoleIntegrals:
-    """Integrals over frequency of a density S times a weight g, with and without simple poles.
+    """Integrals over frequency f of a density S times a weight g, alone and over each f - mu_k.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class PoleIntegrals:
 def pole_integrals(
     spectrum: PowerSpectrum, mu: np.ndarray, shift: float = 0.0, order: int = 0
 ) -> PoleIntegrals:
-    """Integrate a density with the weight (2 pi (f + shift))^order and simple poles.
+    """Integrate a density times the weight (2 pi (f + shift))^order, alone and over each f - mu_k.
 
     Parameters
     ----------

@@ -138,7 +138,7 @@ class LoadPath(FieldsOnly):
         return found, t
 
     def _each_at(self, single: LoadRows, t: np.ndarray) -> np.ndarray:
-        """Evaluate single outputs (O, 1), each at times of its own t (O, T): shape (O, T)."""
+        """Evaluate O single outputs, output i at the times t[i] of t (O, T): shape (O, T)."""
         root = self._system.root(t)
         states = (each.reshape(*t.shape, -1) for each in self.run.path.at(t.ravel()))
         total = np.zeros(t.shape)
@@ -209,5 +209,5 @@ def largest_per_coordinate(
 
 
 def _batches(t: np.ndarray) -> Iterator[np.ndarray]:
-    """Split times into batches that are evaluated at once."""
+    """Split times into batches of at most `_BATCH`, each of which is evaluated in one call."""
     return (t[k : k + _BATCH] for k in range(0, len(t), _BATCH))

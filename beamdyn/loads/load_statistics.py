@@ -50,7 +50,7 @@ _FIRST_MODES = 4  # number of modes of a model that only tells the sizes of the 
 # Ratio of the tolerance of rates of change to that of other statistics: peak factors depend on their
 # logarithm.
 _OF_RATES = 1e3
-_LEAST = math.e  # smallest number of crossings for which the formula is evaluated
+_LEAST = math.e  # smallest number of crossings for which the peak factor is evaluated
 
 
 @dataclass(frozen=True)

@@ -261,7 +261,7 @@ def _with_camber(curvature: np.ndarray, section: Rectangle, length: float, xi: n
 
 
 def with_neighbours(stations: SpanStations) -> SpanStations:
-    """Append stations evenly along the beam, at which distances of loads are found as well."""
+    """Append evenly spaced stations, at which the loads of two models are compared as well."""
     more = np.linspace(0, 1, _BETWEEN)
     return SpanStations(np.append(stations.xi, more), np.append(stations.inboard, more == 1))
 

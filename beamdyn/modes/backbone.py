@@ -181,7 +181,8 @@ def _coarser_coefficients(model: Model, speeds: np.ndarray, mode: int) -> tuple[
 # Amplitude of the tip over the length: the change of frequency is found at half of it, and its error by the
 # difference from that at the whole.
 SMALL = 0.02
-_OF_AMPLITUDE = 2.0  # factor of that difference in the error, as it may be one sample of rounding errors
+# Ratio of the stated error to the difference of both changes, which may be one sample of rounding errors.
+_OF_AMPLITUDE = 2.0
 _STEADY = 1e-3  # relative distance of coefficients below which bases converge steadily
 _ROUNDED = 1e-7  # relative distance of coefficients that may be due to rounding, divided by eps^2
 _SAMPLES = 16  # samples of a period, which separate harmonics up to the seventh

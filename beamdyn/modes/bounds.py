@@ -289,7 +289,7 @@ def _narrow(
 
     def finer(found: _Found) -> _Found | None:
         lower, upper, _, _ = found
-        # With so many functions, the eigensolution may fail by rounding at this speed.
+        # The eigensolution of a large basis may fail by rounding.
         with suppress(StopIteration, np.linalg.LinAlgError):
             size = next(sizes)
             low, high = enclosure(size).bounds(modes)

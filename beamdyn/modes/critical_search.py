@@ -50,7 +50,7 @@ def search_critical_speed(models: Iterator[Model], target: float) -> FoundSpeed:
     """Refine models until the error meets the target or rounding, or the models end."""
 
     def finer(found: FoundSpeed) -> FoundSpeed | None:
-        # With so many functions the factorization may fail by rounding: the last result is then the best.
+        # The factorization of a large basis may fail by rounding: the result before is then the best.
         with suppress(np.linalg.LinAlgError, StopIteration):
             return compare_critical_speeds(next(models))
         return None

@@ -310,7 +310,7 @@ class CoupledEnclosure(Enclosure):
         self._direction, self._slope = d, self.part.slope[..., -1]
         tilts = [self._slope @ T @ self._slope.T for T in self._tensors]
         self.forms = np.concatenate([self.part.forms(d), tilts, self.part.twisting[None]])
-        # Each point has two products, one a direction; `misfit` is the relative error of the stiffness.
+        # Each point has two products, one per direction; `misfit` is the relative error of the stiffness.
         products = 2 * self.part.quadrature.xi.size
         self.unit = 4 * _EPS * (products + len(self.stiffness)) + self.part.misfit
 

@@ -36,7 +36,7 @@ def warn_of_twist(twist: Profile | None) -> None:
 
 
 def _say_degrees(angle: float) -> str:
-    """Word the warning that an angle [rad] may be in degrees, with how degrees are given."""
+    """Write the warning that an angle [rad] may be in degrees, with how degrees are given."""
     return (
         f"{angle:g} rad: angles are in radians, and this is {math.degrees(angle):.4g} degrees; "
         f"if {angle:g} degrees were meant, give math.radians({angle:g})"

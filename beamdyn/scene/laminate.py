@@ -63,7 +63,7 @@ def composite(inner: float, layer: float, h: float, t: float, sides: int) -> Com
 
 @dataclass(frozen=True)
 class Laminate(Rectangle):
-    """A rectangle with layers over a part of its length, by the properties of a plate that depend on them.
+    """A rectangle with layers over a part of its length, which change its properties as a plate.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Laminate(Rectangle):
 
     @cached_property
     def twist_factor(self) -> Profile:
-        """Factor of the beam's E I in the stiffness of the plate against twist."""
+        """Torsional stiffness of the plate over E I of the beam."""
         shear = combine(lambda nu, free: (2 * free / (1 + nu))[None], self.along, self.free)[0]
         return self.torsion_factor * shear
 

@@ -289,7 +289,7 @@ class MeasuredResponse(MeasuredCurves):
         for name, value in given.items():
             if len(value) != len(given["frequency"]):
                 bound = f"there are {len(value)} for {len(given['frequency'])} frequencies"
-                raise InvalidValue(name, value, bound, "give one a frequency")
+                raise InvalidValue(name, value, bound, "give one for each frequency")
         size = given["magnitude"]
         checks.refuse(
             size < 0, "magnitude", size, "", "an amplitude is 0 or more", "put the sign into the phase"

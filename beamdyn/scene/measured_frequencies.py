@@ -64,7 +64,7 @@ class MeasuredFrequencies(ReadOnlyArrays):
         speeds, frequency = real_array("speeds", self.speeds), table_of("frequency", self.frequency)
         if len(frequency) != len(speeds):
             bound = f"there are {len(frequency)} rows for {len(speeds)} speeds"
-            raise InvalidValue("frequency", frequency, bound, "give a row of frequencies a speed")
+            raise InvalidValue("frequency", frequency, bound, "give a row of frequencies for each speed")
         if not np.isfinite(frequency).any():
             raise InvalidValue("frequency", frequency, "there is none that is finite", "give one at least")
         _refuse_below("frequency", frequency, frequency <= 0, "above 0", "Hz")
@@ -75,7 +75,7 @@ class MeasuredFrequencies(ReadOnlyArrays):
         )
         if len(names) != frequency.shape[1]:
             bound = f"there are {len(names)} for {frequency.shape[1]} columns of frequencies"
-            raise InvalidValue("labels", names, bound, "give one a column")
+            raise InvalidValue("labels", names, bound, "give one for each column")
         set_fields(self, speeds=speeds, frequency=frequency, labels=names)
         set_doubts(self, frequency, "Hz")
         self._check_shapes()
@@ -127,7 +127,7 @@ def _spread(name: str, values: Any, like: np.ndarray) -> np.ndarray:
         return np.array(np.broadcast_to(array, like.shape), dtype=float)
     except (AssertionError, ValueError):
         bound = f"it does not suit values of shape {like.shape}"
-        raise InvalidValue(name, values, bound, "give one number, or one a value") from None
+        raise InvalidValue(name, values, bound, "give one number, or one for each value") from None
 
 
 def _refuse_below(name: str, values: np.ndarray, bad: np.ndarray, bound: str, unit: str) -> None:

@@ -83,7 +83,7 @@ def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
 
 
 def _warn_of_narrow_section(scene: Scene) -> Iterator[Statement]:
-    """Yield a warning if the width is modelled of a section that is too narrow for a plate."""
+    """Yield a warning if the width is modelled and a section is too narrow for a plate."""
     section = scene.beam.strip
     if section is None or not scene.models_width:
         return
@@ -101,7 +101,7 @@ def _warn_of_narrow_section(scene: Scene) -> Iterator[Statement]:
 
 
 def _warn_of_kinks(scene: Scene) -> Iterator[Statement]:
-    """Yield a warning if camber is modelled of a width with kinks, which its functions do not have."""
+    """Yield a warning if camber is modelled and the width has kinks, which the trial functions lack."""
     section = scene.beam.strip
     if section is None or not scene.physics.camber:
         return
@@ -160,7 +160,7 @@ def warn_of_deflection(
 
 
 def _say_lengths(ratio: float) -> str:
-    """Word the ratio of a deflection to the length: "0.12 of the length", "79 lengths"."""
+    """Format the ratio of a deflection to the length: "0.12 of the length", "79 lengths"."""
     return f"{ratio:.2g} of the length" if ratio < 1 else f"{ratio:.{1 if ratio < 10 else 0}f} lengths"
 
 
@@ -181,12 +181,12 @@ def warn_of_road(acceleration: np.ndarray, speeds: np.ndarray | None = None) -> 
 
 
 def _at_speeds(speeds: np.ndarray | None, selected: np.ndarray) -> str:
-    """Word " at ..." for the selected speeds; empty if no speeds are given."""
+    """Format " at ..." for the selected speeds; empty if no speeds are given."""
     return "" if speeds is None else Words(" at ", list_speeds(speeds, selected))
 
 
 def list_speeds(speeds: np.ndarray, selected: np.ndarray) -> Words:
-    """Word the selected speeds [rad/s], at least one: "20 to 35 rad/s and 50 rad/s".
+    """Format the selected speeds [rad/s], at least one: "20 to 35 rad/s and 50 rad/s".
 
     Neighbours in ascending order form a range.  Of many ranges the first are named, then how many follow, up
     to which speed.

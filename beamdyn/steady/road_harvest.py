@@ -140,5 +140,5 @@ def _warnings(
     if missed.any():
         where = list_speeds(speeds, missed)
         lacking = "the road lacks a spatial frequency that excites the first resonance, at "
-        said = lacking, where, "; give it a wider range of them"
+        said = lacking, where, "; give a wider range of spatial frequencies"
         yield Statement(*said, kind=LIMITS, quantity="range of spatial frequencies")

@@ -42,7 +42,7 @@ class Caution:
 
 @dataclass(frozen=True)
 class DesignAnswers:
-    """Answers of R designs at S speeds each, k numbers a design.
+    """Answers of R designs at S speeds each, with k numbers per answer.
 
     Parameters
     ----------

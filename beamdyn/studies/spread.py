@@ -78,7 +78,7 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.Sprea
 
 
 def _said(refusal: ValueError) -> tuple[str, ...]:
-    """Word that all slopes come from differences of designs, and why the derivatives are refused.
+    """Say that all slopes come from differences of designs, and why the derivatives are refused.
 
     Empty where the answer has no derivatives by its nature: the critical speed of a beam that does not
     buckle, and large deflection.

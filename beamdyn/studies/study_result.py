@@ -174,14 +174,14 @@ class Study(StatesModelError):
 
     @property
     def left_out_where(self) -> str:
-        """Word the design of `left_out_places` at which the model error is largest."""
+        """Give the inputs of the design of `left_out_places` at which the model error is largest."""
         total = self.left_out_effects.total_of_known
         if not total.size:
             return ""
         return self._say_place(int(total.max(axis=1).argmax()))
 
     def _where_unknown(self, name: str) -> str:
-        """Word the first design of `left_out_places` whose change by an effect is not known."""
+        """Give the inputs of the first design of `left_out_places` whose change by an effect is not known."""
         nothing = np.isnan(self.left_out_effects.changes[name]).any(axis=1)
         refused = [bool(np.all(self.status[place] == REFUSED)) for place in self.left_out_places]
         unknown = np.flatnonzero(nothing & ~np.array(refused))
@@ -265,7 +265,7 @@ class Study(StatesModelError):
         return shown
 
     def in_own_words(self, part: Part) -> str | None:
-        """Word an input and its value in the unit in which it was typed; None for other parts of a text."""
+        """Format an input and its value in the unit in which it was typed; None for other parts of a text."""
         if not isinstance(part, InputValue) or part.name not in self.typed_units:
             return None
         return part.said(self.typed_units[part.name].say(part.value))

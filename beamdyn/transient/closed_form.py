@@ -89,7 +89,7 @@ class _Harmonics:
     def coupling(self, sums: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
         """Make the function from a motion q (..., k, n) to forces (..., k, n) of the varying stiffness."""
         varying = np.abs(self.stiffness).any(axis=(1, 2))
-        # Index of each sum less each frequency of the stiffness; k where that is no sum.
+        # Index in `sums` of each sum minus each frequency of the stiffness; k where `sums` lacks it.
         source = _places(sums, sums - self.frequency[varying, None])
         factors = self.stiffness[varying].swapaxes(1, 2)
 

@@ -83,9 +83,10 @@ def attempt_elastica(
     step_size: StepSize,
     before: Attempt | None = None,
 ) -> Attempt:
-    """Integrate twice with equal steps in each segment, with 8 and 10 stages, shortening failed steps.
+    """Integrate twice with equal steps in each segment, with 8 and 10 stages.
 
     Steps that were not solved are shortened, finally until they resolve the vibration of all coordinates.
+    The earlier attempt `before` is not used: an attempt takes nothing over from it.
     """
     pieces = smooth_piece_ends(system.motion, t_end)
     edges = pieces if len(pieces) > _MANY else split_at_breakpoints(system.motion, t_end)

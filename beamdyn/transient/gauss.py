@@ -249,7 +249,7 @@ class Segment:
         return self.start + self.h * len(self.acceleration)
 
     def projected(self, outputs: np.ndarray) -> Segment:
-        """Build the segment of linear functions (d, n) of the coordinates."""
+        """Build the segment of d outputs in place of the n coordinates, by their matrix `outputs` (d, n)."""
         return replace(
             self, state=project(self.state, outputs), acceleration=components(self.acceleration, outputs)
         )

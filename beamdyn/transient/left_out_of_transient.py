@@ -51,8 +51,8 @@ def left_out_of_transient(
     speed = find_speed_range(problem.motion, problem.t_end)[-1]
     straight = without_large_deflection(problem.model)
     shifts = _shifts_of_frequencies(straight, speed, problem.t_end)
-    without = SolvedValues(np.array(largest))  # effects are compared with the straight beam
-    if straight is not problem.model:
+    without = SolvedValues(np.array(largest))
+    if straight is not problem.model:  # effects are compared with a run of the straight beam
         without = _run_again(problem, straight.scene, window)
 
     def solve(scene: Scene, name: str) -> SolvedValues:

@@ -103,7 +103,7 @@ class RecordSteps:
 
     @cached_property
     def blocks(self) -> list[slice]:
-        """Divide the steps into blocks that are integrated at once: equal steps of one piece, and others."""
+        """Divide the steps into blocks, each solved as one batch: equal steps of one piece, and others."""
         single = self.counts == 1
         cuts = np.flatnonzero(~(_are_same(self.h) & single[1:] & single[:-1])) + 1
         runs = [(a, b) for a, b in pairwise([0, *cuts.tolist(), len(self)]) if b - a >= _FEWEST_EQUAL]
@@ -225,7 +225,7 @@ class RecordSegment:
         return float(self.steps.start[-1] + self.steps.h[-1])
 
     def projected(self, outputs: np.ndarray) -> RecordSegment:
-        """Build the segment of linear functions (d, n) of the coordinates."""
+        """Build the segment of d outputs in place of the n coordinates, by their matrix `outputs` (d, n)."""
         return replace(
             self,
             state=gauss.project(self.state, outputs),

@@ -31,7 +31,7 @@ _FEWEST_CHECKED = 48
 _POINTS = np.arange(10) / 10  # fractions of a piece at which the error between ends is sought
 # Number of longest, and of roughest steps that are checked in addition to those spread over the run.
 _MOST_OF_A_KIND = 24
-_BATCH = 256  # number of pieces of steps over samples that are solved at once
+_BATCH = 256  # number of pieces, of steps that span several samples, that are solved as one batch
 
 
 def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:

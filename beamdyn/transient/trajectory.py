@@ -93,7 +93,7 @@ class Trajectory:
         return t, q, v
 
     def projected(self, outputs: np.ndarray) -> Trajectory:
-        """Build the path of linear functions (d, n) of the coordinates, as if they were coordinates."""
+        """Build the path of d outputs in place of the n coordinates, by their matrix `outputs` (d, n)."""
         return Trajectory(tuple(segment.projected(outputs) for segment in self.segments))
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Questions backwards about a file: the values of an input for which a result has a wanted value."""
+"""Inverse questions about a file: the values of an input for which a result has a wanted value."""
 
 from __future__ import annotations
 

@@ -275,7 +275,10 @@ def _solve_way(
 
 
 def _solve_stop(design: VehicleInput, limits: vehicle.Braking, force: Any) -> vehicle.Slowing | None:
-    """Solve the stop in one direction: with its own force, the lever's, or the largest without locking."""
+    """Solve the stop in one direction; None if the file has no table [stop].
+
+    The braking force is that given in [stop], else that of the lever, else the largest without locking.
+    """
     if design.stop is None:
         return None
     approach, road, share = design.stop.core, design.road.core, design.braking.front_share

@@ -106,7 +106,7 @@ def make_sweeps(brake: BrakeType[Any]) -> Sweeps:
 
 
 def _make_backwards(brake: BrakeType[Any]) -> Backwards:
-    """Make the questions backwards of a type of brake: any input for a wanted value of any output."""
+    """Make the inverse questions of a type of brake: any input for a wanted value of any output."""
 
     def units(tables: Mapping[str, Any]) -> dict[str, str]:
         return {output.name: output.unit for output in brake.outputs(brake.read(tables, brake.name))}

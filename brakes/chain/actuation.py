@@ -2,7 +2,7 @@
 
 Force and stroke rise with the pedal's force, each by a formula that can be inverted. A given force on the
 actuators also fixes the stroke of the pedal's rod, so that the pedal's force falls as 1 / ratio while its
-travel rises in proportion to the ratio. So each question backwards has one answer or none.
+travel rises in proportion to the ratio. So each inverse question has one answer or none.
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 @Parameter(name="*")
 @dataclass(frozen=True)
 class FindOptions:
-    """Options of a question backwards, for the value of an input that gives a wanted result.
+    """Options of an inverse question, for the value of an input that gives a wanted result.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class FindOptions:
 @Parameter(name="*")
 @dataclass(frozen=True)
 class Asked:
-    """Options that ask about many designs: variations, tolerances, or a question backwards.
+    """Options that ask about many designs: variations, tolerances, or an inverse question.
 
     Parameters
     ----------
@@ -201,7 +201,7 @@ def _folded(brake: BrakeType[Any], answer: Answer) -> Sequence[tuple[str, Callab
 def _answer_many(
     brake: BrakeType[Any], tables: Mapping[str, Any], file: str, asked: Asked
 ) -> tuple[Any, Sequence[str], str]:
-    """Solve a sweep, a spread or a question backwards; return the result, warnings, and a refusal or ""."""
+    """Solve a sweep, a spread or an inverse question; return the result, warnings, and a refusal or ""."""
     import numpy as np
 
     from brakes.answers.finding import find_in_file

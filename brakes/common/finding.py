@@ -1,4 +1,4 @@
-"""Questions backwards: find all inputs between two bounds at which an answer has a wanted value.
+"""Inverse questions: find all inputs between two bounds at which an answer has a wanted value.
 
 The answer is sampled, each time twice as densely, until the pieces over which it rises, falls or is level
 stay the same. The end of a piece (a turning point, or the last input that has an answer) is found by sampling
@@ -378,7 +378,7 @@ def _root(answers: _Answers, target: float, bracket: dict[float, float]) -> tupl
 
     The differences at both ends are given: computed one by one they may round to another sign.
     """
-    from scipy.optimize import toms748  # imported here, as only a question backwards needs it
+    from scipy.optimize import toms748  # imported here, as only an inverse question needs it
 
     def difference(x: float) -> float:
         return float(bracket[x] if x in bracket else answers(np.array([x]))[0] - target)

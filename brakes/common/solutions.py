@@ -1,4 +1,4 @@
-"""Result of a question backwards: the inputs at which an answer has a wanted value, or why there is none."""
+"""Result of an inverse question: the inputs at which an answer has a wanted value, or why there is none."""
 
 from __future__ import annotations
 

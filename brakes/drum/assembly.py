@@ -55,8 +55,8 @@ class DrumBrake:
         set_fields(self, shoes=several("shoes", self.shoes, Shoe), leading=leading)
         if not self.shoes or len(self.shoes) != len(self.leading):
             raise ValueError(
-                f"{len(self.shoes)} shoes and {len(self.leading)} entries of leading: give one entry a shoe, "
-                "at least one shoe"
+                f"{len(self.shoes)} shoes and {len(self.leading)} entries of leading: give one entry "
+                "per shoe, at least one shoe"
             )
         radii = [shoe.drum_radius for shoe in self.shoes]
         if any(not np.all(np.asarray(radius) == radii[0]) for radius in radii):

@@ -1,4 +1,4 @@
-"""Questions backwards: the tyre friction that a slope or a stopping distance needs.
+"""Inverse questions: the tyre friction that a slope or a stopping distance needs.
 
 A braking ratio tau on axles that carry the fraction n(tau) of the load needs the friction mu = tau / n(tau),
 and tau rises with mu until the vehicle pitches over: each answer is unique. The distance of a stop,

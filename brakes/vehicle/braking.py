@@ -72,7 +72,7 @@ class Braking(Result):
 
     @property
     def message(self) -> str:
-        """The phrase that says which wheels lock first, or that it pitches over; of one case."""
+        """Phrase that says which wheels lock first, or that the vehicle pitches over; for one case only."""
         return _WORDS[str(self.first)]
 
 

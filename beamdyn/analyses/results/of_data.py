@@ -57,7 +57,7 @@ def _percents(values: np.ndarray, sign: str = "") -> list[str]:
 
 
 def _deviations(values: np.ndarray, in_digits: np.ndarray) -> list[str]:
-    """Word deviations in percent; "in its digits" where all digits of the measured value agree."""
+    """Format deviations in percent; "in its digits" where all digits of the measured value agree."""
     return ["in its digits" if k else cell for k, cell in zip(in_digits, _percents(values, "+"), strict=True)]
 
 
@@ -115,7 +115,7 @@ def curve_columns(result: bd.CurveComparison) -> Columns:
 
 
 def _phase(phase: float) -> str:
-    """Word a phase [rad] in degrees, to a hundredth."""
+    """Format a phase [rad] in degrees, to a hundredth."""
     return f"{round(float(np.degrees(phase)), 2) + 0.0:.3g}"
 
 

@@ -106,12 +106,12 @@ def _positions(result: bd.SpanLoads) -> Column:
 
 
 def _largest_lines(result: Any, **window: float) -> list[Text]:
-    """Word the largest value of each quantity that has values."""
+    """Format the largest value of each quantity that has values."""
     return _lines(result, lambda name: _say_largest(result, result.largest(name, **window)))
 
 
 def _lines(result: bd.SpanLoads, say: Callable[[str], str]) -> list[Text]:
-    """Word a sentence for each quantity that has values, and what strains need where they have none."""
+    """Write a sentence for each quantity that has values, and what strains need where they have none."""
     known = [name for name in _QUANTITIES if np.isfinite(result.values(name)).any()]
     lacking = [] if "strain" in known else [f"No strains: {REMEDIES['strain']}."]
     return [*map(Text, (*map(say, reversed(known)), *lacking))]
@@ -127,7 +127,7 @@ def _say_largest(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
 
 
 def _say_component(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
-    """Word the direction of a component, or the point of the section with its coordinates."""
+    """Describe the direction of a component, or the point of the section with its coordinates."""
     named = result.components(found.quantity)[found.component]
     if found.quantity not in ("strain", "stress"):
         return f"shear, {named}" if found.quantity == "force" and found.component else named
@@ -167,13 +167,13 @@ _ESTIMATE = (
 
 
 def _expected(value: float, error: float = 0.0) -> str:
-    """Word a statistical number with three digits, without a positive exponent; "0 ± error" if uncertain."""
+    """Format a statistical number with three digits, without a positive exponent; or "0 ± error"."""
     text = supported(value, error, _DIGITS_EXPECTED)
     return f"{float(text):.0f}" if "e+" in text and "±" not in text else text
 
 
 def _say_expected(result: bd.RandomLoads, found: bd.LargestLoad) -> str:
-    """Word the largest expected value of a quantity, its parts, and the value exceeded in 1 % of cases."""
+    """Format the largest expected value of a quantity, its parts, and the value exceeded in 1 % of cases."""
     name, (scale, unit) = found.quantity, SHOWN[found.quantity]
     place = result.station_of(found), found.component
     value = _expected(scale * found.value, scale * found.error)

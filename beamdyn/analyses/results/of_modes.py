@@ -40,12 +40,12 @@ _AXES = "b1", "b2", "b3"  # axes along the beam at rest, in the direction of ben
 
 
 def said_of_model(result: Result, sentence: str) -> str:
-    """Word a sentence about the model of a result with the names and units that files have."""
+    """Write a sentence about the model of a result with the names and units that files have."""
     return in_files(sentence, result.display_units)
 
 
 def said_over_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, what: str = "") -> str:
-    """Word the sentence below a table over speeds: effects left out, each with its worst speed."""
+    """Write the sentence below a table over speeds: effects left out, each with its worst speed."""
     effects, speeds = result.left_out_effects, result.left_out_speeds
     return said_of_model(result, effects.sentence(what, where_worst(effects, speeds), speeds))
 
@@ -65,7 +65,7 @@ def rows_worth_showing(status: np.ndarray, *more: np.ndarray) -> np.ndarray:
 
 
 def selection_note(shown: np.ndarray, every: np.ndarray) -> str:
-    """Word how many of all speeds a table has; empty if it has all."""
+    """Say how many of all speeds a table has; empty if it has all."""
     few = len(shown) < len(every)
     return f" ({len(shown)} of {len(every)} speeds; CSV and JSON have all)" if few else ""
 
@@ -101,7 +101,7 @@ def modes_columns(result: bd.Modes) -> Columns:
 
 
 def _circuit(result: bd.Modes | bd.Locus) -> str:
-    """Word the circuit for which a harvester's modes hold, which has no load resistance; else empty."""
+    """Describe the circuit for which a harvester's modes hold, which has no load resistance; else empty."""
     electrodes = result.scene.beam.electrodes
     if electrodes is None:
         return ""
@@ -125,7 +125,7 @@ def _kinds(result: bd.Modes) -> Iterator[Column]:
 
 
 def _say_model_error(size: float, lacks_data: bool) -> str:
-    """Word a relative model error with one digit; with "+ ?" where the beam lacks data."""
+    """Format a relative model error with one digit; with "+ ?" where the beam lacks data."""
     more = " + ?" if lacks_data else ""
     return "not known" if math.isnan(size) else f"{size if size >= _ROUNDING else 0.0:.0e}{more}"
 
@@ -174,7 +174,7 @@ def model_error_at(result: bd.Locus, indices: np.ndarray) -> np.ndarray:
 
 
 def _locus_cell(result: bd.Locus, size: np.ndarray, s: int, mode: int, model_error: float) -> Cell:
-    """Word the frequency of a mode at speed s, or its status and growth rate.
+    """Format the frequency of a mode at speed s, or its status and growth rate.
 
     Digits beyond the model error [Hz] are dimmed.
     """
@@ -221,7 +221,7 @@ def locus_csv(result: bd.Locus) -> Columns:
 
 
 def critical_answer(result: bd.CriticalPoint) -> Group:
-    """Word the critical speed, or up to which speed there is none, and what the model leaves out."""
+    """Say what the critical speed is, or up to which speed there is none, and what the model leaves out."""
     unit = result.display_units.speed_unit()
     if math.isinf(result.none_below) and math.isinf(result.speed):
         said = Text(f"no critical speed: {in_files(result.reason)}")

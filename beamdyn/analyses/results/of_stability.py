@@ -87,7 +87,7 @@ def _words(varied: VariedInput) -> str:
 
 
 def _where(status: np.ndarray, values: np.ndarray) -> str:
-    """Word the ranges of values without stability."""
+    """Format the ranges of values without stability."""
     said = []
     for state, group in groupby(zip(status.tolist(), values.tolist(), strict=True), lambda pair: pair[0]):
         within = [value for _, value in group]

@@ -149,7 +149,7 @@ def arrange(drawing: Drawing, frame: Frame, fit: Fit | None = None) -> Layout:
         places = place_labels(requests, _obstacles(drawing, inner, found))
         far = [1e3 if place is None else max(place.distance - _CROWDED, 0.0) for place in places]
         tries.append((sum(far), found, places))
-        # Otherwise a larger margin is tried, until no label is far from its point.
+        # Larger margins are tried until no label is far from its point; a given fit has no margin to choose.
         if fit is not None or sum(far) == 0:
             break
     _, chosen, places = min(tries, key=lambda each: each[0])
@@ -236,7 +236,7 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
 
 
 class _Listed(NamedTuple):
-    """Layout with a list of labels: their indices, the height at which the list begins, fit and places."""
+    """Labels listed below a drawing, by index; height at which the list begins [pt]; fit and label places."""
 
     labels: list[int]
     bottom: float
@@ -357,7 +357,7 @@ def round_below(value: float) -> float:
 
 
 def length_text(size: float) -> str:
-    """Word a length [m] in metres or millimetres."""
+    """Format a length [m] in metres or millimetres."""
     return f"{size:.4g} m" if size >= 1 else f"{1e3 * size:.4g} mm"
 
 

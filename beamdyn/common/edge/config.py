@@ -167,7 +167,7 @@ _WORDS = {
 
 
 def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
-    """Word one mistake as a sentence, and return the path of the input that it is about."""
+    """Write one mistake as a sentence, and return the path of the input that it is about."""
     loc, context, given = error["loc"], error.get("ctx", {}), error["input"]
     place, path = _path(loc), _path(loc, indices=False)
     match error["type"]:
@@ -200,7 +200,7 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
 
 
 def _missing_table(path: str, known: Sequence[Input]) -> str:
-    """Word which table to give, with its required keys if it is of one kind; "" if no table is missing."""
+    """Say which table to give, with its required keys if it is of one kind; "" if no table is missing."""
     keys = [each for each in known if each.path.startswith(f"{path}.")]
     needed = [each.name for each in keys if each.required and each.path == f"{path}.{each.name}"]
     of_one_kind = needed and len({each.section for each in keys}) == 1
@@ -209,7 +209,7 @@ def _missing_table(path: str, known: Sequence[Input]) -> str:
 
 
 def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: Any) -> tuple[str, str]:
-    """Word a refusal by the core with the file's keys and value; return the sentence and the input's path."""
+    """Write a refusal by the core with the file's keys and value; return sentence and path of the input."""
     if isinstance(reason, InvalidInput) and not reason.field:
         return say(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
@@ -262,7 +262,7 @@ def in_words_of_file(model: type[BaseModel], tables: Mapping[str, Any], source: 
 
 
 def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
-    """Word a refusal by the core, with the place in a file and the value as the file has it."""
+    """Write a refusal by the core, with the place in a file and the value as the file has it."""
     kind = type(refusal) if isinstance(refusal, InvalidInput | MissingValue) else InvalidInput
     said: dict[str, Any] = vars(refusal if given is not None else in_millimetres(refusal)) | {"field": place}
     return say(_as_written(kind(**said), given))
@@ -322,7 +322,7 @@ def _path(loc: Iterable[int | str], indices: bool = True) -> str:
 
 
 def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Word an unknown key: where it belongs, or the nearest known key, or all known ones."""
+    """Describe an unknown key: where it belongs, or the nearest known key, or all known ones."""
     table, key, known = _path(loc[:-1], indices=False), str(loc[-1]), describe(model)
     prefix = table and f"{table}."  # empty at the top level, so that every key begins with it
     inside = [i.path.removeprefix(prefix).partition(".")[0] for i in known if i.path.startswith(prefix)]

@@ -30,7 +30,7 @@ _KINDS: dict[Any, str] = {float: "a number", int: "a whole number", bool: "a val
 
 
 def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
-    """Word what cannot be understood in a command line, and where help is.
+    """Say what cannot be understood in a command line, and where help is.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def check_names(given: Sequence[str]) -> None:
 
 
 def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
-    """Word which words belong to no option; most often the shell has parted a unit from its number."""
+    """Say which words belong to no option; most often the shell has parted a unit from its number."""
     first = next((i for i, word in enumerate(given) if word == words[0]), 0)
     option, value = given[first - 2 : first] if first > 1 else ("", "")
     example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""
@@ -76,7 +76,7 @@ def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
 
 
 def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
-    """Word that an option is unknown, and which may be meant: that of a synonym, or one with such a value."""
+    """Say that an option is unknown, and which may be meant: that of a synonym, or one with such a value."""
     option = (error.token.keyword or error.token.value).partition("=")[0]
     if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
         return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"
@@ -92,7 +92,7 @@ _HEADING: ContextVar[Callable[[str], str] | None] = ContextVar("heading", defaul
 
 
 def in_files(text: str, units: Any = None) -> str:
-    """Word a text in the terms of files and commands; its speeds in a display unit, if units are given.
+    """Write a text in the terms of files and commands; its speeds in a display unit, if units are given.
 
     `Physics(shear=True)` becomes "[physics] shear = true", on a form "Physics: shear = true".
     """
@@ -100,7 +100,7 @@ def in_files(text: str, units: Any = None) -> str:
 
 
 def word(part: Part, units: Any = None) -> str:
-    """Word a part of a text in the terms of files, or within `on_form` in those of a form."""
+    """Write a part of a text in the terms of files, or within `on_form` in those of a form."""
     if isinstance(part, Setting) and (heading := _HEADING.get()) is not None:
         return part.on_form(heading(part.table))
     if isinstance(part, InputName) and _HEADING.get() is not None:

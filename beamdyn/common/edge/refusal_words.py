@@ -40,7 +40,7 @@ def is_no_answer(error: Exception) -> bool:
 
 
 def as_typed(error: Exception) -> str:
-    """Word a refusal with the options and keys that were typed, and its number in their unit.
+    """Write a refusal with the options and keys that were typed, and its number in their unit.
 
     "tolerance = 5: give ..." becomes "--tolerance = 5: give ..." where the command has that option.
     """

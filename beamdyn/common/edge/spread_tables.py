@@ -37,7 +37,7 @@ def _told(result: Spread) -> list[int]:
 
 
 def headline(result: Spread, answer: int) -> str:
-    """Word an answer: nominal value, worst cases, standard deviation, and what matters most."""
+    """Describe an answer: nominal value, worst cases, standard deviation, and what matters most."""
     k, unit = answer, f" {result.units[answer]}".rstrip()
     (low, high), scatter, nominal = _worst(result, k), result.scatter, result.nominal[k]
     parts = [f"{result.answers[k]}: {_number(nominal, _numerical(result, k)(nominal))}{unit}"]
@@ -74,7 +74,7 @@ def _deviation(result: Spread, answer: int) -> tuple[float, float]:
 
 
 def _worst(result: Spread, answer: int) -> tuple[str, str]:
-    """Word the worst cases of an answer, each with the digits that its own error supports."""
+    """Describe the worst cases of an answer, each with the digits that its own error supports."""
     found, k = result.worst, answer
     errors = np.nan_to_num([found.smallest_error[k], found.largest_error[k]], posinf=np.inf)
     return _number(found.smallest[k], errors[0]), _number(found.largest[k], errors[1])
@@ -85,7 +85,7 @@ def _number(value: float, error: float) -> str:
 
 
 def _share(value: float, error: float) -> str:
-    """Word a share of a variance; "< 0.01" if it is surely small."""
+    """Format a share of a variance; "< 0.01" if it is surely small."""
     if abs(value) + 3 * error < _SMALL:
         return f"< {_SMALL:g}"
     return supported(value, error, 3).replace("none", "-")
@@ -157,7 +157,7 @@ def _inputs(result: Spread) -> Iterator[Group]:
 
 
 def _note(result: Spread) -> str:
-    """Word numbers of designs, digits, and the sources of slopes and worst cases."""
+    """Write a note on numbers of designs, digits, and the sources of slopes and worst cases."""
     is_normal = any(isinstance(each.distribution, Normal) for each in result.inputs)
     normal = ", of normal ones three standard deviations either way" if is_normal else ""
     first, told = result.first_order, _told(result)

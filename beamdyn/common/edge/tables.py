@@ -263,7 +263,7 @@ def _values(column: Column) -> Sequence[str | Text]:
 
 
 def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
-    """Make a table of comparisons, with a line where the first two words of `what` change."""
+    """Make a table of comparisons, with a line where the first two words of `Comparison.what` change."""
     cells: list[list[str]] = []
     topics: list[list[str]] = []
     for row in rows:

@@ -257,7 +257,7 @@ def _mismatch(number: str, kind: Unit, unit: str) -> str:
 
 
 def _no_quantity(given: object, unit: str) -> tuple[str, str]:
-    """Word why a value is not a number with a unit, and how to write it."""
+    """Say why a value is not a number with a unit, and how to write it."""
     match given:
         case bool():
             return "a truth value", f"give a quantity, e.g. {_example(unit)}"

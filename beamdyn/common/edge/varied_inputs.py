@@ -179,7 +179,7 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
 
 
 def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
-    """Word an unknown name, with the nearest known name, or all names."""
+    """Describe an unknown name, with the nearest known name, or all names."""
     near = difflib.get_close_matches(key, [*names, *more], n=1)
     advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}"
     return f"unknown name {key!r}; {advice}"

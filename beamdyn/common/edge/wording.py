@@ -94,5 +94,5 @@ def in_millimetres(error: InvalidValue) -> InvalidValue:
 
 
 def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
-    """Convert an error to the unit at the end of a text, such as "+-2 g/cm3" or "0:100:5 rpm", if it fits."""
+    """Convert an error's numbers to the unit at the end of a text, as in "+-2 g/cm3", if the unit fits."""
     return error.in_unit(*unit_as_written(last_quantity(text), error.unit))

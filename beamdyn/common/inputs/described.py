@@ -64,7 +64,7 @@ class Described:
         return self.bounds_as(lambda bound: bound)
 
     def bounds_as(self, convert: Callable[[float], float]) -> str:
-        """Word the bounds, with each number converted to another unit."""
+        """Describe the bounds, with each number converted to another unit."""
         limits = (f"{words} {convert(bound):g}" for words, bound, _ in self._limits())
         return ", ".join([*["a whole number"] * self.whole, *limits])
 

@@ -90,7 +90,7 @@ def panels_of(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
 
 
 def input_words(swept: Any, place: int) -> str:
-    """Word an input, without the name of its table.
+    """Name an input with its unit, without the name of its table.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def _input_name(path: str) -> str:
 
 
 def _named(name: str, unit: str) -> str:
-    """Word a name with its unit."""
+    """Write a name with spaces for underscores, and its unit in brackets."""
     return f"{name.replace('_', ' ')} [{unit}]" if unit else name.replace("_", " ")
 
 
@@ -209,7 +209,7 @@ def plot_along_span(
     ax: Axes | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw a quantity along the beam, one colour a component: few cases as lines, more as a range.
+    """Draw a quantity along the beam, one colour per component: few cases as lines, more as a range.
 
     Components that are the same have one colour together.
 
@@ -265,7 +265,7 @@ def _alike(values: np.ndarray, labels: Sequence[str]) -> list[tuple[int, str]]:
 def plot_load_over_time(
     t: np.ndarray, values: np.ndarray, labels: Sequence[str], quantity: str, ax: Axes | None = None
 ) -> Axes:
-    """Draw a quantity at one station over time, one line a component.
+    """Draw a quantity at one station over time, one line per component.
 
     Parameters
     ----------

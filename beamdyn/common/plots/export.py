@@ -33,7 +33,7 @@ def write_shapes(
     force: bool = False,
     across: np.ndarray | None = None,
 ) -> None:
-    """Write mode shapes as a mesh with one displacement field a mode.
+    """Write mode shapes as a mesh with one displacement field per mode.
 
     The file is in the beam's own axes, wherever the carrier holds it: x along the beam from its root,
     y across its width, z the direction in which it bends.  The size of a mode being arbitrary, the

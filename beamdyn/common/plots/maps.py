@@ -63,7 +63,7 @@ class MapInput:
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def at(self, i: int) -> str:
-        """Word value i of the input."""
+        """Format value i of the input."""
         return f"{self.name} = {self.values[i]:.{_DIGITS}g} {self.unit}".rstrip()
 
     @property

@@ -25,7 +25,7 @@ def plot_locus(
     critical_speed: float | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw natural frequencies over speed, one line a mode.
+    """Draw natural frequencies over speed, one line per mode.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def plot_growth(
     critical_speed: float | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw growth rates over speed, one line a mode, in the colours of `plot_locus`.
+    """Draw growth rates over speed, one line per mode, in the colours of `plot_locus`.
 
     Frequencies say nothing of a mode that grows: this belongs below a locus that passes the critical speed.
 
@@ -81,7 +81,7 @@ def plot_loci_by_angle(
     angles_deg: Sequence[float] | np.ndarray,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw one frequency over speed, one line a setting angle.
+    """Draw one frequency over speed, one line per setting angle.
 
     Parameters
     ----------
@@ -328,7 +328,7 @@ def plot_transient(
     labels: Sequence[str] = ("",),
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw the tip deflection over time, one line a direction.
+    """Draw the tip deflection over time, one line per direction.
 
     Parameters
     ----------

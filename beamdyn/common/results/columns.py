@@ -25,11 +25,11 @@ class Column:
     unit : str
         Unit of the values, in SI for a quantity that display units change: "rad/s"; empty of a pure number.
     number : object
-        What follows the unit in the head where there are several of a name, such as the number of a mode.
+        Text after the unit in the head, which tells columns of one name apart, such as the number of a mode.
     error : ndarray, optional
         Absolute errors of the values [unit]: tables show the digits that these support.
     beyond : ndarray, optional
-        Errors [unit] beyond which tables dim the digits.
+        Larger errors [unit], such as the model errors: tables dim the digits that these do not support.
     form : str or callable, optional
         How tables write a value: a format, or ``form(value, error)``; by default with the digits that its
         error supports, or six.

@@ -43,7 +43,7 @@ def supported(value: float, error: float, most: int = _DIGITS) -> str:
 
 
 def supported_or_range(value: float, error: float, most: int = _DIGITS) -> str:
-    """Word a number like `supported`, but as "number ± error" where only one digit is sure."""
+    """Format a number like `supported`, but as "number ± error" where only one digit is sure."""
     text = supported(value, error, most)
     if "±" in text or not (0 < 2 * error < abs(value) < math.inf):
         return text
@@ -52,20 +52,20 @@ def supported_or_range(value: float, error: float, most: int = _DIGITS) -> str:
 
 
 def _with_error(value: float, error: float) -> str:
-    """Word a number with the digits up to the first of its error, and that error with one digit."""
+    """Format a number with the digits up to the first of its error, and that error with one digit."""
     last = math.floor(math.log10(error))
     digits = max(math.floor(math.log10(abs(value))) - last, 0) + 1
     return f"{value:#.{digits}g} ± {error:.1g}".replace(". ", " ").replace(".e", "e")
 
 
 def told_from(value: float, limit: float) -> str:
-    """Word a number with two digits, or as many as tell it from a limit beside it."""
+    """Format a number with two digits, or as many as tell it from a limit beside it."""
     texts = (f"{value:.{digits}g}" for digits in range(2, 18))
     return next((text for text in texts if float(text) != limit), f"{value:g}")
 
 
 def percent(value: float, sign: str = "") -> str:
-    """Word a relative number in percent with two digits, never with a positive exponent."""
+    """Format a relative number in percent with two digits, never with a positive exponent."""
     digits = f"{100 * value:{sign}.2g}"
     return f"{100 * value:{sign}.0f} %" if "e+" in digits else f"{digits} %"
 

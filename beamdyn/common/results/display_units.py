@@ -38,7 +38,7 @@ class ShownUnit(NamedTuple):
         return values * self.per_si
 
     def say(self, value: float, digits: int = 6) -> str:
-        """Word a value, given in SI, in this unit."""
+        """Format a value, given in SI, in this unit."""
         return f"{known_digits(value * self.per_si):.{digits}g} {self.name}"
 
 
@@ -120,12 +120,12 @@ class InDisplayUnits:
         return given or getattr(getattr(self, "scene", None), "units", SI_UNITS)
 
     def say_speed(self, speeds: np.ndarray | float) -> str:
-        """Word a speed, or the range of several, in its display unit."""
+        """Format a speed, or the range of several, in its display unit."""
         unit = self.display_units.speed_unit()
         return spanned(np.multiply(speeds, unit.per_si), unit.name)
 
     def say_length(self, lengths: np.ndarray | float) -> str:
-        """Word a length, or the range of several, in its display unit."""
+        """Format a length, or the range of several, in its display unit."""
         unit = self.display_units.length_unit()
         return spanned(np.multiply(lengths, unit.per_si), unit.name)
 

@@ -63,7 +63,7 @@ def given_fields(thing: Any) -> Iterator[str]:
 
 
 def brief(value: object) -> str:
-    """Word a value in few letters: arrays and containers by their size."""
+    """Format a value in few letters: arrays and containers by their size."""
     match value:
         case bool() | None:
             return str(value)
@@ -113,7 +113,7 @@ def known_digits(value: float) -> float:
 
 
 def number(value: Any, unit: str = "") -> str:
-    """Word a number with four digits and its unit; with fewer within `few_digits`."""
+    """Format a number with four digits and its unit; with fewer within `few_digits`."""
     size = float(value) if not isinstance(value, complex) else abs(value)
     if not math.isfinite(size):
         return f"{size:g}{unit and ' ' + unit}" if not math.isnan(size) else "none"
@@ -123,14 +123,14 @@ def number(value: Any, unit: str = "") -> str:
 
 
 def listed(values: Iterable[Any], unit: str = "") -> str:
-    """Word numbers, the first ones of many: "66.02, 413.8, 1158, ... Hz"."""
+    """Format numbers, the first ones of many: "66.02, 413.8, 1158, ... Hz"."""
     each = [*values]
     more = ", ..." if len(each) > _FEW else ""
     return f"{', '.join(map(number, each[:_FEW]))}{more}{unit and ' ' + unit}" if each else ""
 
 
 def spanned(values: np.ndarray | Sequence[float], unit: str = "") -> str:
-    """Word the range of numbers: "0 to 150 rad/s"."""
+    """Format the range of numbers: "0 to 150 rad/s"."""
     known = np.asarray(values, dtype=float).ravel()
     known = known[np.isfinite(known)]
     if not known.size:
@@ -140,12 +140,12 @@ def spanned(values: np.ndarray | Sequence[float], unit: str = "") -> str:
 
 
 def counted(count: int, word: str, many: str = "") -> str:
-    """Word a number of things: "1 mode", "3 modes"."""
+    """Format a number of things: "1 mode", "3 modes"."""
     return f"{count} {word if count == 1 else many or word + 's'}"
 
 
 def error_at_most(error: Any, unit: str = "") -> str:
-    """Word the largest error with one digit, rounded up, such as "error <= 2e-12", or that it is unknown."""
+    """Format the largest error with one digit, rounded up: "error <= 2e-12"; or say that it is unknown."""
     each = np.ravel(np.asarray(error, dtype=float))
     each = each[~np.isnan(each)]
     if not each.size:
@@ -160,7 +160,7 @@ _ROUNDED = 1 - 1e-12  # factor so that an error in the last bit does not turn 5e
 
 
 def rounded_up(value: float) -> str:
-    """Word a number of 0 or more with one digit, rounded up."""
+    """Format a number of 0 or more with one digit, rounded up."""
     if not value:
         return "0"
     place = math.floor(math.log10(value))
@@ -168,12 +168,12 @@ def rounded_up(value: float) -> str:
 
 
 def states(status: Iterable[Any], usual: Sequence[str]) -> str:
-    """Word how many have each unusual status, such as "2 divergence"; empty if none has."""
+    """Say how many have each unusual status, such as "2 divergence"; empty if none has."""
     names, counts = np.unique([str(s).partition(":")[0] for s in np.ravel([*status])], return_counts=True)
     others = [f"{c} {n}" for n, c in zip(names.tolist(), counts.tolist(), strict=True) if n not in usual]
     return ", ".join(others)
 
 
 def warned(warnings: Sequence[str]) -> str:
-    """Word the number of warnings; empty if there are none."""
+    """Format the number of warnings; empty if there are none."""
     return counted(len(warnings), "warning") if len(warnings) else ""

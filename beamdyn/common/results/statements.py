@@ -53,7 +53,7 @@ class Speeds(Part):
         return self.values, {"digits": self.digits}
 
     def in_units(self, units: Any) -> str:
-        """Word the speeds in a display unit."""
+        """Format the speeds in a display unit."""
         unit = units.speed_unit()
         return _spanning([unit.of(value) for value in self.values], self.digits, unit.name)
 
@@ -88,13 +88,13 @@ class InputValue(Part):
         return (self.name, self.value, self.unit), {"digits": self.digits}
 
     def in_units(self, units: Any) -> str:
-        """Word the input with its value, in a display unit if it is a speed."""
+        """Format the input with its value, in a display unit if it is a speed."""
         if self.unit == "rad/s":
             return self.said(units.speed_unit().say(self.value))
         return self.said(f"{self.value:.{self.digits}g} {self.unit}".rstrip())
 
     def said(self, value: str) -> Words:
-        """Word the input with a text for its value."""
+        """Join the name of the input and a text for its value: "name = text"."""
         return Words(InputName(self.name), f" = {value}")
 
 

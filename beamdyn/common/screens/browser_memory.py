@@ -44,7 +44,7 @@ def _are_texts(values: Iterable[object]) -> bool:
 
 
 def refused_name(name: str, present: Mapping[str, object]) -> str:
-    """Word why a design cannot be stored under a name; empty if it can."""
+    """Say why a design cannot be stored under a name; empty if it can."""
     if not name.strip():
         return "give the design a name"
     if len(name) > _LONGEST:

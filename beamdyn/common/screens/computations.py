@@ -110,7 +110,7 @@ class LatestComputation:
 
     @property
     def words(self) -> str:
-        """Word the time taken, and the time left if this takes as long as the last.
+        """Describe the time taken, and the time left if this takes as long as the last.
 
         Empty in the first second.
         """

@@ -184,7 +184,7 @@ def changed_texts(
 
 
 def describe_place(handle: Handle, entries: Mapping[str, str], inputs: Sequence[Input]) -> str:
-    """Word the position of a handle, by the fields that it sets."""
+    """Describe the position of a handle, by the fields that it sets."""
     texts = _texts(handle, handle.at, entries, inputs)
     return ", ".join(f"{path.rpartition('.')[2].replace('_', ' ')} {text}" for path, text in texts.items())
 

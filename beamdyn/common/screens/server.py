@@ -88,7 +88,7 @@ class RequestGuard:
             await send({"type": "websocket.close", "code": 1008})
 
     def refusal(self, hosts: list[str], origins: list[str]) -> str:
-        """Word why a request with these headers is refused; empty if it is accepted."""
+        """Say why a request with these headers is refused; empty if it is accepted."""
         host = hosts[0].lower() if len(hosts) == 1 else ""
         match = _HOST.fullmatch(host)
         is_other_address = match and self.any_address and _is_address(match[1].strip("[]"))

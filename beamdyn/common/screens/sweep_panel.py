@@ -231,7 +231,7 @@ def inputs_with_value(work: OpenDocument, screen: Screen) -> dict[str, Input]:
 
 
 def around(entry: Input, entries: Mapping[str, str]) -> str:
-    """Word values around the present one of an input, or its default: start:stop:count unit."""
+    """Format values around the present one of an input, or its default: start:stop:count unit."""
     number, unit = _given(entry, entries)
     low, high = (number * (1 - _AROUND), number * (1 + _AROUND)) if number else (0.0, 1.0)
     return f"{low:.3g}:{high:.3g}:{_COUNT} {unit}".strip()

@@ -80,7 +80,7 @@ class SpreadDesigns:
 
     @cached_property
     def table(self) -> np.ndarray:
-        """All designs, one a row, (1 + 4 d + (d + 2) n, d), with d inputs and n samples.
+        """All designs, one in each row, (1 + 4 d + (d + 2) n, d), with d inputs and n samples.
 
         They are the nominal one, those for slopes, two random samples A and B, and A with each input in turn
         from B.

@@ -271,7 +271,7 @@ def _as_text(given: Distribution, unit: str) -> str:
 
 
 def without_unit(text: str, written: str, unit: str) -> str:
-    """Word the remedy for a tolerance with a unit other than the input's: the text converted to that."""
+    """Write the remedy for a tolerance with a unit other than the input's: the text converted to that."""
     factor = _PREFIXES.get(written.removesuffix(unit)) if unit and written.endswith(unit) else None
     if factor is None:
         return f"give numbers alone{f', in {unit}' if unit else ''}"

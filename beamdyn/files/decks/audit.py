@@ -162,7 +162,7 @@ class PropertyStep:
     factor: float
 
     def sentence(self) -> str:
-        """Word the step as a sentence."""
+        """Describe the step as a sentence."""
         place = (
             f"at x/L = {self.start:g}"
             if self.start == self.end

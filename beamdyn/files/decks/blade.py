@@ -237,7 +237,7 @@ class IgnoredProperty:
         return f"{' to '.join(ends)} {self.unit}".rstrip()
 
     def sentence(self) -> str:
-        """Word the property: name, values and reason."""
+        """Describe the property: name, values and reason."""
         return f"{self.name} ({self.values}): {self.reason}"
 
 

@@ -85,7 +85,7 @@ def _rows(blade: Blade) -> list[list[Any]]:
 
 
 def _number(value: float) -> str:
-    """Word a number with as many digits as a float keeps, and zero without a sign."""
+    """Format a number with as many digits as a float keeps, and zero without a sign."""
     return f"{value + 0.0:.{_DIGITS}g}"
 
 
@@ -138,7 +138,7 @@ def _assignment(key: str, value: Any) -> Iterator[str]:
 
 
 def _cell(value: float) -> str:
-    """Word a number as TOML does, large ones with an exponent."""
+    """Format a number as TOML does, large ones with an exponent."""
     text = _number(value)
     if "e" not in text and abs(value) >= 1e6:
         mantissa, _, exponent = f"{value:.{_DIGITS - 1}e}".partition("e")

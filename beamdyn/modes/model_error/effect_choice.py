@@ -368,7 +368,7 @@ def choose_by(
             refused = [bent.reasons[name] for name in best.included if name in bent.reasons]
             if bent.model_error < best.model_error:
                 best = bent
-            elif refused:  # an effect of the other set keeps it out
+            elif refused:  # an effect already chosen cannot be combined with large deflection
                 best = best.without(_BENDING, refused[0])
         except (InvalidValue, ArithmeticError) as error:
             best = best.without(_BENDING, reason_of(error))

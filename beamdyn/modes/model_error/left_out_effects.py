@@ -53,7 +53,7 @@ class UnlistedMode:
         set_fields(self, frequency=np.asarray(self.frequency, dtype=float))
 
     def span(self) -> str:
-        """Word the frequency to three digits; over several speeds as a range from lowest to highest."""
+        """Format the frequency to three digits; over several speeds as a range from lowest to highest."""
         known = self.frequency[np.isfinite(self.frequency)]
         both = (f"{at:.3g}" if at < _LARGE else f"{at:.0f}" for at in (known.min(), known.max()))
         return " to ".join(dict.fromkeys(both))
@@ -66,7 +66,7 @@ def spans_by_kind(modes: Sequence[UnlistedMode]) -> dict[str, str]:
 
 
 def say_unlisted(modes: Sequence[UnlistedMode]) -> str:
-    """Word modes by kind: "torsion 656 Hz, flap 79.9, 499 Hz"."""
+    """Describe modes by kind: "torsion 656 Hz, flap 79.9, 499 Hz"."""
     assumed = {mode.kind: f" ({mode.assumed})" for mode in modes if mode.assumed}
     return ", ".join(f"{kind} {span}{assumed.get(kind, '')}" for kind, span in spans_by_kind(modes).items())
 
@@ -166,7 +166,7 @@ class LeftOutEffects:
         return Words(*begin, ": ", joined("; ", parts))
 
     def where_unknown(self, name: str, speeds: np.ndarray | None) -> str:
-        """Word the speeds at which a change is unknown; empty if the speeds or the change are not given."""
+        """Format the speeds at which a change is unknown; empty if the speeds or the change are not given."""
         change = self.changes.get(name)
         if speeds is None or change is None or not len(speeds):
             return ""
@@ -244,7 +244,7 @@ def _largest(change: np.ndarray) -> float:
 
 
 def say_change(change: float) -> str:
-    """Word a relative change in percent, to two digits, with its sign."""
+    """Format a relative change in percent, to two digits, with its sign."""
     if abs(change) < _NEGLIGIBLE:
         return "0 %" if change == 0 else "below 1e-7 %"
     if abs(change) < _MANY_TIMES:
@@ -253,7 +253,7 @@ def say_change(change: float) -> str:
 
 
 def say_size(size: float) -> str:
-    """Word a relative size in percent, to two digits, or in words where it is not known."""
+    """Format a relative size in percent, to two digits, or in words where it is not known."""
     return "not known" if np.isnan(size) else say_change(size).removeprefix("+")
 
 
@@ -332,7 +332,7 @@ class StatesModelError(OfChosenPhysics):
 
 
 def where_worst(effects: LeftOutEffects, speeds: np.ndarray) -> str:
-    """Word the speed with the largest model error, "at 100 rad/s", or all speeds (k,) if it is unknown."""
+    """Format the speed with the largest model error, "at 100 rad/s", or all speeds (k,) if it is unknown."""
     total = effects.total
     if not np.isfinite(total).any():
         return Words("at ", list_speeds(speeds, np.ones(len(speeds), bool))) if len(speeds) else ""

@@ -179,7 +179,7 @@ class CurveComparison(Result):
         return tuple(self._say(k) for k in range(len(self.name)))
 
     def _say(self, k: int) -> Words:
-        """Word the comparison of curve k as a sentence."""
+        """Describe the comparison of curve k as a sentence."""
         at_speed = (" at ", Speeds(self.speed)) if np.isfinite(self.speed) else ()
         largest = say(self.peak[k], self.unit[k]), " at ", self._where(float(self.x[self.places[k]]))
         start = self.name[k], *at_speed, ": the largest, ", *largest
@@ -191,7 +191,7 @@ class CurveComparison(Result):
         return Words(*start, ", is ", *self._beside(k), whole, *more)
 
     def _beside(self, k: int) -> tuple[str, ...]:
-        """Word how the largest value of curve k compares with the computed one."""
+        """Say how the largest value of curve k compares with the computed one."""
         deviation, computed = float(self.deviation[k]), say(self.computed_peak[k], self.unit[k])
         if np.isinf(deviation):
             return ("beside none in the model",)
@@ -200,20 +200,20 @@ class CurveComparison(Result):
         return f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'} of ", computed
 
     def _where(self, at: float) -> str:
-        """Word a place on the abscissa: a time, speed, position or frequency with its unit."""
+        """Describe a place on the abscissa: a time, speed, position or frequency with its unit."""
         if self.along == "position":
             return amount(at)
         return Speeds(at) if self.along == "speed" else number(at, "s" if self.along == "time" else "Hz")
 
     def _signed(self, k: int) -> str:
-        """Word that the sign of curve k is opposite to the computed one; empty text if it is not."""
+        """Say that the sign of curve k is opposite to the computed one; empty text if it is not."""
         if not self.is_turned[k]:
             return ""
         left = percent(float(self.rms_turned[k]))
         return f"; its sign is turned: with the other one the whole differs by {left}"
 
     def _shifted(self, k: int) -> str:
-        """Word how far computed curve k is ahead or behind; empty text where both are in phase."""
+        """Say how far computed curve k is ahead or behind; empty text where both are in phase."""
         phase = float(np.degrees(self.phase[k]))
         if not abs(phase) > _IN_PHASE:  # written so that nan counts as in phase
             return ""
@@ -224,7 +224,7 @@ class CurveComparison(Result):
         return f", with {late} {side} taken out"
 
     def _reason(self, k: int) -> str:
-        """Word the reason for the verdict on curve k."""
+        """Give the reason for the verdict on curve k."""
         left_out = float(self.model_error[k])
         own = float(_over(self.allowance[self.places[k], k], self.peak[k]))
         lacking = "the numerical error is not known"
@@ -283,7 +283,7 @@ class CurveComparison(Result):
 
 
 def say(value: float, unit: str) -> str:
-    """Word a value with few digits and its unit; each medium shows lengths in its own unit."""
+    """Format a value with few digits and its unit; each medium shows lengths in its own unit."""
     rounded = float(f"{value:.{_DIGITS}g}")
     return amount(rounded) if unit == "m" else f"{rounded:.{_DIGITS}g} {unit}".rstrip()
 

@@ -158,7 +158,7 @@ class FrequencyComparison(Result):
         yield from self._explained()
 
     def _alone(self, k: int) -> Words:
-        """Word that measured value k has no computed mode, and what may be the reason."""
+        """Say that measured value k has no computed mode, and what may be the reason."""
         setting = Setting("physics", torsion=True)
         twists = TORSION in self.label[k].lower()
         advice = ["; with ", setting, " it may have one"] if twists else []
@@ -168,7 +168,7 @@ class FrequencyComparison(Result):
         return Words(start, Speeds(self.speed[k]), ": the model has no such mode", *advice, ".")
 
     def _say(self, k: int, words: str) -> Words:
-        """Word the deviation of measured value k."""
+        """Format the deviation of measured value k."""
         deviation, computed = float(self.deviation[k]), f"{self.computed[k]:.{_DIGITS}g} Hz"
         side = "the same as"
         if abs(deviation) > NOTHING:
@@ -212,7 +212,7 @@ _WORDS = {OUTSIDE: OUTSIDE, LEFT_OUT: "within what the model leaves out ({left_o
 
 
 def outside(left_out: float, own: float) -> str:
-    """Word that a value is off by more than the model error and the data's uncertainty, both relative."""
+    """Say that a value is off by more than the model error and the data's uncertainty, both relative."""
     each = (left_out, "what the model leaves out"), (own, "the data's uncertainty")
     limits = [f"{name} ({percent(size)})" for size, name in each if size > NOTHING]
     return f"outside {' and '.join(limits) or 'the numerical error'}"

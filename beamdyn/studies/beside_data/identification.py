@@ -136,7 +136,7 @@ class Identification(Result):
             yield f"{self.comparison.label[k]}: the model has no such mode; it was not used."
 
     def says(self, k: int) -> Words:
-        """Word number k with its interval."""
+        """Format number k with its interval."""
         said = partial(say_value, unit=self.units[k], units=self.display_units)
         ends = joined(" to ", map(said, (self.low[k], self.high[k])))
         return Words(InputName(self.names[k]), " = ", said(self.value[k]), " (", ends, ")")
@@ -151,6 +151,6 @@ class Identification(Result):
         return int(np.isfinite(self.standardized).sum()) - len(self.names)
 
     def counted(self) -> str:
-        """Word how many numbers are found from how many frequencies: "3 numbers from 15 frequencies"."""
+        """Say how many numbers are found from how many frequencies: "3 numbers from 15 frequencies"."""
         values = counted(int(np.isfinite(self.standardized).sum()), "frequency", "frequencies")
         return f"{counted(len(self.names), 'number')} from {values}"

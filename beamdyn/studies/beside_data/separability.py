@@ -24,7 +24,8 @@ LARGEST = 1.0  # standard error of a variable of size 1, above which its number 
 FINEST = 1e-6  # smallest relative uncertainty of a frequency that this verdict assumes
 # Least share of `LARGEST` that a direction adds to a number's error if its name shall be listed.
 _TAKES_PART = 0.5
-_BOUND = 0.1  # singular values below it count as this one: bounds are about ten sizes apart
+# Singular values below this count as equal to it: the bounds of a variable are about ten of its sizes apart.
+_BOUND = 0.1
 _TOLD = 0.05  # least relative change of a measurement along a direction, for it to determine that direction
 _STEP = 1e-3
 _BODY = 0.2  # mass of a known body, over that of the beam, with which a measurement is suggested

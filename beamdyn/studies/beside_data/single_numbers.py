@@ -76,7 +76,7 @@ class OneNumberFit:
 
     @property
     def left(self) -> str:
-        """Word the largest deviation from the data that remains with this value of the number."""
+        """Describe the largest deviation from the data that remains with this value of the number."""
         return percent(self.remaining) if self.remaining > _NOTHING else "nothing"
 
 
@@ -152,7 +152,7 @@ def _explanation(
 
 
 def say_value(value: float, unit: str, digits: int = _DIGITS, units: DisplayUnits = SI_UNITS) -> str:
-    """Word a value with a number of significant digits and its unit, as each medium shows it.
+    """Format a value with a number of significant digits and its unit, as each medium shows it.
 
     Python shows SI, files mm, GPa and g; lengths have the unit of the scene, where it has one.
     """

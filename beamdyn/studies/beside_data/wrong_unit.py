@@ -45,7 +45,7 @@ def wrong_unit(
         return
 
     def logarithms(factor: float) -> np.ndarray:
-        """Compute logarithms of measured over computed values for a factor, inf where a value has no mode."""
+        """Compute log(measured / factor / computed) of each value and its mode; inf if it has none."""
         found = []
         for values, modes, alike in zip(measured, computed, likeness, strict=True):
             place, known = pair(values / factor, modes, alike), np.isfinite(values)

@@ -195,7 +195,7 @@ def campbell(
 ) -> Campbell:
     """Compute a Campbell diagram: natural frequencies over speed, and the lines that may excite them.
 
-    Every line is held against every mode: whether it excites it is another question, which
+    Every line is compared with every mode: whether a line excites a mode is another question, which
     `resonance_speeds` answers for a scene's motion.
 
     Parameters

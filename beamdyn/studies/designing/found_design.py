@@ -161,7 +161,7 @@ class FoundDesign(Result):
             yield Words("Limited by: ", joined("; ", self.limited_by), ".")
 
     def _ways(self) -> str:
-        """Word that the answers depend on each number in one direction, or on none."""
+        """Say that the answers depend on each number in one direction, or on none."""
         still = len(self.without_effect)
         if still == len(self.names):
             return "are the same"

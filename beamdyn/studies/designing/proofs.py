@@ -145,7 +145,7 @@ class Proofs:
             yield joined("; ", says)
 
     def _at(self, j: int, shares: np.ndarray) -> Words:
-        """Word the value of number j of a design that is given by its shares of the ranges."""
+        """Format the value of number j of a design that is given by its shares of the ranges."""
         value = float(self.search.ranges.values(shares)[j])
         return Words(f"{self._names[j]} = ", say_number(value, self.search.ranges.inputs[j].unit))
 

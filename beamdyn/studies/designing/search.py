@@ -34,7 +34,7 @@ _STEP = 1e-5  # step of differences within a search, as a share of the range of 
 DIFFERENCE = 1e-3  # step of the differences for the derivatives of answers, as a share of a range
 _CLOSE = 1e-13  # interval to which a root is bracketed, as a share of a range
 _AT_END = 1e-9  # distance from a bound within which a minimization is at it, as a share of a range
-_SCANNED, _SPREAD = 9, 4  # number of first designs: over a single number, and per number if there are several
+_SCANNED, _SPREAD = 9, 4  # count of first designs: for a single free number, and for each of several
 _ROUNDING = 4 * np.finfo(float).eps
 _FLAT = 1e-12  # change of the objective at which a minimization ends
 # Largest miss, as a logarithm, that Newton's steps remove, and the number of these steps.

@@ -164,7 +164,7 @@ class Target:
         return Words(self.name, f" {word} ", self.amount(value))
 
     def amount(self, value: float) -> str:
-        """Word a value of the answer with its unit."""
+        """Format a value of the answer with its unit."""
         return say_number(value, self.kind.unit)
 
 
@@ -175,5 +175,5 @@ def _compressed(excess: np.ndarray) -> np.ndarray:
 
 
 def say_number(value: float, unit: str) -> str:
-    """Word a value with six digits and its unit; each medium, such as files, may show another unit."""
+    """Format a value with six digits and its unit; each medium, such as files, may show another unit."""
     return Speeds(value) if unit == "rad/s" else say_value(value, unit, 6)

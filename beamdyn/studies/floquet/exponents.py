@@ -247,7 +247,7 @@ def _cover(alpha: float, most: int) -> tuple[int, np.ndarray]:
             break
         count = min(2 * count, _PERIODS)
     bound = "the phase of one of its rates does not cover the circle in 4096 periods of the other"
-    raise InvalidValue("scene.motion", alpha / (2 * math.pi), bound, "take rates that meet, nearby")
+    raise InvalidValue("scene.motion", alpha / (2 * math.pi), bound, "take nearby rates with a common period")
 
 
 def _over_period(system: ModalSystem, T: float, steps: int, k: int) -> np.ndarray:

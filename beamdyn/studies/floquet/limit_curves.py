@@ -199,7 +199,7 @@ def _within_border(place: np.ndarray, normal: np.ndarray) -> np.ndarray:
 
 
 def _crosses(curve: list[LimitPoint], low: np.ndarray, high: np.ndarray) -> bool:
-    """Tell whether a curve crosses an edge of the grid, with unstable motion on the same side."""
+    """Tell whether a curve crosses an edge of the grid, with its unstable side towards the end `high`."""
     axis = int(np.abs(high - low).argmax())
     way, slack = np.sign(high - low)[axis], _SLACK * abs(high - low)[axis]
     ends = sorted((low[axis], high[axis]))

@@ -319,7 +319,7 @@ def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nea
     """Evaluate the equations in the widest interval about a number over which polynomials resolve them."""
     before, best = np.inf, None
     for nearby in evaluate_nearby(number, evaluate):
-        # Compute the largest last term of a model's matrices within the interval, relative to each matrix.
+        # The last term of each matrix's polynomial, at its largest in the interval, relative to the matrix.
         last, whole = _last(nearby), nearby.values[0][0]
         pairs = ((getattr(last, f.name), getattr(whole, f.name)) for f in fields(last))
         share = max(_largest(part) * nearby.width / (_largest(matrix) or 1.0) for part, matrix in pairs)

@@ -114,7 +114,7 @@ def _solve_by_ritz(scene: Scene, speeds: np.ndarray, modes: int, functions: int)
 
 
 def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str:
-    """Compare the reference with the guaranteed bounds at a speed, and word the outcome."""
+    """Compare the reference with the guaranteed bounds at a speed, and describe the outcome."""
     try:
         bounds = frequency_bounds(exact.model.scene, speed, modes)
     except ValueError:  # bounds cover neither stretch nor damping

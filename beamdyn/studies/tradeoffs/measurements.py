@@ -87,7 +87,7 @@ class Digit:
 
 
 def number_of(number: int, one: str, many: str) -> str:
-    """Word a number with its noun, in the singular or plural."""
+    """Format a number with its noun, in the singular or plural."""
     return f"{number} {one if number == 1 else many}"
 
 
@@ -187,7 +187,7 @@ class Diagram(Result):
 
     @property
     def summary(self) -> str:
-        """Word the front in one line: families and settings by ascending time."""
+        """Describe the front in one line: families and settings by ascending time."""
         parts = []
         for family, members in groupby(self.front, key=lambda m: m.family):
             settings = [m.setting for m in members]

@@ -137,7 +137,7 @@ def _relative(difference: float, largest: float) -> float:
 
 
 def _check_by_dop853(scene: Scene, exact: Transient, modes: int, basis: Discretization, limit: float) -> str:
-    """Compare the reference with DOP853 on the first part of the run, and word the outcome."""
+    """Compare the reference with DOP853 on the first part of the run, and describe the outcome."""
     end = _CHECKED_PART * exact.path.end
     options = {"discretization": basis, "events": _stop_after(perf_counter() + limit)}
     try:
@@ -255,7 +255,7 @@ def _diagram(
     cases = tuple(TimedCase(f"{what}={n}", n, lambda deadline, n=n: run(n)) for n in sizes)
     resolved = 10 * _EPS if what == "modes" else float(np.nanmax(exact.error, initial=10 * _EPS))
     left = remaining_budget(budget, start)
-    # The error is the largest difference at the tip over all phases, over the bound, where both are stable.
+    # Largest difference of tip deflections over all phases, relative to the bound of the deflection.
     phase = 2 * np.pi * np.arange(_PHASES) / _PHASES
     rotation, road = np.meshgrid(phase, phase)
     true = [exact.tip(rotation, road, direction) for direction in (0, 1)]
