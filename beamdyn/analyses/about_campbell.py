@@ -16,7 +16,7 @@ from beamdyn.common.edge.units import unit_as_written
 from beamdyn.studies.campbell.diagram import Campbell
 
 _SPEEDS = 301
-_SPEEDS_OF_BENT = 61  # number of speeds of a beam that bends far, each of which takes an equilibrium
+_SPEEDS_OF_BENT = 61  # number of speeds with large deflection: each needs an equilibrium
 
 
 @analysis('beamdyn campbell examples/rolling_harvester.toml --top-speed "150 rad/s"', screen="Campbell")
@@ -57,7 +57,7 @@ def campbell(
 
 
 def parse_top(text: str, scene: bd.Scene | None, bent: bool) -> tuple[Any, str]:
-    """Return speeds [rad/s] up to the top one, fewer for beams that rotation bends far, and their unit."""
+    """Return speeds [rad/s] up to the top one, fewer with large deflection (`bent`), and their unit."""
     top = parse_positive("--top-speed", text, "rad/s", scene)
     unit, _ = unit_as_written(text, "rad/s")
     count = _SPEEDS_OF_BENT if bent else _SPEEDS

@@ -83,9 +83,10 @@ class Frequencies:
 
 
 def solve(tables: Mapping[str, Any]) -> Frequencies:
-    """Compute the locus, and where the scene's motion excites a mode.
+    """Compute frequencies over speed, the critical speed, and the speeds at which the motion excites a mode.
 
-    A coarse solution, for a drawing, is the locus at few speeds, and where lines meet it between them.
+    A coarse solution, which tables with `COARSE` ask for, has few speeds; the crossings of excitation lines
+    are then interpolated between these.
     """
     scene, top, modes = read(tables)
     coarse = COARSE in tables

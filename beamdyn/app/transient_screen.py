@@ -127,7 +127,7 @@ def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
     speed = np.abs(scene.motion.at(t).speed)
     try:
         found = resonance_speeds(scene, float(speed.max()), _MODES)
-    except ValueError:  # the scene is at rest, or no lines excite it
+    except ValueError:  # the scene is at rest, or its excitation lines are not known
         return
     for c in found:
         over = speed - c.speed

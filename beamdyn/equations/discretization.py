@@ -241,7 +241,7 @@ class RootConditions(NamedTuple):
 
 CLAMPED = RootConditions(2, 2)  # a deflection without slope at the root
 HINGED = RootConditions(1, 2)  # a deflection that may turn about the root, by its first function
-FIXED = RootConditions(1, 1)  # a displacement, such as the stretch
+FIXED = RootConditions(1, 1)  # a displacement that is 0 at the root, such as the stretch
 
 
 class Functions(Protocol):

@@ -253,7 +253,7 @@ def _integrated_legendre(
     highest derivative, which may jump; scaled so that these derivatives are orthonormal.
     """
     if order > derivatives:
-        raise ValueError("only as many derivatives as the basis was integrated")
+        raise ValueError(f"order = {order}: the functions have derivatives up to order {derivatives}")
     segments = pairwise(ends)
     return np.concatenate(
         [_integrate_on_segment(functions, a, b, xi, derivatives - order) for a, b in segments]

@@ -48,7 +48,7 @@ class Frequency(Quantity):
 
 
 def reader_of(text: DataText) -> Callable[..., MeasuredCurves | MeasuredFrequencies] | None:
-    """Return the function that reads a table with the heads of a text; None if it has frequencies."""
+    """Return the function that reads the curves in a text, by its heads; None if it has no curves."""
     line = text.lines[head_line(text) - 1].lower()
     heads = {plain_name(re.sub(r"[\[(].*", "", cell)) for cell in re.split(r"[,;\t]", line)}
     if "time" in heads:

@@ -117,7 +117,7 @@ def _checked(columns: Mapping[str, str] | None) -> Mapping[str, str]:
 def _one_speed(speeds: np.ndarray | None) -> float | None:
     """Return the single speed of loads, shapes or a response [rad/s]; None if none is given."""
     if speeds is not None and len(speeds) != 1:
-        raise InvalidValue("speeds", speeds.tolist(), "such data are at one speed", "give one")
+        raise InvalidValue("speeds", speeds.tolist(), "curves of this kind are at one speed", "give one")
     return None if speeds is None else float(speeds[0])
 
 

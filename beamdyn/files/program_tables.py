@@ -156,7 +156,7 @@ def universal_table(path: Path) -> DataText:
     each = [found for found in (sets if isinstance(sets, list) else [sets]) if found["type"] == 58]
     if len(each) != 1 or each[0]["func_type"] not in (_RESPONSE, _HISTORY):
         said = f"expected one frequency response or history (dataset 58), found {len(each)} functions"
-        raise ConfigError(str(path), [f"{said}; write that of the tip into a file of its own"])
+        raise ConfigError(str(path), [f"{said}; write the function of the tip into a file of its own"])
     (found,) = each
     return DataText(path, tuple(_lines_of_function(path, found)))
 

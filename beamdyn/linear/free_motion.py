@@ -21,11 +21,11 @@ import scipy.linalg
 from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 
 _EPS = float(np.finfo(float).eps)
-_MASSLESS = 16 * _EPS  # ratio of r^2 to the largest that is 0 within rounding
+_MASSLESS = 16 * _EPS  # mass r^2 of a coordinate, over the largest, up to which it counts as 0
 # Ratio of a pole to the shift below which the pole counts as 0: rounding moves double poles by its square
 # root.
 _STILL = 1e-6
-_INFINITE = 1e-12  # ratio of an inverse pole to the largest that is 0 within rounding
+_INFINITE = 1e-12  # inverse pole, over the largest, up to which it counts as 0: rounding
 _NEARLY_FREE = 1e-6  # squared frequency relative to an elastic mode's, below which the stiffness is shifted
 _ELASTIC = 2  # modes that may be without stiffness, one rotation in each plane: the next one is elastic
 

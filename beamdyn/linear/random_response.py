@@ -34,7 +34,8 @@ from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 _TURN = 2 * np.pi
 _POINTS = 500  # number of frequencies of the result by white noise, in addition to those about resonances
 _DECADES = 3  # decades below the highest frequency at which the frequencies begin
-# Number of functions up to which all are kept: none, as their poles are far apart and lose digits.
+# Number of functions up to which a response has all of them, in place of some modes: 0, that is never, as
+# poles over so wide a range lose digits.
 _DIRECT = 0
 _SEVERAL = 3.0  # number of standard deviations that a deflection rarely exceeds
 

@@ -238,7 +238,7 @@ _TURN = 2 * np.pi
 def random_input(
     scene: Scene, speed: float, psd: PowerSpectrum | RoadRoughness | float, given: Excitation | str | None
 ) -> tuple[Excitation, PowerSpectrum | float]:
-    """Find the excitation and its density; a road becomes the vertical acceleration of the wheel.
+    """Return the excitation and its spectral density; a road becomes the wheel's vertical acceleration.
 
     Raises
     ------

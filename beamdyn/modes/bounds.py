@@ -137,8 +137,8 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     most = min(parts, default=MOST_MOMENTS)
     if modes > most:
         raise ValueError(
-            f"modes = {modes}: give at most {max(0, most)}, for which this beam leaves room; the higher the "
-            "degree of its properties, the less"
+            f"modes = {modes}: give at most {max(0, most)}, the number of functions for this beam; the "
+            "higher the degree of its properties, the fewer there are"
         )
     enclosed = [_enclose(plane, speed, modes) for plane in planes or (scene,)]
     # The k-th lowest of both planes lies between the k-th lowest of their lower and of their upper bounds.

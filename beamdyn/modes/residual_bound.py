@@ -250,7 +250,10 @@ class PlaneEnclosure(Enclosure):
 
     @cached_property
     def _traces(self) -> np.ndarray:
-        """Upper bounds of the traces of the forms on all functions, relative to the strain energy a: (4,)."""
+        """Upper bounds of the traces of the four forms P_j relative to the strain energy a: shape (4,).
+
+        They are traces on all functions, of the Ritz part and of the tail together.
+        """
         assert self.flexibility is not None
         return bound_traces(self.scene.beam, self.flexibility)
 

@@ -118,7 +118,7 @@ class RitzPart(ABC):
 
 
 def most_functions(beam: Beam) -> int:
-    """Find the largest number of functions of a Ritz part: on each segment, or of moments in total."""
+    """Return the largest number of functions of a Ritz part: polynomials per segment, or moments in all."""
     most = MOST_FUNCTIONS - _extra_degrees(beam)
     return most if _bends_by_moments(beam) else min(most, _MOST_IN_ALL // segments_with_functions(beam))
 

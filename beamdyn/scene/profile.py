@@ -350,7 +350,7 @@ def _check_stations(name: str, x: np.ndarray, values: int) -> None:
         refuse_station(len(x) - 1, Words("the last station must be ", tip))
     if x[1] == 0 or x[-2] == 1 or np.any(x[2:] == x[:-2]):
         bound = "a station given twice is a jump and stands between others"
-        raise InvalidValue(name, x.tolist(), bound, "give none three times, nor twice at an end")
+        raise InvalidValue(name, x.tolist(), bound, "give none three times, nor the first or last twice")
 
 
 def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]:
@@ -426,4 +426,4 @@ def check_positive(name: str, profile: Profile, power: int = 1) -> None:
         bound = (
             f"it must be positive and finite; less than {zero:.1g} of the largest beside it counts as zero"
         )
-        raise InvalidValue(name, value, bound, "let a taper end above", where=f" at x/L = {where[k]:.3f}")
+        raise InvalidValue(name, value, bound, "end a taper above 0", where=f" at x/L = {where[k]:.3f}")

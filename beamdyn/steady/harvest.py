@@ -271,12 +271,12 @@ def _powers(
     if road is not None:
         check_road(scene, road)
     response = steady_response(scene, speeds, modes, None, tolerance, discretization)
-    own, finer = HarvestedPowers.of(response.request), response.request.run_refined()
+    own, finer = HarvestedPowers.of(response.request), response.request.refined()
+    larger = [HarvestedPowers.of(request) for request in (finer, finer and finer.refined()) if request]
     relative, of_strain = np.full((2, len(response.speeds)), np.inf)
-    if finer is not None:
-        better = HarvestedPowers.of(finer.request)
-        relative = _DISTANCE * own.apart(better)
-        of_strain = _DISTANCE * np.abs(better.strain - own.strain)
+    if larger:
+        relative = _DISTANCE * np.max([own.apart(each) for each in larger], axis=0)
+        of_strain = _DISTANCE * np.max([np.abs(each.strain - own.strain) for each in larger], axis=0)
     values = {name: np.where(response.stable, each, np.nan) for name, each in vars(own).items()}
     warnings, on_road, most = [*response.warnings], None, values["strain"]
     if road is not None:

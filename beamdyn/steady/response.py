@@ -157,7 +157,8 @@ class SteadyResponse(StatesModelError):
     @cached_property
     def refined(self) -> SteadyResponse | None:
         """Response with 1.5 times as many modes, at least two more; None if there is no larger model."""
-        return self.request.run_refined()
+        finer = self.request.refined()
+        return None if finer is None else finer.run()
 
     @cached_property
     def mode_error(self) -> np.ndarray:
@@ -358,13 +359,13 @@ class ResponseRequest(FieldsOnly):
         note = _LINEAR if scene.physics.large_deflection else ""
         return SolvedValues(response.amplitude, lost[0] if lost else "", note)
 
-    def run_refined(self) -> SteadyResponse | None:
-        """Solve with more modes; None if there is no larger model."""
+    def refined(self) -> ResponseRequest | None:
+        """Return the request with half as many more modes; None if there is no larger model."""
         basis = self.basis.refined()
         if basis is None or basis.modes is None:
             return None
         discretization = ensure_size(self.scene, self.discretization, basis.modes)
-        return replace(self, basis=basis, discretization=discretization).run()
+        return replace(self, basis=basis, discretization=discretization)
 
     def run_smallest_basis(self) -> SteadyResponse:
         """Solve with the smallest basis whose truncation error meets the tolerance, or the largest tried."""

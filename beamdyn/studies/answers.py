@@ -131,7 +131,7 @@ class AnswerArrays:
 
 
 def caution_where(which: Any, kind: str, size: np.ndarray | float, said: str) -> Iterable[Caution]:
-    """Make a caution for the selected designs and speeds (R, S), weighted by the largest size.
+    """Make a caution for the selected designs and speeds (R, S), with the largest `size` among them.
 
     Nothing is yielded if none is selected.
     """

@@ -263,7 +263,7 @@ def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
 
     Nothing is yielded if all have one.
     """
-    said = Statement(" there is no answer: rounding of the matrices leaves none", kind=NO_ANSWER)
+    said = Statement(" there is no answer: rounding of the matrices leaves no correct digit", kind=NO_ANSWER)
     return caution_where((status == REFUSED).any(axis=2), "d", 0.0, said)
 
 

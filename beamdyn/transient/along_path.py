@@ -292,7 +292,11 @@ class _Oscillators:
     def respond(
         self, force: np.ndarray, y0: np.ndarray, v0: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute the motion (N, n) under forces (N, n), rates at the end, and fast modes' initial jumps."""
+        """Compute the motion (N, n) of the modes under forces (N, n), and their velocities (n,) at the end.
+
+        Fast modes follow the forces without inertia: the third result (n,) is the size of their jumps from y0
+        at the start.
+        """
         y, slow = force / self.stiff, self.slow
         end = (y[-1] - y[-2]) / (self.t[-1] - self.t[-2])
         jump = np.abs(np.where(slow, 0.0, y0 - y[0]))

@@ -171,7 +171,7 @@ def _judged(system: ModalSystem, step_size: StepSize, path: Trajectory, order: i
 def follow_steps(
     path: Trajectory, system: ModalSystem, y0: np.ndarray, tolerance: float
 ) -> tuple[Trajectory, float]:
-    """Integrate other equations in the equal steps of a path.
+    """Integrate a system with the steps that were found for another one: those of its trajectory `path`.
 
     Other parameters, and errors raised: see `integrate`.
 
@@ -179,7 +179,8 @@ def follow_steps(
     -------
     path : Trajectory
     error : float
-        Error of the tip deflection [m] in those segments that state one; for others it is not estimated.
+        Estimated error of the tip deflection [m], from segments that are solved by series or in closed form;
+        that of other segments is not estimated.
     """
     steps = [len(segment.acceleration) for segment in path.segments]
     check_number_of_steps(sum(steps), system.size, path.end)

@@ -34,7 +34,7 @@ def with_less_and_more(design: Any, path: str, solve: Callable[[Any], Answer]) -
     design : BaseModel
         The design.
     path : str
-        Path of the friction coefficient in the design; it may be absent.
+        Path of the friction coefficient in the design; without friction no case is solved.
     solve : callable
         ``solve(design)`` returns the answer.
     """

@@ -50,7 +50,10 @@ class FromPedal(Result):
 
     @property
     def error(self) -> Numbers:
-        """Bound of the stop's relative error, from that of the torque where the brake limits the force."""
+        """Bound of the relative error of torque and deceleration.
+
+        The torque's error changes the deceleration only where the brake, not the grip, limits it.
+        """
         stop = self.braked.stop
         slowing = np.where(stop.stops, np.abs(stop.acceleration), np.inf)
         sensitive = np.where(stop.limited_by == "brake", stop.brake_force / stop.truck.mass / slowing, 0.0)

@@ -97,7 +97,7 @@ def format_force(value: Any, digits: int = 5) -> str:
 
 
 def format_size(value: Any, unit: str, digits: int = 5) -> str:
-    """Format a force or moment with its unit; nan as in `format_force`."""
+    """Format a force or moment with its unit; for nan, write the words of `format_force` alone."""
     return format_force(value, digits) + ("" if np.isnan(value) else f" {unit}")
 
 

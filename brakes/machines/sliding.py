@@ -269,7 +269,10 @@ class Sliding(Machine):
         return c * S - b * C + s * mu * (self.drum_radius * K - b * S - c * C)
 
     def _balance(self, integrals: tuple[Any, Any, Any], mu: Numbers, s: float) -> Any:
-        """Compute the residual [m] of force and moment balance per pressure p0; linear in the integrals."""
+        """Compute the residual [m] of the balance of forces and moments, over p0 and the area w r.
+
+        It is linear in the integrals; p0, w and r are those of `_moment`.
+        """
         (_, S, C), psi = integrals, self.abutment_angle
         along = np.sin(psi) * (S - s * mu * C) + np.cos(psi) * (C + s * mu * S)
         return along * self.arm - np.sin(psi) * self._moment(integrals, mu, s)

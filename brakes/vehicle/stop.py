@@ -362,7 +362,7 @@ def _refuse_overturning(truck: Truck, conditions: StopConditions, strongest: Num
     slope, sense = conditions.slope, conditions.sense
     front, rear = truck.overturning_slopes
     together(slope=slope, truck=front)
-    remedy = "less slope, or a lower centre of gravity"
+    remedy = "give less slope, or a lower centre of gravity"
     tilt = sense * np.asarray(slope)
     for axle, limit, bad in (
         ("rear", rear, tilt >= rear - LEAST_MARGIN),
@@ -376,4 +376,4 @@ def _refuse_overturning(truck: Truck, conditions: StopConditions, strongest: Num
     pressed = strongest >= truck.mass * conditions.gravity * np.cos(conditions.slope) * limit
     bad = (sense < 0) & (a <= least) & pressed
     bound = "braking overturns the truck over the front axle from {limit} on"
-    refuse(bad, "friction", mu, "", bound, "less load, or nearer the axle and lower", limit=limit)
+    refuse(bad, "friction", mu, "", bound, "give less load, nearer the axle or lower", limit=limit)

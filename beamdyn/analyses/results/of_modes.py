@@ -101,7 +101,7 @@ def modes_columns(result: bd.Modes) -> Columns:
 
 
 def _circuit(result: bd.Modes | bd.Locus) -> str:
-    """Describe the circuit for which a harvester's modes hold, which has no load resistance; else empty."""
+    """Say whether the modes of a harvester are those of an open or a short circuit; empty for other beams."""
     electrodes = result.scene.beam.electrodes
     if electrodes is None:
         return ""

@@ -204,7 +204,7 @@ def load(path: str | Path) -> Any:
             raise ValueError("it has numbers only")
         result = decode(content["record"]["result"])
         if not isinstance(result, Saved):
-            raise ValueError(f"{result!r} is none of beamdyn's or brakes'")
+            raise ValueError(f"{result!r} is none of beamdyn's or brakes' results")
         computed = {key: decode(value) for key, value in content["record"]["computed"].items()}
     except ValueError as error:
         raise ValueError(f"{path}: no result can be loaded: {error}; {remedy}") from None

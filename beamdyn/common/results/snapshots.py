@@ -75,7 +75,7 @@ class LeftOut:
     def __call__(self, *arguments: object, **options: object) -> Any:
         """Raise the ValueError that names the part that the file does not hold."""
         raise ValueError(
-            f"the file does not hold {self.what}, which is no data; compute the result again to use it"
+            f"the file does not hold {self.what}, which cannot be saved; compute the result again to use it"
         )
 
 

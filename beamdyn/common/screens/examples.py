@@ -27,9 +27,9 @@ class Example:
     title : str
         Description in a sentence.
     document : Document
-        The kind of file.
+        The document that can open it.
     text : str
-        The file.
+        Content of its file.
     """
 
     name: str

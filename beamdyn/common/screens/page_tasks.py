@@ -237,5 +237,5 @@ def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
 
 
 def _before(work: OpenDocument, screen: Screen, path: str) -> str:
-    """Return the text of an entry at the last answer."""
+    """Return the text that an entry had when the screen's last answer was computed."""
     return work.answered[screen.name].entries.get(path) or "empty"

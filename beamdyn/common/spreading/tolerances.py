@@ -241,7 +241,7 @@ def _ends(
     """Return the ends of a text such as "0.19 mm to 0.21 mm"; a missing unit is that of the other end."""
     sign, one, first, last_sign, other, last = found.groups()
     if "%" in (first, last):
-        raise InvalidValue(name, text, "a range has values for its ends", 'give percentages as "+1% -2%"')
+        raise InvalidValue(name, text, "the ends must be values, not %", 'give percentages as "+1% -2%"')
     low, high = (
         (-1.0 if minus == "-" else 1.0) * convert(number, written)
         for minus, number, written in ((sign, one, first or last), (last_sign, other, last or first))

@@ -518,4 +518,4 @@ class DeflectedFunctions(FieldsOnly):
             return moving @ stations.quadrature.integrate_to(xi).T
         if order == 1:
             return moving @ stations.quadrature.interpolate_to(xi).T
-        raise ValueError("only the deflection and its slope follow a deflected beam")
+        raise ValueError(f"order = {order}: give 0, the deflection, or 1, its slope")

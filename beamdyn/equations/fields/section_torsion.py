@@ -71,7 +71,7 @@ class TurnedSections:
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
         """Raise a ValueError: no surface can be drawn, as the width of the section is not known."""
-        raise ValueError("the width of the sections is not known, but that of beams by Beam.rectangular")
+        raise ValueError("the width of the sections is not known: make the beam by Beam.rectangular")
 
 
 def assemble_section_torsion(

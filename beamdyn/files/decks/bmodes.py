@@ -202,7 +202,9 @@ def _from_shear_centre(
 def convert_offsets(
     edge: np.ndarray, axial: np.ndarray, mass: np.ndarray, shear: np.ndarray, tension: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Compute offsets across from the shear centre, and the stiffness about the centre of tension.
+    """Convert centres of the sections to offsets from the shear centre, by names of properties of `Beam`.
+
+    The edgewise stiffness is converted too: from the shear centre to the centre of tension.
 
     Parameters
     ----------

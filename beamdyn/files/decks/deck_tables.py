@@ -39,7 +39,7 @@ def audit_tables(audit: DeckAudit, title: str = "Audit of a blade") -> list[Rend
 
 
 def audit_rows(audit: DeckAudit) -> Iterator[tuple[str, str, str]]:
-    """Yield name, value and unit of mass, moments and stiffness of a blade."""
+    """Yield name, value and unit of a blade's number of stations, mass, moments and stiffness ratios."""
     yield "stations", f"{audit.stations}", "ascending from 0 to 1"
     yield "mass", f"{audit.mass:.8g}", "kg, linear between stations, without tip body"
     yield "centre of mass", f"{audit.centre:.8g}", "m from the root"

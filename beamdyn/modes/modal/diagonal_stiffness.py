@@ -9,7 +9,7 @@ from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, Stead
 
 _EPS = np.finfo(float).eps
 # Rounding errors in addition to those of `equations_of_motion`.
-# Rounding errors with two planes and on springs, over those of one clamped plane.
+# Ratios of rounding errors of beams in two planes, and on springs, to those of a clamped beam in one plane.
 _TWO_PLANES, _ON_SPRINGS = 3.0, 2.0
 _CANCELLED = 0.5 * _EPS  # relative error by stiffness entries that cancel where twist couples two planes
 _FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu, five times the error measured at mode 100

@@ -273,7 +273,7 @@ def _first_ritz(
 def _first_fem(
     scene: Scene, segments: int, modes: int, target: float, cheapest: bool, has_layers: bool
 ) -> Discretization:
-    """Choose a mesh with enough elements on each segment; layers at the ends need several."""
+    """Choose a mesh with enough elements on each segment; segments made for boundary layers need several."""
     # Imported here, because scikit-fem is slow to import.
     from beamdyn.equations.fem import MOST_ELEMENTS, MOST_REFINED, Fem
 

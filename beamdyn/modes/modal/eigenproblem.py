@@ -62,12 +62,12 @@ class Eigen:
 
 
 class Eigensolver(ABC):
-    """Eigensolver of the equations at any steady speed.
+    """Base of solvers that find eigenvalues and modes of one beam at any steady speed.
 
     Parameters
     ----------
     pencil : SteadyPencil
-        Equations at steady speed, of n coordinates and modes.
+        Equations of motion in n coordinates, whose matrices depend on the speed.
     """
 
     def __init__(self, pencil: SteadyPencil) -> None:
@@ -308,7 +308,7 @@ class Solver(Eigensolver):
     def _solve_graded(
         self, speed: float, count: int, basis: np.ndarray, condition: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute modes of gyroscopic equations on springs, in coordinates with the identity as stiffness."""
+        """Compute gyroscopic modes of a beam on springs, in coordinates with the identity as stiffness."""
         M, C = (basis.T @ A @ basis for A in (self.pencil.M, speed * self.pencil.G))
         time = np.sqrt(np.trace(M) / len(M))
         inverse, y = solve_gyroscopic(M / time**2, C / time, np.ones(len(M)))

@@ -112,7 +112,7 @@ class SteadyLoad:
                 if after.p_rate < 0 or np.abs(after.q @ self.angles).max() > _MOST_TURNS:
                     break
                 before, reached = after, after.p
-        raise NoEquilibrium(f"the beam was followed to {reached:.3g} of the load at its tip, and not beyond")
+        raise NoEquilibrium(f"the beam is only followed to {reached:.3g} of the load at its tip: reduce it")
 
     @cached_property
     def bends(self) -> bool:
@@ -294,8 +294,8 @@ def find_bent(load: SteadyLoad, speed: float) -> np.ndarray:
         If the beam does not stay on the other side at this speed, or has a load at the tip.
     """
     if load.elastica.load is not None:
-        said = "beside a load at the tip no other branch is sought; "
-        raise NoEquilibrium(f"{said}a small force across leads to one if it is there")
+        said = "with a load at the tip no other branch is sought; "
+        raise NoEquilibrium(f"{said}add a small force across, which leads to one if it is there")
     natural, squared = load.transverse, speed**2
     side = 1.0 if natural >= 0 else -1.0
     push = -2 * natural - side * _PUSH * load.elastica.length

@@ -138,6 +138,6 @@ def _check_samples(name: str, given: Sequence[float], count: int) -> tuple[float
     samples = real_array(name, given)
     if len(samples) not in (0, count):
         bound = f"{len(samples)} accelerations at {count} times"
-        raise InvalidValue(name, tuple(samples[:3].tolist()), bound, "give as many")
+        raise InvalidValue(name, tuple(samples[:3].tolist()), bound, "give one for each time")
     refuse(np.abs(samples) > MOST, name, samples, "m/s2", "give at most {limit} either way", limit=MOST)
     return tuple(samples.tolist())

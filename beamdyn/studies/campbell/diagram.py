@@ -393,7 +393,7 @@ def _all_lines(
     per_rev, others, unknown = [Line(f"{n}P", float(n)) for n in orders], [], []
     for label, locus in zip(labels, loci, strict=True):
         try:
-            # These lines force the beam, by the scene's motion and gravity.
+            # The excitation by the scene's motion and gravity has lines of its own.
             motion = locus.scene.motion
             system = periodic_system(locus.model.equations, motion, locus.speeds[-1:])
             others += excitation_lines(system, motion, 1)[0]

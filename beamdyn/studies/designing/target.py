@@ -92,7 +92,7 @@ class Target:
         checks.kind("line", self.line, str)
         if (self.what == "crossings") != bool(self.line):
             bound = "a crossing is where a mode meets a line, and no other answer has one"
-            raise checks.InvalidValue("line", self.line, bound, 'give such as "road -" of crossings alone')
+            raise checks.InvalidValue("line", self.line, bound, 'give crossings one, such as "road -"')
 
     @property
     def kind(self) -> Kind:

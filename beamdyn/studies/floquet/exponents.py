@@ -122,7 +122,10 @@ class Cocycle:
 
     @classmethod
     def of(cls, system: ModalSystem, T: float, alpha: float, steps: int) -> Cocycle:
-        """Integrate as many periods as resolve the dependence of the map on the slower phase."""
+        """Integrate successive periods T, until their maps resolve how the map depends on the slower phase.
+
+        The slower phase advances by `alpha` [rad] in each period; each is integrated in `steps` steps.
+        """
         nothing = np.zeros((0, 2 * system.size, 2 * system.size))
         maps, most = scaled_states(system.equations, T, nothing), _FIRST
         while True:

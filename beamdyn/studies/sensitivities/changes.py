@@ -346,7 +346,7 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
     scene = with_numbers(model.scene, {name: value})
     if len(scene.beam.breakpoints) != len(model.scene.beam.breakpoints):
         bound = "a point mass or spring would leave the tip, or the jump of the section, where it is"
-        raise InvalidValue(name, value, bound, "place it beside that")
+        raise InvalidValue(name, value, bound, "place it at a small distance from there")
     nearby = Model(scene, model.discretization)
     if nearby.equations.size != model.equations.size:
         remedy = 'give discretization="fem", or a Ritz of few functions'
