@@ -281,8 +281,8 @@ class RotatingBeam(FieldsOnly):
     def turning(self) -> dict[Quantity, float]:
         """Quantities of the root's motion per squared speed of steady rotation, but for those that are 0."""
         root = root_motion(self.linear.mount, MotionSample.steady(1.0))
-        values = ((quantity, float(getattr(root, quantity))) for quantity in self.quantities)
-        return {quantity: value for quantity, value in values if value}
+        values: dict[Quantity, float] = {name: float(getattr(root, name)) for name in self.quantities}
+        return {name: value for name, value in values.items() if value}
 
     @cached_property
     def about_straight(self) -> Equations:
