@@ -1,4 +1,4 @@
-"""Small numerical tools: assignment, Gauss-Legendre points and series, and triangular systems.
+"""Small numerical tools: assignment, Gauss-Legendre points and series, ellipses, and triangular systems.
 
 Triangular systems: LAPACK's routine, which `scipy.linalg.solve_triangular` calls, starts threads for matrices
 of any size: on a busy machine they wait for milliseconds where the arithmetic takes microseconds.
@@ -61,6 +61,11 @@ def legendre_values(points: int, degree: int) -> np.ndarray:
 def legendre_series(points: int) -> np.ndarray:
     """Return the matrix from values at Gauss points to the Legendre coefficients of their interpolant."""
     return (np.arange(points)[:, None] + 0.5) * legendre_values(points, points - 1).T * gauss_rule(points)[1]
+
+
+def longer_semi_axis(c: np.ndarray) -> np.ndarray:
+    """Compute the longer semi-axis (...) of the ellipses Re(c exp(i phi)) over phi, c of shape (d, ...)."""
+    return np.sqrt(((np.abs(c) ** 2).sum(axis=0) + np.abs((c * c).sum(axis=0))) / 2)
 
 
 def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:

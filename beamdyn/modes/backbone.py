@@ -18,13 +18,12 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import THREE_DISCRETIZATIONS, error_of_finest
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
+from beamdyn.common.numerics import longer_semi_axis
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.equations.beam_in_space.finite_rotations import longer_semi_axis
 from beamdyn.equations.beam_in_space.rotating_beam import BentState
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
-from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.modes import provenance_of
@@ -211,13 +210,14 @@ class FreeVibration:
     @classmethod
     def of(cls, model: Model, speed: float, mode: int) -> FreeVibration:
         """Find the mode of a given number about the equilibrium of a model."""
-        solver = model.solver
-        assert isinstance(solver, DeflectedSolver)
+        solver = model.deflected
         found = solver.solve(np.array([speed]), mode)
         state = solver.elastica.at(solver.equilibria(np.array([speed]))[0])
         v = found.vector[0][:, mode - 1].astype(complex)
         size = longer_semi_axis(state.bent.tip_motions.T @ v)
-        return cls(state, speed, float(found.eigenvalue[0, mode - 1].imag), v * state.of.length / size)
+        return cls(
+            state, speed, float(found.eigenvalue[0, mode - 1].imag), v * state.of.beam.stations.length / size
+        )
 
     def coefficient(self, small: float) -> float:
         """Compute the frequency's relative change over the squared relative amplitude, in the limit of 0."""
@@ -234,7 +234,10 @@ class FreeVibration:
         """Compute the dynamic stiffness (n, n) at a multiple of the frequency."""
         state, w, pencil = self.state, harmonic * self.omega, self.state.linearized().steady()
         return (
-            pencil.K0 + self.speed**2 * pencil.K2 + 1j * w * self.speed * state.gyroscopic - w**2 * state.mass
+            pencil.K0
+            + self.speed**2 * pencil.K2
+            + 1j * w * self.speed * state.gyroscopic
+            - w**2 * state.bent.mass
         )
 
     def _shift(self, eps: float) -> float:
@@ -244,7 +247,7 @@ class FreeVibration:
         z = {h: -np.linalg.solve(self._dynamic(h), _harmonic(even, h)) for h in (0, 2)}
         z = {h: eps**2 * x for h, x in z.items()}
         odd = (self._forces({1: eps * v} | z) - self._forces({1: -eps * v} | z)) / (2 * eps**3)
-        slope = 2 * self.omega * state.mass - 1j * self.speed * state.gyroscopic
+        slope = 2 * self.omega * state.bent.mass - 1j * self.speed * state.gyroscopic
         return float(np.real(v.conj() @ _harmonic(odd, 1)) / np.real(v.conj() @ slope @ v))
 
     def _forces(self, harmonics: dict[int, np.ndarray]) -> np.ndarray:
@@ -257,7 +260,7 @@ class FreeVibration:
         )
         elastica, sample = self.state.of, MotionSample.steady(np.full(_SAMPLES, self.speed))
         root = root_motion(elastica.linear.mount, sample)
-        return elastica.at(self.state.q + q).work(rate, acceleration, root)
+        return elastica.at(self.state.bent.q + q).work(rate, acceleration, root)
 
 
 def _harmonic(samples: np.ndarray, harmonic: int) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import BASES_OF_FIELDS, SLOW_BASES, refine
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, list_models, split_tip
-from beamdyn.modes.modal.equilibrium import DeflectedSolver, find_loss_of_stability
+from beamdyn.modes.modal.equilibrium import find_loss_of_stability
 from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, is_halved
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.scene import Scene
@@ -114,9 +114,9 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
 
 def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
     """Find the speed of loss of stability, its error by the coarser model, and whether it was found."""
-    solver, coarse = model.solver, model.compared.solver
-    assert isinstance(solver, DeflectedSolver) and isinstance(coarse, DeflectedSolver)
-    (squared, is_lost), (of_coarse, also) = (find_loss_of_stability(s.load) for s in (solver, coarse))
+    (squared, is_lost), (of_coarse, also) = (
+        find_loss_of_stability(each.deflected.load) for each in (model, model.compared)
+    )
     distance = abs(of_coarse - squared)
     error = _margin(model) * distance / (2 * squared) + _ROUNDING_OF_BENT if distance else _ROUNDING_OF_BENT
     error = error if is_lost and also else np.inf

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from time import perf_counter
+from typing import cast
 
 import numpy as np
 
@@ -19,19 +21,20 @@ from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
 from beamdyn.common.words import Words
 from beamdyn.modes.modal import continuation
+from beamdyn.modes.modal.continuation import Loading, NoEquilibrium
 from beamdyn.modes.modal.discretization_choice import (
     TOLERANCES,
     DiscretizationChoice,
     choose_model,
     solve_to_tolerance,
 )
-from beamdyn.modes.modal.equilibrium import DeflectedSolver, NoEquilibrium, SteadyLoad, find_bent
+from beamdyn.modes.modal.equilibrium import DeflectedSolver, find_bent
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 from beamdyn.modes.modes import provenance_of
-from beamdyn.scene.mount import aligned_cos_sin
+from beamdyn.scene.mount import Mount, aligned_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
@@ -118,13 +121,13 @@ class Equilibrium(StatesModelError):
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
         if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
             raise InvalidValue("x", x, f"positions run from 0 to the length {self.scene.beam.length:g} m")
-        solver = _solver(self.model)
-        state = solver.elastica.at(solver.equilibria(np.array([self.speed]))[0])
-        return _in_space(state.positions(np.minimum(xi, 1.0)), self.scene)
+        solver = self.model.deflected
+        bent = solver.elastica.beam.at(solver.equilibria(np.array([self.speed]))[0])
+        return _in_space(bent.beam.stations.to_places(np.minimum(xi, 1.0), bent.tangents).T, self.scene.mount)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the bent beam in equilibrium."""
-        across = _directions(self.scene)[0]
+        across = _directions(self.scene.mount)[0]
         points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
         title = f"equilibrium at {self.display_units.speed_unit().say(self.speed)}, {self.branch} branch"
         stable = "" if self.stable else ", unstable"
@@ -181,12 +184,11 @@ def equilibrium(
     check_speeds(speeds, "speed")
     tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     solution = solve_to_tolerance(scene, discretization, speeds, 1, tolerance)
-    solver, coarse = _solver(solution.model), solution.model.coarse_solver
-    assert isinstance(coarse, DeflectedSolver)
+    solver, coarse = solution.model.deflected, cast("DeflectedSolver", solution.model.coarse_solver)
     q = solver.equilibria(speeds)[0]
+    tip, of_coarse = (each.elastica.beam.at(each.equilibria(speeds)[0]).tip for each in (solver, coarse))
     growth = float(np.real(solution.eigen.eigenvalue).max())
-    error = np.abs(solver.elastica.tip(q) - coarse.elastica.tip(coarse.equilibria(speeds)[0])).max()
-    error *= SLOW_BASES.factor if solution.model.lacks_one else 1.0
+    error = np.abs(tip - of_coarse).max() * (SLOW_BASES.factor if solution.model.lacks_one else 1.0)
     at = Words("at ", Speeds(float(speeds[0])))
     flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     loaded = "a small force across at the tip leads to a stable one if it is there"
@@ -197,7 +199,7 @@ def equilibrium(
     return Equilibrium(
         speed=float(speeds[0]),
         branch=scene.physics.branch,
-        tip=_in_space(solver.elastica.tip(q), scene),
+        tip=_in_space(tip, scene.mount),
         tip_angle=solver.elastica.tip_angle(q),
         error=float(error) + _ROUNDING * scene.beam.length,
         stable=growth <= 0,
@@ -213,27 +215,20 @@ def _with_large_deflection(scene: object, branch: str | None) -> Scene:
     """Return the scene with large deflection, on a given branch of equilibria."""
     check_scene(scene)
     assert isinstance(scene, Scene)
-    if branch is not None:
-        one_of("branch", branch, ("straight", "bent"))
-    chosen = {} if branch is None else {"branch": branch}
-    return replace(scene, physics=scene.physics.with_large_deflection(**chosen))
+    branch = scene.physics.branch if branch is None else branch
+    one_of("branch", branch, ("straight", "bent"))
+    return replace(scene, physics=scene.physics.with_large_deflection(branch=branch))
 
 
-def _solver(model: Model) -> DeflectedSolver:
-    assert isinstance(model.solver, DeflectedSolver)
-    return model.solver
-
-
-def _directions(scene: Scene) -> np.ndarray:
+def _directions(mount: Mount) -> np.ndarray:
     """Compute components (2, 2) on b2, b3 of the direction of bending, and of the direction across."""
-    c, s = aligned_cos_sin(scene.mount.bending_angle)
+    c, s = aligned_cos_sin(mount.bending_angle)
     return np.array([[c, s], [-s, c]])
 
 
-def _in_space(positions: np.ndarray, scene: Scene) -> np.ndarray:
-    """Transform positions along b1, the direction of bending and maybe across, to (..., 3) along b1 to b3."""
-    across = positions[..., 1:] @ _directions(scene)[: positions.shape[-1] - 1]
-    return np.concatenate([positions[..., :1], across], axis=-1)
+def _in_space(positions: np.ndarray, mount: Mount) -> np.ndarray:
+    """Transform positions (..., 3) along b1, the direction of bending and across, to b1, b2 and b3."""
+    return np.concatenate([positions[..., :1], positions[..., 1:] @ _directions(mount)], axis=-1)
 
 
 # Branches over speed ------------------------------------------------------------------------------
@@ -313,7 +308,7 @@ class EquilibriumBranches(Result):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the deflection of the tip over speed: solid where the equilibrium is stable, else dashed."""
-        across, length = _directions(self.scene)[0], self.scene.beam.length
+        across, length = _directions(self.scene.mount)[0], self.scene.beam.length
         lines = [(b.name, b.speeds, b.tip[:, 1:] @ across / length, b.stable) for b in self.branches]
         return plot_branches(lines, ax, self.display_units)
 
@@ -353,19 +348,18 @@ def equilibrium_branches(
     top = positive("top_speed", top_speed, "rad/s")
     check_speeds(top, "top_speed")
     model = choose_model(scene, discretization, np.array([0.0, top]), 1)
-    solver = _solver(model)
-    load, rest = solver.load, solver.load.at_rest
+    solver = model.deflected
+    load, rest, warnings = solver.load, solver.load.at_rest, ()
     if load.bends:
-        branches = [_collect("straight", load, continuation.start_curve(load, rest, 0.0, 1.0), top, scene)]
+        branches = [_collect("straight", load, continuation.start_curve(load, rest, 0.0, 1.0), top)]
     else:
         speeds = np.linspace(0, top, 101)
-        stable = np.array([np.linalg.eigvalsh(load.jacobian(rest, v**2))[0] >= 0 for v in speeds])
-        tips = np.tile(_in_space(load.elastica.tip(rest), scene), (len(speeds), 1))
+        stable = np.array([np.linalg.eigvalsh(load.at(rest, v**2).change)[0] >= 0 for v in speeds])
+        tips = np.tile(_in_space(load.elastica.beam.at(rest).tip, scene.mount), (len(speeds), 1))
         branches = [EquilibriumBranch("straight", speeds, tips, stable, np.empty(0))]
     try:  # follows the other branch from the top speed through its turning points
         start_of_bent = continuation.start_curve(load, find_bent(load, top), top**2, -1.0)
-        branches.append(_collect("bent", load, start_of_bent, top, scene))
-        warnings = ()
+        branches.append(_collect("bent", load, start_of_bent, top))
     except NoEquilibrium as error:
         warnings = (str(error),)
     return EquilibriumBranches(
@@ -378,30 +372,23 @@ def equilibrium_branches(
     )
 
 
-def _collect(
-    name: str, load: SteadyLoad, start: continuation.Point, top: float, scene: Scene
-) -> EquilibriumBranch:
+def _collect(name: str, load: Loading, start: continuation.Point, top: float) -> EquilibriumBranch:
     """Collect the points of a branch until it passes the top speed, or the beam has made a turn."""
-    points, turning, curve = [start], [], continuation.follow(load, start, _FINE)
-    while True:
-        try:
-            point = next(curve)
-        except continuation.NotConverged:  # the branch cannot be followed further
-            break
-        if point.p_rate * points[-1].p_rate < 0:
-            turning.append(continuation.find_turning_point(load, points[-1], point))
-            points.append(turning[-1])
-        if point.p >= top**2:
-            points.append(replace(point, q=continuation.find_at(load, points[-1], point, top**2), p=top**2))
-            break
-        points.append(point)
-        if np.abs(point.q @ load.angles).max() > _STEEPEST or len(points) > _MOST_POINTS:
-            break
-    tips = load.elastica.tip(np.array([point.q for point in points]))
+    points = [start]
+    with suppress(continuation.NotConverged):  # until the branch cannot be followed further
+        for point in continuation.follow(load, start, _FINE):
+            if point.p >= top**2 and point.p_rate:
+                at_top = continuation.find_at(load, points[-1], point, top**2)
+                points.append(replace(point, q=at_top, p=top**2))
+                break
+            points.append(point)
+            if np.abs(point.q @ load.angles).max() > _STEEPEST or len(points) > _MOST_POINTS:
+                break
+    tips = load.elastica.beam.at(np.array([point.q for point in points])).tip
     return EquilibriumBranch(
         name,
         np.sqrt([max(point.p, 0.0) for point in points]),
-        _in_space(tips, scene),
+        _in_space(tips, load.elastica.linear.mount),
         np.array([continuation.count_negative(load, point.q, point.p) == 0 for point in points]),
-        np.sqrt([point.p for point in turning]),
+        np.sqrt([point.p for point in points if not point.p_rate]),
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, TypeAlias, cast
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -32,7 +32,6 @@ from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_stati
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from beamdyn.modes.modal.equilibrium import DeflectedSolver
 
 # Coordinates and shapes as `Modes.mesh` returns them.
 Mesh: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
@@ -367,8 +366,7 @@ def warn_of_modes(
         # Imported here, because the import takes long.
         from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 
-        solver = cast("DeflectedSolver", model.solver)
-        bending = partial(solver.elastica.curvature, solver.equilibria(speeds))
+        bending = partial(model.bent.curvature, model.deflected.equilibria(speeds))
         yield from warn_of_suppressed_camber(scene, bending, lambda k: Words("at ", Speeds(speeds[k])))
     else:
         yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)

@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from beamdyn.equations.beam_in_space.finite_rotations import longer_semi_axis
+from beamdyn.common.numerics import longer_semi_axis
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.eigenproblem import Solver
-from beamdyn.modes.modal.equilibrium import DeflectedSolver, NoEquilibrium
+from beamdyn.modes.modal.equilibrium import NoEquilibrium
 from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
@@ -94,7 +94,7 @@ def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds:
     -------
     Vibration
     """
-    if isinstance(model.solver, DeflectedSolver):
+    if model.scene.physics.large_deflection:
         return _about_equilibria(model, basis, motion, speeds)
     equations = model.modal_equations(basis)
     tips = np.broadcast_to(equations.tips, (len(speeds), *equations.tips.shape))
@@ -136,7 +136,9 @@ def _about_equilibria(
     return Vibration(
         parts=parts,
         tips=np.array(tips),
-        static=np.where(missing[:, None], np.nan, bent.tip(q) - bent.tip(0 * q))[:, _ACROSS_THEN_ALONG],
+        static=np.where(missing[:, None], np.nan, bent.beam.at(q).tip - bent.beam.at(0 * q).tip)[
+            :, _ACROSS_THEN_ALONG
+        ],
         without_rate=missing,
         lost={_MISSING: missing, _UNSTABLE_MEAN: np.asarray(rate > 0)},
     )
@@ -148,13 +150,12 @@ def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
     The branch that begins at rest is followed to rising speeds, the other branch to falling ones from the
     fastest speed that has it; the search ends where a branch ends.
     """
-    solver = model.solver
-    assert isinstance(solver, DeflectedSolver)
+    solver = model.deflected
     try:
         return solver.equilibria(speeds)
     except NoEquilibrium:
         pass
-    q, reached = np.full((len(speeds), solver.elastica.size), np.nan), False
+    q, reached = np.full((len(speeds), solver.size), np.nan), False
     order = np.argsort(np.abs(speeds), kind="stable")
     for k in order if solver.branch == "straight" else order[::-1]:
         try:

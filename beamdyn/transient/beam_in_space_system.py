@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, Protocol, Self, TypeAlias
+from typing import Self, TypeAlias
 
 import numpy as np
 
@@ -19,65 +19,7 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.system import ModalSystem
 
-_STEP = 1e-5  # relative step of finite differences: the tangent only guides Newton's method
-
-
-class DriveInSpace(NamedTuple):
-    """Motion of the root that drives the beam, at the s nodes of a step.
-
-    Parameters
-    ----------
-    turning, turning_rate : ndarray, shape (..., 3, s)
-        Angular velocity [rad/s] and acceleration [rad/s2] of the carrier.
-    root : ndarray, shape (..., 3, s)
-        Acceleration of the root [m/s2].
-    """
-
-    turning: np.ndarray
-    turning_rate: np.ndarray
-    root: np.ndarray
-
-    def step(self, k: int) -> DriveInSpace:
-        """Select the drive in one of several steps."""
-        return DriveInSpace(*(values[k] for values in self))
-
-    def node(self, k: int) -> DriveInSpace:
-        """Select the drive at one node of a step, s = 1."""
-        return DriveInSpace(*(values[..., [k]] for values in self))
-
-    @property
-    def carrier(self) -> Carrier:
-        """Motion of the carrier at the nodes of the step."""
-        return Carrier(*(values.swapaxes(-1, -2) for values in self))
-
-
-class Evaluated(Protocol):
-    """Equations evaluated at s sets of coordinates, rates and accelerations, with their derivatives."""
-
-    @property
-    def residual(self) -> np.ndarray:
-        """Residual of the equations of motion, shape (s, n)."""
-        ...
-
-    @property
-    def elastic(self) -> np.ndarray:
-        """Elastic force, shape (s, n)."""
-        ...
-
-    @property
-    def mass(self) -> np.ndarray:
-        """Derivative of the residual by the accelerations, shape (s or 1, n, n)."""
-        ...
-
-    @property
-    def damping(self) -> np.ndarray:
-        """Derivative of the residual by the rates, shape (s or 1, n, n)."""
-        ...
-
-    @property
-    def stiffness(self) -> np.ndarray:
-        """Derivative of the residual by the coordinates, shape (s or 1, n, n)."""
-        ...
+_STEP = 1e-7  # relative step of differences by the coordinates
 
 
 @dataclass(frozen=True)
@@ -113,7 +55,7 @@ class BeamInSpaceSystem:
     @property
     def size(self) -> int:
         """Number n of coordinates."""
-        return self.elastica.size
+        return self.elastica.beam.size
 
     @cached_property
     def straight(self) -> ModalSystem:
@@ -128,30 +70,27 @@ class BeamInSpaceSystem:
         """Compute the deflection [m] over a strip of rigid sections at xi (k,) and eta (l,): (T, k, l)."""
         return np.repeat(self.shape(q, xi)[:, :, None], len(eta), axis=2)
 
-    def at(self, drive: Any, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> Evaluated:
-        """Evaluate the equations at coordinates, rates and accelerations (s, n) under a drive (s,)."""
-        return self.evaluate(drive, np.stack([q, v, a]))
+    def carrier(self, root: RootMotion) -> Carrier:
+        """Compute the motion of the carrier that drives the equations."""
+        return Carrier.of_root(self.elastica.axis, root)
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
         """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
-        q, v = np.split(y, 2)
-        return np.concatenate([v, self._acceleration(t, q, v)])
+        return np.concatenate([y[self.size :], self._acceleration(t, y)])
 
-    def _acceleration(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Compute the accelerations (n,) at a time [s]."""
-        here = self.at(self.drive(self.root(np.array([t]))), q[None], v[None], np.zeros((1, self.size)))
-        return np.linalg.solve(here.mass[0], -here.residual[0])
+    def _acceleration(self, t: float, y: np.ndarray) -> np.ndarray:
+        """Compute the accelerations (n,) at a time [s], of which the residual is a linear function."""
+        q, v = np.split(y[None], 2, axis=1)
+        a = self._steps(q)[2] * np.eye(self.size + 1, self.size, -1)
+        still, *moved = self.residual(self.carrier(self.root(np.array([t]))), q, v + 0 * a, a)
+        return a[1, 0] * np.linalg.solve((np.array(moved) - still).T, -still)
 
     def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
         """Compute the Jacobian of y' with respect to y, shape (2 n, 2 n)."""
-        n = self.size
-        q, v = np.split(y, 2)
-        drive = self.drive(self.root(np.array([t])))
-        here = self.at(drive, q[None], v[None], self._acceleration(t, q, v)[None])
-        J = np.zeros((2 * n, 2 * n))
-        J[:n, n:] = np.eye(n)
-        J[n:] = -np.linalg.solve(here.mass[0], np.hstack([here.stiffness[0], here.damping[0]]))
-        return J
+        q, v = np.split(y[None], 2, axis=1)
+        motion = self.carrier(self.root(np.array([t]))), q, v, self._acceleration(t, y)[None]
+        K, C, M = self.tangents(*motion, self.residual(*motion))[:, 0]
+        return np.block([[np.zeros_like(M), np.eye(self.size)], [-np.linalg.solve(M, np.hstack([K, C]))]])
 
     # Outputs of the system ----------------------------------------------------------------------------
 
@@ -162,15 +101,13 @@ class BeamInSpaceSystem:
 
     def deflections(self, q: np.ndarray) -> np.ndarray:
         """Compute the deflection of the tip [m] at coordinates q (..., n): shape (..., 1 or 2)."""
-        moved = self.elastica.beam.at(q).tangents - self._unloaded
-        stations = self.elastica.beam.stations
+        moved, stations = self.elastica.beam.at(q).tangents - self._unloaded, self.elastica.beam.stations
         return stations.length * (moved @ stations.quadrature.weights)[..., 1 : 1 + self.equations.planes]
 
     def shape(self, q: np.ndarray, xi: np.ndarray, direction: int = 0) -> np.ndarray:
         """Compute the deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
         moved = (self.elastica.beam.at(q).tangents - self._unloaded)[..., 1 + check_direction(direction), :]
-        stations = self.elastica.beam.stations
-        return stations.length * moved @ stations.quadrature.integrate_to(np.asarray(xi)).T
+        return self.elastica.beam.stations.to_places(np.asarray(xi), moved)
 
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Compute the energy [J] at times t (T,): kinetic in rotating axes, elastic, and of the root.
@@ -178,89 +115,44 @@ class BeamInSpaceSystem:
         The last is the potential of the centrifugal forces and of the acceleration of the root (an
         angular acceleration has none); it is 0 for the unloaded beam.
         """
-        carrier = Carrier.of_root(self.elastica.axis, self.root(t))
-        moving, rest = (self.moving(k * q, k * v, carrier) for k in (1.0, 0.0))
-        return moving.energy - rest.energy
+        carrier = self.carrier(self.root(t))
+        return self._moving(carrier, q, v).energy - self._moving(carrier, 0 * q, 0 * v).energy
 
     # Evaluation of the equations ----------------------------------------------------------------------
 
-    def drive(self, root: RootMotion) -> Any:
-        """Compute the quantities of the root's motion that drive the equations."""
-        carrier = Carrier.of_root(self.elastica.axis, root)
-        return DriveInSpace(*(values.swapaxes(-1, -2) for values in vars(carrier).values()))
-
-    def evaluate(self, drive: Any, motion: np.ndarray) -> Any:
-        """Evaluate the equations at coordinates, rates and accelerations (3, s, n) under a drive (s,).
-
-        The result has the attributes of `Evaluated`.
-        """
-        return EvaluationInSpace(self, drive, motion)
-
-    def residual(self, drive: DriveInSpace, motion: np.ndarray) -> np.ndarray:
-        """Compute the residual of the equations of motion, shape (s, n)."""
-        q, v, a = motion
-        return self.moving(q, v, drive.carrier).residual(a)
-
-    def moving(self, q: np.ndarray, v: np.ndarray, carrier: Carrier) -> MovingBeam:
-        """Return the beam at coordinates and rates (..., n) on a carrier."""
+    def _moving(self, carrier: Carrier, q: np.ndarray, v: np.ndarray) -> MovingBeam:
+        """Return the beam at coordinates and rates (..., n) on its carrier."""
         return MovingBeam(self.elastica.beam.at(q), v, carrier, self.elastica.load)
+
+    def residual(self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        """Compute the residual of the equations of motion at s times, shape (..., s, n).
+
+        Rates v and accelerations a are of shape (..., s, n), coordinates q, too, or (s, n).
+        """
+        return self._moving(carrier, q, v).residual(a)
+
+    def _steps(self, q: np.ndarray) -> np.ndarray:
+        """Choose changes of coordinates, rates and accelerations that change the shape as much."""
+        fastest = np.sqrt(np.diag(self.elastica.beam.stiffness).max()) or 1.0  # the mass at rest is 1
+        size = np.abs(q).max() + 1 / np.abs(self.elastica.beam.angles).max()
+        return size * np.array([_STEP, fastest, fastest**2])
+
+    def tangents(
+        self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray
+    ) -> np.ndarray:
+        """Compute derivatives (3, s, n, n) of a residual (s, n) by coordinates, rates and accelerations.
+
+        By differences, which are exact for rates and accelerations: the residual is a quadratic function of
+        the former, and a linear one of the latter.  By coordinates they serve to guide Newton's method.
+        """
+        dq, dv, da = self._steps(q)[:, None, None, None] * np.eye(self.size)[:, None]
+        still = np.zeros_like(dq)
+        by_q = self.residual(carrier, q + dq, v + still, a + still) - residual
+        rates, accelerations = np.concatenate([dv, -dv, still]), np.concatenate([still, still, da])
+        # Coordinates that stay are turned once.
+        ahead, behind, by_a = np.split(self.residual(carrier, q, v + rates, a + accelerations), 3)
+        changes = np.stack([by_q, (ahead - behind) / 2, by_a - residual])
+        return np.moveaxis(changes, 1, 3) / self._steps(q)[:, None, None, None]
 
 
 AnySystem: TypeAlias = ModalSystem | BeamInSpaceSystem
-
-
-@dataclass(frozen=True)
-class EvaluationInSpace:
-    """The equations at s sets of coordinates, rates and accelerations: residual and derivatives.
-
-    Parameters
-    ----------
-    system : BeamInSpaceSystem
-        The equations.
-    drive : DriveInSpace
-        Motion of the root, of shape (s,).
-    motion : ndarray, shape (3, s, n)
-        Coordinates, their rates and accelerations.
-    """
-
-    system: BeamInSpaceSystem
-    drive: DriveInSpace
-    motion: np.ndarray
-
-    @cached_property
-    def elastic(self) -> np.ndarray:
-        """Elastic force, shape (s, n)."""
-        return self.motion[0] @ self.system.elastica.stiffness
-
-    @cached_property
-    def residual(self) -> np.ndarray:
-        """Residual of the equations of motion, shape (s, n)."""
-        return self.system.residual(self.drive, self.motion)
-
-    @cached_property
-    def _tangents(self) -> np.ndarray:
-        """Derivatives (3, s, n, n) of the residual by coordinates, rates and accelerations."""
-        (q, v, a), n, moving = self.motion, self.system.size, self.system.moving
-        step = _STEP * (np.abs(self.motion).max(axis=(1, 2)) + 1 / np.abs(self.system.elastica.angles).max())
-        steps, still = step[:, None, None, None] * np.eye(n)[:, None], np.zeros((n, 1, n))
-        moved = moving(q + steps[0], v + still, self.drive.carrier).residual(a + still)
-        # The shape does not change with rates and accelerations, and is computed once for both.
-        rates, accelerations = np.concatenate([steps[1], still]), np.concatenate([still, steps[2]])
-        at_same = moving(q, v + rates, self.drive.carrier).residual(a + accelerations)
-        change = np.concatenate([moved, at_same]).reshape(3, n, *q.shape) - self.residual
-        return np.moveaxis(change, 1, 3) / step[:, None, None, None]
-
-    @property
-    def stiffness(self) -> np.ndarray:
-        """Derivative of the residual by the coordinates (s, n, n), accurate enough for Newton's method."""
-        return self._tangents[0]
-
-    @property
-    def damping(self) -> np.ndarray:
-        """Derivative of the residual by the rates, shape (s, n, n)."""
-        return self._tangents[1]
-
-    @property
-    def mass(self) -> np.ndarray:
-        """Derivative of the residual by the accelerations, shape (s, n, n)."""
-        return self._tangents[2]

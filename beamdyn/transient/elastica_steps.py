@@ -12,14 +12,17 @@ first run's error, as it has accumulated.  The second run is the result: its own
 from __future__ import annotations
 
 import math
+from functools import partial
 from itertools import pairwise
-from typing import Any, NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.polynomial import legendre
 from scipy.linalg.lapack import dgetrf, dgetrs
 
-from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem, Evaluated
+from beamdyn.common.numerics import gauss_rule, legendre_series
+from beamdyn.equations.beam_in_space.moving_beam import Carrier
+from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 from beamdyn.transient.gauss import BLOCK, Segment, Tableau, allocate_steps, interpolate, step_maps, tableau
 from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.step_size import (
@@ -51,7 +54,7 @@ _FAST = 0.1  # reduction of the error by an iteration up to which the derivative
 _FEW = 4  # number of iterations up to which the next step begins with the same derivatives
 _FINER = STAGES + 2  # number of stages of the second run
 _BALANCE = 1e-13  # residual in equilibrium, relative to the largest force or coordinate, that is rounding
-_TIMES_COMPARED = 257  # number of times at which the motion of the root is compared with that at the start
+_TIMES_COMPARED = 257  # number of times at which forces are to be in equilibrium
 _SHORTER = 0.5  # ratio of the next step's phase angle to that of a step that was not solved
 _SHORT = 1.0  # phase angle of steps [rad] below which they resolve one more mode instead
 _MANY = 64  # number of pieces of a motion, such as a sampled one, above which no piece is divided further
@@ -59,16 +62,14 @@ _CHECKED = 48  # number of steps of a segment at which the interpolation is chec
 
 
 def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
-    """Build the path of a beam that stays at rest, if root motion is constant and forces in equilibrium."""
-    q, v = y0[None, : system.size], y0[None, system.size :]
+    """Build the path of a beam that stays at rest, if forces on it are in equilibrium at all times."""
+    q, v = np.split(y0[None], 2, axis=1)
     if system.motion.steady_start > 0 or v.any():
         return None
-    root = system.root(np.linspace(0, t_end, _TIMES_COMPARED))
-    values = [getattr(root, name) for name in system.equations.vectors]
-    if not all((value == value[0]).all() for value in (*values, root.speed_squared, root.root_axial)):
-        return None
-    force = system.at(system.drive(system.root(np.zeros(1))), q, v, v).residual
-    stiffness, size = np.abs(system.elastica.stiffness), np.abs(q[0])
+    still = np.zeros((_TIMES_COMPARED, system.size))
+    carrier = system.carrier(system.root(np.linspace(0, t_end, len(still))))
+    force = system.residual(carrier, q, still, still)
+    stiffness, size = np.abs(system.elastica.beam.stiffness), np.abs(q[0])
     # Equilibria are known to rounding of their coordinates, which in a stiff mode is a large force.
     if (np.abs(force) > _BALANCE * ((stiffness @ size).max() + np.diag(stiffness) * size.max())).any():
         return None
@@ -77,11 +78,7 @@ def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float)
 
 
 def attempt_elastica(
-    system: BeamInSpaceSystem,
-    y0: np.ndarray,
-    t_end: float,
-    step_size: StepSize,
-    before: Attempt | None = None,
+    system: BeamInSpaceSystem, y0: np.ndarray, t_end: float, step_size: StepSize, _: Attempt | None = None
 ) -> Attempt:
     """Integrate twice with equal steps in each segment, with 8 and 10 stages.
 
@@ -95,14 +92,8 @@ def attempt_elastica(
 
     def run(stages: int, like: tuple[Segment, ...] = ()) -> tuple[Segment, ...]:
         known = iter(like)
-        return chain_segments(
-            edges,
-            steps,
-            y0,
-            lambda a, b, count, q, v: propagate_elastica(
-                system, a, b, count, q, v, stages, next(known, None)
-            ),
-        )
+        one = partial(propagate_elastica, system, stages=stages)
+        return chain_segments(edges, steps, y0, lambda *step: one(*step, like=next(known, None)))
 
     try:
         coarse = run(STAGES)
@@ -113,7 +104,7 @@ def attempt_elastica(
         shorter = StepSize(step_size.phase * _SHORTER, step_size.modes)
         if step_size.phase < _SHORT and step_size.modes < system.size:
             shorter = StepSize(StepSize.from_tolerance(TOLERANCES[1]).phase, step_size.modes + 1)
-        return attempt_elastica(system, y0, t_end, shorter, before)
+        return attempt_elastica(system, y0, t_end, shorter)
     method = f"Gauss collocation of order {2 * _FINER}, {sum(steps)} steps"
     largest = max(float(np.abs(_tips(system, segment)).max()) for segment in fine)
     return Attempt(step_size, Trajectory(fine), _error(system, coarse, fine), largest, method)
@@ -126,12 +117,10 @@ def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
 
 def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
     """Estimate the error of the tip deflection: the distance of two runs, divided among coordinates."""
-    tip, n, straight = 0.0, system.size, system.straight
-    change = np.zeros(n)
-    for first, second in zip(coarse, fine, strict=True):
-        difference = np.abs(first.state - second.state)[:, 1 : n + 1].max(axis=0)
-        change = np.maximum(change, difference * np.abs(system.equations.tips).max(axis=0))
-        tip = max(tip, float(np.abs(_tips(system, first) - _tips(system, second)).max()))
+    straight, pairs = system.straight, [*zip(coarse, fine, strict=True)]
+    change = np.max([np.abs(a.state - b.state).max(axis=0) for a, b in pairs], axis=0)[1 : system.size + 1]
+    change *= np.abs(system.equations.tips).max(axis=0)
+    tip = max(float(np.abs(_tips(system, a) - _tips(system, b)).max()) for a, b in pairs)
     modes = tip * change / max(change.sum(), 1e-300)
     # The phase errors are those of a straight beam in the longest step.
     longest = max(fine, key=lambda segment: segment.h)
@@ -151,11 +140,8 @@ def _interpolation_error(system: BeamInSpaceSystem, segment: Segment) -> float:
         here = Segment(segment.start + k * h, h, state, acceleration)
         q, v = np.split(state[0, 1:], 2)
         finer = propagate_elastica(system, here.start, here.end, 1, q, v, _FINER + 2, here)
-        each = (
-            interpolate(s.h, s.state[:-1], s.acceleration, INTERPOLATION_POINTS)[0] for s in (here, finer)
-        )
-        coarse, fine = map(system.deflections, each)
-        error = max(error, float(np.abs(coarse - fine).max()))
+        at = [interpolate(s.h, s.state[:-1], s.acceleration, INTERPOLATION_POINTS)[0] for s in (here, finer)]
+        error = max(error, float(np.abs(np.subtract(*map(system.deflections, at))).max()))
     return error
 
 
@@ -201,37 +187,25 @@ def propagate_elastica(
     h, n = (t1 - t0) / steps, system.size
     step = _Step(system, h, tableau(stages))
     state, acceleration = allocate_steps(steps, stages, q0, v0)
-    known = None if like is None else _at_nodes(like.acceleration.shape[1], stages)
+    guesses = [None] * steps if like is None else _at_nodes(stages, like.acceleration)
     q, v = q0, v0
-    drive: Any = None
     with np.errstate(over="ignore", invalid="ignore"):  # a step that is too long overflows, and is refused
-        for k in range(steps):
-            if k % BLOCK == 0:
-                some = np.arange(k, min(k + BLOCK, steps))
-                drive = system.drive(system.root(t0 + h * (some[:, None] + step.table.c)))
-            guess = None if like is None or known is None else known @ like.acceleration[k]
-            q, v, a = step.advance(drive.step(k % BLOCK), q, v, guess)
-            acceleration[k], state[k + 1, 1 : n + 1], state[k + 1, n + 1 :] = a, q, v
+        for first in range(0, steps, BLOCK):
+            some = np.arange(first, min(first + BLOCK, steps))
+            motion = system.carrier(system.root(t0 + h * (some[:, None] + step.table.c)))
+            for k in some.tolist():
+                q, v, a = step.advance(motion.at(k - first), q, v, guesses[k])
+                acceleration[k], state[k + 1, 1 : n + 1], state[k + 1, n + 1 :] = a, q, v
     return Segment(t0, h, state, acceleration)
 
 
-def _at_nodes(given: int, wanted: int) -> np.ndarray:
-    """Build the matrix (wanted, given) from values at one Gauss rule's nodes to those at another's."""
-    x, w = legendre.leggauss(given)
-    degrees = np.arange(given)
-    series = (2 * degrees[:, None] + 1) / 2 * legendre.legvander(x, given - 1).T * w
-    return legendre.legvander(2 * tableau(wanted).c - 1, given - 1) @ series
+def _at_nodes(stages: int, values: np.ndarray) -> np.ndarray:
+    """Interpolate values (N, s, n) at the nodes of a Gauss rule to those of a rule with other stages."""
+    given = values.shape[1]
+    return legendre.legvander(gauss_rule(stages)[0], given - 1) @ legendre_series(given) @ values
 
 
 Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # factors of a matrix, and pivots
-
-
-class Tangent(NamedTuple):
-    """Derivatives of the equations by coordinates and rates (1, n, n), with factors of a step's matrix."""
-
-    stiffness: np.ndarray
-    damping: np.ndarray
-    factors: Factors
 
 
 class _Step:
@@ -239,47 +213,46 @@ class _Step:
 
     def __init__(self, system: BeamInSpaceSystem, h: float, table: Tableau) -> None:
         self.system, self.h, self.table = system, h, table
-        self.drift, self.to_v, self.to_q = h * table.c[:, None], h * table.A, h**2 * table.A2
-        self.to_motion = np.concatenate([self.to_q, self.to_v, np.eye(len(table.c))])
-        self.end_v, self.end_q = h * table.b, h**2 * table.b2
-        self.tangent: Tangent | None = None
+        self.drift, self.end_v, self.end_q = h * table.c[:, None], h * table.b, h**2 * table.b2
+        self.to_motion = np.concatenate([h**2 * table.A2, h * table.A, np.eye(len(table.c))])
+        self.kept: tuple[np.ndarray, Factors] | None = None  # derivatives (3, n, n), and the step's factors
 
     def advance(
-        self, drive: Any, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
+        self, carrier: Carrier, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Compute coordinates and rates at the end of a step, and accelerations at its nodes."""
         drift, middle = self.drift * v, len(self.table.c) // 2
-        if self.tangent is None:  # tangent at rest in these coordinates, the same for all nodes
-            still = np.zeros((1, len(q)))
-            here = self.system.at(drive.node(middle), q[None], still, still)
-            self.tangent = Tangent(here.stiffness, here.damping, self._factorize(here))
+        still = np.zeros_like(drift)
+        if self.kept is None:  # tangent at rest in these coordinates, the same for all nodes
+            here = carrier.at(slice(middle, middle + 1)), q[None], still[:1], still[:1]
+            tangents = self.system.tangents(*here, self.system.residual(*here))
+            self.kept = tangents[:, 0], self._factorize(tangents)
+        (stiffness, damping, _), factors = self.kept
         if guess is None:  # initial guess from equations linearized about the beginning of the step
-            still = np.zeros((len(self.table.c), len(q)))
-            load = self.system.at(drive, still + q, still, still).residual
-            load += self.tangent.damping[0] @ v + drift @ self.tangent.stiffness[0].T
-            guess = -_divide(self.tangent.factors, load)
-        a = self._solve(drive, q + drift, v, guess)
+            load = self.system.residual(carrier, still + q, still, still)
+            guess = -_divide(factors, load + damping @ v + drift @ stiffness.T)
+        a = self._solve(carrier, q + drift, v, guess, factors)
         return q + self.h * v + self.end_q @ a, v + self.end_v @ a, a
 
-    def _solve(self, drive: Any, drifted: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-        """Solve for accelerations (s, n) by Newton's method, keeping the tangent while it serves."""
-        assert self.tangent is not None
-        factors: Factors | None = self.tangent.factors
+    def _solve(
+        self, carrier: Carrier, drifted: np.ndarray, v: np.ndarray, a: np.ndarray, factors: Factors | None
+    ) -> np.ndarray:
+        """Solve for accelerations (s, n) by Newton's method, keeping the factors while they serve."""
         start, last = np.stack([drifted, np.broadcast_to(v, a.shape), np.zeros_like(a)]), np.inf
         for iteration in range(_ITERATIONS):
-            now = self.system.evaluate(drive, start + self.to_motion.dot(a).reshape(start.shape))
-            factors = factors or self._factorize(now)
-            residual = now.residual
+            motion = start + self.to_motion.dot(a).reshape(start.shape)
+            residual = self.system.residual(carrier, *motion)
+            factors = factors or self._factorize(self.system.tangents(carrier, *motion, residual))
             change = _divide(factors, residual)
             a = a - change
             size, scale = _norm(change), _norm(a) + _norm(residual)
             reduction = max(size / last, _LEAST_REDUCTION) if last else 1.0
             is_stalled = last * _FAST < size and (
-                size <= _STALLED * scale or _norm(residual) <= _BALANCED * _norm(now.elastic)
+                size <= _STALLED * scale or self._balances(residual, motion)
             )
             if is_stalled or size * min(1.0, reduction) <= _CONVERGED * scale:
                 if iteration > _FEW:
-                    self.tangent = None
+                    self.kept = None
                 return a
             if not math.isfinite(size):
                 break
@@ -288,15 +261,15 @@ class _Step:
             last = size
         raise StepNotSolved("the equations of a step were not solved: take shorter steps")
 
-    def _factorize(self, now: Evaluated) -> Factors:
+    def _balances(self, residual: np.ndarray, motion: np.ndarray) -> bool:
+        """Return whether a residual (s, n) is rounding beside the elastic forces."""
+        return _norm(residual) <= _BALANCED * _norm(motion[0] @ self.system.elastica.beam.stiffness)
+
+    def _factorize(self, tangents: np.ndarray) -> Factors:
         """Compute LU factors of the derivative of all residuals of a step by all accelerations."""
         s, n = len(self.table.c), self.system.size
-        matrix = self.to_q[:, None, :, None] * now.stiffness[:, :, None]
-        matrix += self.to_v[:, None, :, None] * now.damping[:, :, None]
-        index = np.arange(s)
-        matrix[index, :, index] += now.mass
-        lu, pivots, _ = dgetrf(matrix.reshape(s * n, s * n))
-        return lu, pivots
+        matrix = (self.to_motion.reshape(3, s, 1, s, 1) * tangents[:, :, :, None]).sum(axis=0)
+        return dgetrf(matrix.reshape(s * n, s * n))[:2]
 
 
 def _norm(values: np.ndarray) -> float:

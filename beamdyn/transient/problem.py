@@ -11,11 +11,13 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, as_floats
 from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.equations.beam_in_space.rotating_beam import QUANTITIES
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.root_motion import Quantity
+from beamdyn.modes.modal.continuation import NoEquilibrium
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modes.modal.eigenproblem import Solver
-from beamdyn.modes.modal.equilibrium import NoEquilibrium, SteadyLoad, find_bent, follow_to
+from beamdyn.modes.modal.equilibrium import find_bent, follow_to, load_by_rotation
 from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, ModalBasis
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.motion import Motion
@@ -272,40 +274,12 @@ def _equilibrium(system: ModalSystem) -> np.ndarray:
     return np.linalg.solve(K, f)
 
 
-@dataclass(frozen=True)
-class LoadAtOnce(SteadyLoad):
-    """Equations of equilibrium under all loads at one time, including gravity and angular acceleration.
-
-    The continuation parameter is the squared speed, and all other quantities grow in proportion; for a
-    beam that does not rotate, the parameter is the fraction of the loads.
-
-    Parameters
-    ----------
-    quantities : dict of str to float
-        Quantities of the root's motion, per unit of the parameter.
-    """
-
-    quantities: dict[Quantity, float] | None = None
-
-    @cached_property
-    def values(self) -> dict[Quantity, float]:
-        """Quantities that differ from 0, with `push` added to the root's transverse acceleration."""
-        values = dict(self.quantities or {})
-        values["root_transverse"] = values.get("root_transverse", 0.0) + self.push
-        return {quantity: value for quantity, value in values.items() if value}
-
-    @property
-    def transverse(self) -> float:
-        """Transverse acceleration of the root per unit of the continuation parameter, with its sign.
-
-        Where that is 0: the largest entry of the generalized load on the straight beam.
-        """
-        given = self.values.get("root_transverse", 0.0)
-        return given or float(np.abs(self.load(self.elastica.at(np.zeros(self.elastica.size)))).max())
-
-
 def _bent_equilibrium(system: BeamInSpaceSystem) -> np.ndarray:
-    """Find coordinates (n,) in equilibrium with the loads at time 0, on the branch of the scene."""
+    """Find coordinates (n,) in equilibrium with the loads at time 0, on the branch of the scene.
+
+    The continuation parameter is the squared speed, and all other quantities, such as gravity, grow in
+    proportion; for a beam that does not rotate, the parameter is the fraction of the loads.
+    """
     root, lowest = system.root(np.zeros(())), Solver(system.equations.steady()).lowest_at_rest
     speed = abs(float(root.speed)) or 1.0
     is_bent = system.branch == "bent"
@@ -314,13 +288,13 @@ def _bent_equilibrium(system: BeamInSpaceSystem) -> np.ndarray:
         raise InvalidValue(
             "initial", "equilibrium", bound, f"{_REMEDY}, or a motion that begins with a speed"
         )
-    values: dict[Quantity, float] = {
-        name: float(getattr(root, name)) / speed**2 for name in system.elastica.quantities
-    }
-    size = max(1.0, abs(values["root_transverse"]) / system.elastica.length)
-    load = LoadAtOnce(system.elastica, lowest / size, quantities=values)
+    values: dict[Quantity, float] = {name: float(getattr(root, name)) / speed**2 for name in QUANTITIES}
+    elastica = system.elastica
+    size = max(1.0, abs(values["root_transverse"]) / elastica.beam.stations.length)
+    load = replace(load_by_rotation(elastica, lowest / size), growing=values)
+    largest = float(np.abs(load.rate(np.zeros(system.size))).max())
     try:
-        return find_bent(load, speed) if is_bent else follow_to(load, np.array([speed]))[0]
+        return find_bent(load, speed, largest) if is_bent else follow_to(load, np.array([speed]))[0]
     except NoEquilibrium as error:
         bound = f"at time 0 there is none: {error}"
         raise InvalidValue("initial", "equilibrium", bound, _REMEDY) from None

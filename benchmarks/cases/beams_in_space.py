@@ -9,15 +9,16 @@ from scipy.linalg import eigh, eigvals
 from scipy.optimize import brentq
 
 from beamdyn.equations.beam_in_space.bent_beam import STRAINS, BeamInSpace, BentBeam, elastic_stiffness
-from beamdyn.equations.beam_in_space.finite_rotations import quaternion_about
+from beamdyn.equations.beam_in_space.finite_rotations import UNIT
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses
-from beamdyn.equations.beam_in_space.tip_forces import LoadedBeam, TipForces
+from beamdyn.equations.beam_in_space.tip_forces import TipForces
 from beamdyn.equations.discretization import FIXED, ArcQuadrature, Cells
 from beamdyn.equations.ritz import Ritz, RitzSpaces
-from beamdyn.modes.modal.continuation import solve_at
 
 BENDING = ("twist rate", "second curvature", "curvature")
 E1, E2, E3 = np.eye(3)
+_ITERATIONS = 10  # iterations of Newton's method for each share of a load, enough for rounding
+_ROUNDING = 1e-10  # change by the last iteration over the coordinates, that is rounding
 
 
 def uniform(
@@ -50,7 +51,7 @@ def uniform(
     )
     masses = Masses(mass * weights, np.outer(offset, np.ones_like(weights)), tensor[..., None] * weights)
     given = np.outer(initial, np.ones_like(xi))
-    straight = np.tile(quaternion_about(0, 0.0), (len(ends) - 1, 1))
+    straight = np.tile(UNIT, (len(ends) - 1, 1))
     return BeamInSpace(
         stations,
         masses,
@@ -72,10 +73,14 @@ def _of_strain(name: str, functions: np.ndarray) -> np.ndarray:
 
 
 def bend(beam: BeamInSpace, load: TipForces, steps: int = 4) -> BentBeam:
-    """Solve the equilibrium of a beam with a load, which grows in steps."""
-    problem, q = LoadedBeam(beam, load), np.zeros(beam.size)
-    for step in range(steps):
-        q = solve_at(problem, q, (step + 1) / steps)
+    """Solve the equilibrium of a beam with a load, which grows in steps, by Newton's method."""
+    q, change = np.zeros(beam.size), np.full(beam.size, np.inf)
+    for share in np.arange(1, steps + 1) / steps:
+        for _ in range(_ITERATIONS):
+            force, stiffness = beam.at(q).under(load.on(beam.at(q), share))
+            change = np.linalg.solve(beam.stiffness - stiffness, force - beam.stiffness @ q)
+            q = q + change
+    assert np.abs(change).max() < _ROUNDING * np.abs(q).max()
     return beam.at(q)
 
 
@@ -104,7 +109,7 @@ def lateral_buckling_load() -> float:
     weak, torsion = 2.0, 0.7
     beam = uniform(1.3, np.diag([1, 1, 1, torsion, weak, 1]), ("twist rate", "second curvature"))
     straight = beam.at(np.zeros(beam.size))
-    by_load = straight.work_change(TipForces(force=E2).on(straight))
+    by_load = straight.under(TipForces(force=E2).on(straight)).change
     return 1.3**2 / np.sqrt(weak * torsion) / eigh(by_load, beam.stiffness, eigvals_only=True)[-1]
 
 
@@ -112,7 +117,7 @@ def flutter_load() -> float:
     """Compute P L^2/EI at flutter of a cantilever under a follower load at its tip (Beck)."""
     beam = uniform(1.0, np.eye(6), ("curvature",), mass=1.0)
     straight = beam.at(np.zeros(beam.size))
-    by_load = straight.work_change(TipForces(force=-E1, follows=True).on(straight))
+    by_load = straight.under(TipForces(force=-E1, follows=True).on(straight)).change
 
     def squared_distance(load: float) -> float:
         squares = eigvals(np.linalg.solve(straight.mass, beam.stiffness - load * by_load))

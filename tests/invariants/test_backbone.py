@@ -67,7 +67,7 @@ def test_bent_beams_against_harmonic_balance(angle: float, speed: float) -> None
 
 def _balance(state: BentState, speed: float, omega: float, small: float) -> tuple[float, float]:
     """Frequency, and amplitude over the length, of a periodic motion by a balance of four harmonics."""
-    elastica, n, harmonics, samples = state.of, state.of.size, 4, 24
+    elastica, n, harmonics, samples = state.of, state.of.beam.size, 4, 24
     phase = 2 * np.pi * np.arange(samples) / samples
     waves = np.array(
         [np.ones(samples)] + [f(h * phase) for h in range(1, harmonics + 1) for f in (np.cos, np.sin)]
@@ -81,8 +81,8 @@ def _balance(state: BentState, speed: float, omega: float, small: float) -> tupl
     motion = root_motion(elastica.linear.mount, sample)
     pencil = state.linearized().steady()
     K = pencil.K0 + speed**2 * pencil.K2
-    v = scipy.linalg.eigh(K, state.mass)[1][:, 0]
-    v = v * small * elastica.length / np.hypot(move[0] @ v, move[1] @ v)
+    v = scipy.linalg.eigh(K, state.bent.mass)[1][:, 0]
+    v = v * small * elastica.beam.stations.length / np.hypot(move[0] @ v, move[1] @ v)
     scale, work, held = np.abs(v).max(), np.abs(K @ v).max(), int(np.abs(v).argmax())
     start = np.zeros((len(waves), n))
     start[1] = v / scale
@@ -98,7 +98,7 @@ def _balance(state: BentState, speed: float, omega: float, small: float) -> tupl
 
     def residual(unknown: np.ndarray) -> np.ndarray:
         c, w = complete(unknown)
-        r = elastica.at(state.q + waves.T @ c).work(w * derivative.T @ c, w**2 * second.T @ c, motion)
+        r = elastica.at(state.bent.q + waves.T @ c).work(w * derivative.T @ c, w**2 * second.T @ c, motion)
         return (waves @ r).ravel() / samples / work
 
     # Energy is kept, so that one of the equations follows from the others: least squares.
@@ -107,7 +107,7 @@ def _balance(state: BentState, speed: float, omega: float, small: float) -> tupl
     c, frequency = complete(found.x)
     tip = [m @ (c[1] - 1j * c[2]) for m in move]
     size = (abs(tip[0] + 1j * tip[1]) + abs(tip[0] - 1j * tip[1])) / 2
-    return frequency, float(size / elastica.length)
+    return frequency, float(size / elastica.beam.stations.length)
 
 
 def test_an_unstable_equilibrium_has_no_backbone() -> None:

@@ -82,9 +82,9 @@ def derivative(function: Callable[[np.ndarray], np.ndarray], q: np.ndarray, step
 
 
 LOADS: dict[str, tuple[Callable[[BentBeam], StationForces], bool]] = {  # and whether they have a potential
-    "centrifugal": (lambda bent: bent.masses.centrifugal(AXIS / np.linalg.norm(AXIS)), True),
-    "angular acceleration": (lambda bent: bent.masses.euler(AXIS), False),
-    "root acceleration": (lambda bent: bent.masses.translated(AXIS), True),
+    "centrifugal": (lambda bent: bent.masses.carried(AXIS / np.linalg.norm(AXIS), speed_squared=1.0), True),
+    "angular acceleration": (lambda bent: bent.masses.carried(AXIS, acceleration=1.0), False),
+    "root acceleration": (lambda bent: bent.masses.carried(0 * AXIS, root=AXIS), True),
     "dead force": (TipForces(FORCE).on, True),
     "dead couple": (TipForces(couple=COUPLE).on, False),
     "force that follows": (TipForces(FORCE, follows=True).on, False),
@@ -96,7 +96,7 @@ LOADS: dict[str, tuple[Callable[[BentBeam], StationForces], bool]] = {  # and wh
 def test_tangent_is_the_derivative_of_the_work(name: str) -> None:
     load, has_potential = LOADS[name]
     beam, q = general(), somewhere()
-    tangent = beam.at(q).work_change(load(beam.at(q)))
+    tangent = beam.at(q).under(load(beam.at(q))).change
     exact = derivative(lambda q: beam.at(q).work(load(beam.at(q)).force), q)
     scale = np.abs(exact).max()
     np.testing.assert_allclose(tangent, exact, rtol=0, atol=DIFFERENCES * scale)
@@ -124,7 +124,7 @@ def test_centrifugal_work_is_that_of_a_potential() -> None:
         turning = np.einsum("a,abj,b->j", axis, masses.inertia, axis)
         return ((velocity**2).sum(axis=0) @ masses.mass + turning.sum()) / 2
 
-    work = beam.at(q).work(beam.at(q).masses.centrifugal(axis).force)
+    work = beam.at(q).work(beam.at(q).masses.carried(axis, speed_squared=1.0).force)
     np.testing.assert_allclose(-work, derivative(kinetic_energy, q), rtol=0, atol=DIFFERENCES)
 
 
@@ -132,7 +132,7 @@ def test_gyroscopic_matrix_is_that_of_coriolis_forces() -> None:
     """E - E^T of the angular momentum, against forces 2 m a x v and moments tr(I) a x w - 2 (I a) x w."""
     beam, q, axis = general(), somewhere(), AXIS / np.linalg.norm(AXIS)
     bent = beam.at(q)
-    euler, masses = bent.work_change(bent.masses.euler(axis)), bent.masses
+    euler, masses = bent.under(bent.masses.carried(axis, acceleration=1.0)).change, bent.masses
     X, W = bent.motions[:, :3], bent.motions[:, 3:]
     velocity = X + np.cross(W, masses.lever, axisa=1, axisb=0, axisc=1)
     coriolis = 2 * masses.mass * np.cross(axis, velocity, axisb=1, axisc=1)
@@ -426,7 +426,7 @@ def test_inertial_forces_are_those_of_lagrange() -> None:
 
     def momentum(q: np.ndarray) -> np.ndarray:
         bent = beam.at(q)
-        return bent.mass @ rates + bent.work(bent.masses.euler(turning).force)
+        return bent.mass @ rates + bent.work(bent.masses.carried(turning, acceleration=1.0).force)
 
     def kinetic_energy(q: np.ndarray) -> np.ndarray:
         bent = beam.at(q)
@@ -434,7 +434,9 @@ def test_inertial_forces_are_those_of_lagrange() -> None:
         sections = np.einsum("a,abj,b->", turning, bent.masses.inertia, turning)
         carried = (velocity**2).sum(axis=0) @ bent.masses.mass + sections
         return (
-            rates @ bent.mass @ rates / 2 + rates @ bent.work(bent.masses.euler(turning).force) + carried / 2
+            rates @ bent.mass @ rates / 2
+            + rates @ bent.work(bent.masses.carried(turning, acceleration=1.0).force)
+            + carried / 2
         )
 
     exact = derivative(momentum, q) @ rates + beam.at(q).mass @ accelerations - derivative(kinetic_energy, q)
@@ -446,8 +448,8 @@ def test_inertial_forces_are_those_of_lagrange() -> None:
 def test_carrier_that_speeds_up_and_moves_loads_the_beam_at_rest() -> None:
     beam, q, rest = general(), somewhere(), np.zeros(general().size)
     moving = MovingBeam(beam.at(q), rest, Carrier(0 * AXIS, AXIS, FORCE))
-    expected = beam.at(q).work(moving.bent.masses.euler(AXIS).force)
-    expected += beam.at(q).work(moving.bent.masses.translated(FORCE).force)
+    expected = beam.at(q).work(moving.bent.masses.carried(AXIS, acceleration=1.0).force)
+    expected += beam.at(q).work(moving.bent.masses.carried(0 * AXIS, root=FORCE).force)
     np.testing.assert_allclose(moving.bent.work(moving.forces(rest)), expected, rtol=0, atol=ROUNDING)
 
 

@@ -150,7 +150,7 @@ def test_the_cheap_form_of_the_equations_is_the_plain_one() -> None:
         system = loaded_system(bending)
         q, v, a = (random.normal(size=(5, 3)) * size for size in SIZES)
         root = system.root(np.linspace(0.1, 0.9, 5))
-        cheap = system.at(system.drive(root), q, v, a).residual
+        cheap = system.residual(system.carrier(root), q, v, a)
         plain = system.elastica.at(q).work(v, a, root)
         assert cheap == pytest.approx(plain, rel=1e-9, abs=1e-12 * np.abs(plain).max())
 
@@ -161,13 +161,13 @@ def test_derivatives_are_those_of_the_residual() -> None:
     for bending in BENDING_ANGLES:
         system = loaded_system(bending)
         motion = [random.normal(size=(1, 3)) * size for size in SIZES]
-        drive = system.drive(system.root(np.array([0.4])))
-        here = system.at(drive, *motion)
+        carrier = system.carrier(system.root(np.array([0.4])))
+        tangents = system.tangents(carrier, *motion, system.residual(carrier, *motion))
         for i, (name, size) in enumerate(zip(("stiffness", "damping", "mass"), SIZES, strict=True)):
-            stated, columns = getattr(here, name)[0], []
+            stated, columns = tangents[i, 0], []
             for step in 1e-4 * size * np.eye(3):
                 ahead, behind = (
-                    system.at(drive, *(x + sign * step * (j == i) for j, x in enumerate(motion))).residual[0]
+                    system.residual(carrier, *(x + sign * step * (j == i) for j, x in enumerate(motion)))[0]
                     for sign in (1, -1)
                 )
                 columns.append((ahead - behind) / (2e-4 * size))

@@ -15,7 +15,7 @@ import beamdyn as bd
 from beamdyn.app import frequency_screen
 from beamdyn.cli import DONE, NO_ANSWER, main
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.modes.modal import equilibrium
+from beamdyn.modes.modal import continuation, equilibrium
 from beamdyn.scene.profile import to_profile
 from benchmarks.cases.elastica import harvester_at
 from tests.conftest import Finished
@@ -196,7 +196,7 @@ def test_a_blade_that_coils_is_followed_to_an_angle_alone(monkeypatch: pytest.Mo
 
 
 def test_a_load_that_was_not_reached_says_how_much_of_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(equilibrium, "_MOST_TURNS", 0.1)
+    monkeypatch.setattr(continuation, "_MOST_TURNS", 0.1)
     with pytest.raises(bd.NoEquilibrium, match=r"followed to 0\.\d+ of the load at its tip"):
         bd.equilibrium(replace(PUSHED, tip_load=bd.TipLoad((0.0, 1.0, 0.0))), 0.0)
 

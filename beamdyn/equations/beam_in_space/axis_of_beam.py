@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.equations.beam_in_space.finite_rotations import product, quaternion_about
+from beamdyn.equations.beam_in_space.finite_rotations import UNIT, product, quaternions_by_vectors
 from beamdyn.equations.discretization import ArcQuadrature, Sampler
 from beamdyn.scene.beam import Beam
-from beamdyn.scene.profile import ONE, Profile
+from beamdyn.scene.profile import ONE
 
 _STRAIGHT = ONE.scaled(0.0)
 
@@ -26,18 +26,8 @@ def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np
     a = at_points(sweep)
     swept, bent = (at_points(angle.derivative()) / beam.length for angle in (sweep, prebend))
     curvature = np.stack([bent * np.sin(a), -swept, bent * np.cos(a)])
-    begin, end = (
-        _axes(*angles) for angles in zip(*(_at_ends(p, cells.ends) for p in (sweep, prebend)), strict=True)
-    )
-    before = np.concatenate([quaternion_about(0, 0.0)[None], end[:-1]]) * [1.0, -1.0, -1.0, -1.0]
+    # Angles just inside both ends of each cell, where cells may differ at a jump.
+    a, b = (np.stack(angle.split(tuple(cells.ends)).end_values())[..., None] for angle in (sweep, prebend))
+    begin, end = product(quaternions_by_vectors(b * [0, 0, 1]), quaternions_by_vectors(a * [0, -1, 0]))
+    before = np.concatenate([UNIT[None], end[:-1]]) * [1.0, -1.0, -1.0, -1.0]
     return curvature, product(before, begin)
-
-
-def _at_ends(angle: Profile, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Evaluate an angle just inside both ends of each cell, so that jumps between cells are kept."""
-    return angle.split(tuple(ends)).end_values()
-
-
-def _axes(sweep: np.ndarray, prebend: np.ndarray) -> np.ndarray:
-    """Convert sweep and prebend (c,) [rad] to unit quaternions (c, 4) of the axes of the unloaded beam."""
-    return product(quaternion_about(2, prebend), quaternion_about(1, -sweep))

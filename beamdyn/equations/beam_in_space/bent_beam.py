@@ -33,21 +33,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.numerics import gauss_rule
 from beamdyn.common.results.read_only import FieldsOnly
-from beamdyn.equations.beam_in_space.finite_rotations import (
-    cross,
-    integrate_curvature,
-    quaternion_about,
-    turn,
-    turn_back,
-)
+from beamdyn.equations.beam_in_space.finite_rotations import UNIT, cross, integrate_curvature, turn
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, MassesInSpace, StationForces
-from beamdyn.equations.beam_in_space.turned_root import TurnedRoot
+from beamdyn.equations.discretization import ArcQuadrature, Cells
 
+# Weights of a Gauss rule on the arc of a root on springs: rotations by half a circle are exact to rounding.
+_ON_ARC = gauss_rule(12)[1] / 2
 STRAINS = "stretch", "shear", "second shear", "twist rate", "second curvature", "curvature"
 
 
@@ -100,15 +98,14 @@ class BeamInSpace(FieldsOnly):
         """Number n of coordinates."""
         return len(self.functions)
 
-    @property
-    def length(self) -> float:
-        """Length of the beam [m]."""
-        return self.stations.length
-
     @cached_property
     def flat_functions(self) -> np.ndarray:
         """Strains per coordinate, flattened over components and points: shape (n, 6 N)."""
         return self.functions.reshape(self.size, -1)
+
+    def strained(self, q: np.ndarray) -> np.ndarray:
+        """Compute the changes of the strains (..., 6, N) by coordinates (..., n)."""
+        return (q @ self.flat_functions).reshape(*q.shape[:-1], *self.initial.shape)
 
     @cached_property
     def angles(self) -> np.ndarray:
@@ -135,19 +132,29 @@ class BeamInSpace(FieldsOnly):
 
     def reduced(self, basis: np.ndarray) -> BeamInSpace:
         """Transform the beam to other coordinates: q = basis @ q_reduced, basis of shape (n, m)."""
-        return replace(
-            self,
-            functions=np.tensordot(basis.T, self.functions, 1),
-            stiffness=basis.T @ self.stiffness @ basis,
-            damping=basis.T @ self.damping @ basis,
-            hinges=None if self.hinges is None else basis.T @ self.hinges,
-            slopes=None if self.slopes is None else basis.T @ self.slopes,
-        )
+        given = {name: getattr(self, name) for name in ("functions", "hinges", "slopes")}
+        rows = {k: np.tensordot(basis.T, values, 1) for k, values in given.items() if values is not None}
+        K, C = (basis.T @ matrix @ basis for matrix in (self.stiffness, self.damping))
+        return replace(self, stiffness=K, damping=C, **rows)
 
     @cached_property
     def is_planar(self) -> bool:
         """Whether the beam bends in the plane of e1 and e2 alone, inextensible, from a straight axis."""
         return not (self.initial.any() or self.kinks[:, 1:].any() or self.functions[:, :-1].any())
+
+    @cached_property
+    def arc(self) -> BeamInSpace:
+        """Root on springs, modelled as an infinitely short and soft piece of beam that is bent to an arc.
+
+        Its length counts as 1: its curvature is the vector of the turn.  The root so turns to its direction
+        by the shortest rotation, whichever axis is named first.  Its elastic energy is that of the beam.
+        """
+        none = np.zeros_like(_ON_ARC)
+        stations = BeamStations(ArcQuadrature(Cells(np.array([0.0, 1.0]), len(none))), 1.0, none[:0])
+        functions = np.zeros((self.size, 6, len(none)))
+        functions[:, 3:] = np.asarray(self.hinges)[..., None]
+        law = self.stiffness, self.damping
+        return BeamInSpace(stations, self.masses, 0 * functions[0], functions, *law, none, none, UNIT[None])
 
     def at(self, q: np.ndarray) -> BentBeam:
         """Return the deformed beam at coordinates q (..., n)."""
@@ -164,15 +171,18 @@ def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.nda
     """
     least = np.linalg.eigvalsh(np.moveaxis(law, 2, 0))[:, 0]
     if (least <= 0).any():
-        k = int(least.argmin())
-        bound, remedy = (
-            "it must be positive: such a section deforms without a force",
-            "check its 6 x 6 matrix",
-        )
-        where = f" at x/L = {stations.quadrature.xi[k]:.3g}"
+        k, bound = int(least.argmin()), "it must be positive: such a section deforms without a force"
+        where, remedy = f" at x/L = {stations.quadrature.xi[k]:.3g}", "check its 6 x 6 matrix"
         raise InvalidValue("least eigenvalue of the section", float(least[k]), bound, remedy, where=where)
     stress = np.einsum("abj,nbj->naj", law * stations.quadrature.weights * stations.length, functions)
-    return functions.reshape(len(functions), -1) @ stress.reshape(len(functions), -1).T
+    return _product(functions, stress)
+
+
+class Work(NamedTuple):
+    """Virtual work (n,) of forces on the stations per coordinate, and its derivatives (n, n)."""
+
+    work: np.ndarray
+    change: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -195,8 +205,7 @@ class BentBeam(FieldsOnly):
     @cached_property
     def strains(self) -> np.ndarray:
         """Strains of the deformed beam (..., 6, N), in the order of `STRAINS`."""
-        beam = self.beam
-        return beam.initial + (self.q @ beam.flat_functions).reshape(*self.q.shape[:-1], *beam.initial.shape)
+        return self.beam.initial + self.beam.strained(self.q)
 
     @property
     def _shortening(self) -> np.ndarray:
@@ -208,8 +217,10 @@ class BentBeam(FieldsOnly):
         """Rotation matrices (..., 3, 3, N + 1) whose columns are the axes of the sections."""
         beam, stations = self.beam, self.beam.stations
         curvature = stations.length * self.strains[..., 3:, :]
-        root = quaternion_about(0, 0.0) if self._root is None else self._root.quaternion
-        return integrate_curvature(stations.quadrature.cells, curvature, beam.kinks, root)
+        turned = integrate_curvature(stations.quadrature.cells, curvature, beam.kinks)
+        if beam.hinges is None:
+            return turned
+        return np.einsum("...ab,...bcj->...acj", self._root.rotations[..., -1], turned)
 
     @cached_property
     def _within(self) -> np.ndarray:
@@ -243,9 +254,11 @@ class BentBeam(FieldsOnly):
 
     def strain_rates(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Compute strain rates in space (..., 3, N): of stretch and shears, and of curvatures."""
-        strains = np.tensordot(rates, self.beam.functions, 1)
-        strains[..., 0, :] += self._shortening * strains[..., 3, :]
-        return turn(self._within, strains[..., :3, :]), turn(self._within, strains[..., 3:, :])
+        stretch, bending = np.split(self.beam.strained(rates), 2, axis=-2)
+        if self.beam.shears:
+            stretch[..., 0, :] += self._shortening * bending[..., 0, :]
+            stretch = turn(self._within, stretch)
+        return stretch, turn(self._within, bending)
 
     def shortening_rate(self, rates: np.ndarray) -> np.ndarray:
         """Compute the second rate (..., 3, N) of the stretch by squared twist rates (trapeze effect)."""
@@ -255,45 +268,44 @@ class BentBeam(FieldsOnly):
     # Rotation of the root on springs ----------------------------------------------------------------------
 
     @cached_property
-    def _root(self) -> TurnedRoot | None:
-        """Rotation of the root at these coordinates; None where the root is clamped."""
-        return None if self.beam.hinges is None else TurnedRoot(self.beam.hinges, self.q)
+    def _root(self) -> BentBeam:
+        """Arc of the root on springs at these coordinates, whose tip is the root."""
+        return self.beam.arc.at(self.q)
+
+    @cached_property
+    def _mean_of_arc(self) -> np.ndarray:
+        """Rotation matrices averaged along the arc (..., 3, 3), which turn changes of the root's vector."""
+        return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Compute angular velocities (..., 3, N + 1) of sections from rates of coordinates and curvatures."""
-        turning = self.beam.stations.to_sections(bending)
-        if self._root is not None:
-            turning += self._root.turning(rates)[..., None]
-        return turning
+        """Compute angular velocities (..., 3, N + 1) of sections by rates of coordinates and curvatures."""
+        turning, hinges = self.beam.stations.to_sections(bending), self.beam.hinges
+        return turning if hinges is None else turning + self._mean_of_arc @ (rates @ hinges)[..., None]
 
     def turning_of_root(self, rates: np.ndarray) -> np.ndarray | float:
         """Compute the angular acceleration of the root (..., 3, 1) at constant rates (..., n)."""
-        return 0.0 if self._root is None else self._root.acceleration(rates)[..., None]
+        if self.beam.hinges is None:
+            return 0.0
+        bending = self._root.strain_rates(rates)[1]
+        return (cross(self._root.turning_rate(rates, bending)[..., :-1], bending) @ _ON_ARC)[..., None]
 
     # Derivatives of the motion by the coordinates ---------------------------------------------------------
 
     @cached_property
-    def _turning(self) -> np.ndarray:
-        """Derivatives along the axis of the rotation vectors of sections per coordinate: shape (n, 3, N)."""
-        return turn(self._within, self.beam.functions[:, 3:])
-
-    @cached_property
-    def _straining(self) -> np.ndarray:
-        """Changes of shears and stretch per coordinate, as vectors in space: shape (n, 3, N)."""
-        strains = self.beam.functions[:, :3].copy()
-        strains[:, 0] += self._shortening * self.beam.functions[:, 3]
-        return turn(self._within, strains)
+    def _strained(self) -> tuple[np.ndarray, np.ndarray]:
+        """Changes in space of stretch and shears, and of curvatures, per coordinate: (n, 3, N) each."""
+        return self.strain_rates(np.eye(self.beam.size))
 
     @cached_property
     def _turned(self) -> np.ndarray:
         """Rotation vectors of the sections per coordinate, in space: shape (n, 3, N + 1)."""
-        return self.turning_rate(np.eye(self.beam.size), self._turning)
+        return self.turning_rate(np.eye(self.beam.size), self._strained[1])
 
     @cached_property
     def displacement_rates(self) -> np.ndarray:
         """Derivatives along the axis of its displacements per coordinate: shape (n, 3, N)."""
         rates = cross(self._turned[..., :-1], self.tangents)
-        return rates + self._straining if self.beam.shears else rates
+        return rates + self._strained[0] if self.beam.shears else rates
 
     @cached_property
     def motions(self) -> np.ndarray:
@@ -311,11 +323,17 @@ class BentBeam(FieldsOnly):
 
     # Work of forces on the stations -------------------------------------------------------------------
 
-    def under(self, forces: StationForces) -> ForcedBeam:
-        """Load the deformed beam with forces on its stations."""
-        return ForcedBeam(self, forces)
+    def under(self, forces: StationForces) -> Work:
+        """Compute the virtual work of forces on the stations, with its derivatives by the coordinates."""
+        resultants = self._resultants(forces.force)
+        change = self._change_by(*resultants) + self._of_stations(forces.tangent)
+        return Work(self._work_of(*resultants), change)
 
-    def resultants(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def work(self, force: np.ndarray) -> np.ndarray:
+        """Compute the virtual work (..., n) of forces (..., 6, N + 1 + k) on the stations, per coordinate."""
+        return self._work_of(*self._resultants(force))
+
+    def _resultants(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Compute the forces n and moments m that act beyond each point, and the moment at the root.
 
         n and m (..., 3, N) are multiplied by the weights of the rule; the moment at the root is (..., 3).
@@ -326,39 +344,38 @@ class BentBeam(FieldsOnly):
         moments[..., :-1] += cross(self.tangents, n)
         return n, stations.from_sections(moments), moments.sum(axis=-1)
 
-    def work(self, force: np.ndarray) -> np.ndarray:
-        """Compute the virtual work (..., n) of forces (..., 6, N + 1 + k) on the stations, per coordinate."""
-        return self.work_of(*self.resultants(force))
-
-    def work_of(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
+    def _work_of(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
         """Compute the virtual work (..., n) of resultants (..., 3, N) and of a root moment (..., 3)."""
-        beam, stress, functions = self.beam, turn_back(self._within, m), self.beam.flat_functions
+        beam, functions, back = self.beam, self.beam.flat_functions, self._within.swapaxes(-3, -2)
+        stress = turn(back, m)
         if beam.shears:
-            stress = np.concatenate([turn_back(self._within, n), stress], axis=-2)
+            stress = np.concatenate([turn(back, n), stress], axis=-2)
             stress[..., 3, :] += self._shortening * stress[..., 0, :]
         flat = stress.reshape(*m.shape[:-2], -1)
         work = flat @ functions[:, functions.shape[1] - flat.shape[-1] :].T
-        return work if self._root is None else work + self._root.work(at_root)
+        if beam.hinges is None:
+            return work
+        return work + (at_root[..., None, :] @ self._mean_of_arc)[..., 0, :] @ beam.hinges.T
 
-    def work_change(self, forces: StationForces) -> np.ndarray:
-        """Compute the derivative (n, n) of the virtual work of station forces by the coordinates."""
-        return self.under(forces).work_change
-
-    def change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
+    def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
         """Compute the derivative (n, n) of the virtual work of given resultants (3, N) of fixed direction."""
         beam, W = self.beam, self._turned[..., :-1]
-        change = _product(self._turning, cross(m, W)) + _product(W, cross(self.displacement_rates, n))
+        change = self._change_by_moments(m) + _product(W, cross(self.displacement_rates, n))
         if beam.shears:
-            change += _product(self._straining, cross(n, W))
+            change += _product(self._strained[0], cross(n, W))
         if beam.shortens:
             twist, along = beam.functions[:, 3], (self._within[:, 0] * n).sum(axis=0)
             change -= _product(twist * (beam.fibres * along), twist)
-        if self._root is not None:
-            change += self._root.work_change(at_root)
+        if beam.hinges is not None:
+            change += self._root._change_by_moments(at_root[:, None] * _ON_ARC)
         return change
 
-    def of_stations(self, matrices: np.ndarray) -> np.ndarray:
-        """Transform matrices of the stations (6, 6, N + 1 + k) to a matrix (n, n) of the coordinates."""
+    def _change_by_moments(self, m: np.ndarray) -> np.ndarray:
+        """Compute the part (n, n) of `_change_by` that moments (3, N) cause where they turn sections."""
+        return _product(self._strained[1], cross(m, self._turned[..., :-1]))
+
+    def _of_stations(self, matrices: np.ndarray) -> np.ndarray:
+        """Compute the matrix (n, n) of the coordinates from those of the stations (6, 6, N + 1 + k)."""
         acting = np.flatnonzero(matrices.any(axis=(1, 2)) | matrices.any(axis=(0, 2)))
         motions = self.motions[:, acting]
         return _product(motions, np.einsum("abj,nbj->naj", matrices[np.ix_(acting, acting)], motions))
@@ -366,7 +383,7 @@ class BentBeam(FieldsOnly):
     @cached_property
     def mass(self) -> np.ndarray:
         """Mass matrix (n, n)."""
-        return self.of_stations(self.masses.matrix)
+        return self._of_stations(self.masses.matrix)
 
 
 class BentInPlane(BentBeam):
@@ -387,41 +404,10 @@ class BentInPlane(BentBeam):
         """Rotation vectors of the sections per coordinate, in space: shape (n, 3, N + 1)."""
         return self.beam.angles[:, None] * np.array([0.0, 0.0, 1.0])[:, None]
 
-    def change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
+    def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
         """Compute the derivative (n, n) of the virtual work of resultants (3, N) of constant direction."""
         angles, along = self.beam.angles[:, :-1], (self.tangents[:2] * n[:2]).sum(axis=0)
         return (angles * -along) @ angles.T
-
-
-@dataclass(frozen=True)
-class ForcedBeam(FieldsOnly):
-    """A deformed beam with forces on its stations.
-
-    Parameters
-    ----------
-    bent : BentBeam
-        The beam.
-    forces : StationForces
-        The forces.
-    """
-
-    bent: BentBeam
-    forces: StationForces
-
-    @cached_property
-    def resultants(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Forces and moments of the sections along the beam: see `BentBeam.resultants`."""
-        return self.bent.resultants(self.forces.force)
-
-    @cached_property
-    def work(self) -> np.ndarray:
-        """Virtual work of the forces per coordinate, shape (n,)."""
-        return self.bent.work_of(*self.resultants)
-
-    @cached_property
-    def work_change(self) -> np.ndarray:
-        """Derivative of the virtual work of the forces by the coordinates, shape (n, n)."""
-        return self.bent.change_by(*self.resultants) + self.bent.of_stations(self.forces.tangent)
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 from beamdyn.common.numerics import gauss_rule
 from beamdyn.equations.discretization import Cells, integrals_between_points
 
-_UNIT = np.array([1.0, 0.0, 0.0, 0.0])
+UNIT = np.array([1.0, 0.0, 0.0, 0.0])  # quaternion of no rotation
 _NEXT = np.array([1, 2, 0])  # cyclic successor of each component, for vector products in few operations
 _ITERATIONS = 30  # iterations of Picard's method, enough for a turn by 2 pi
 _CONVERGED = 4 * float(np.finfo(float).eps)  # change of a quaternion below which the iteration has converged
@@ -28,16 +28,10 @@ def skew(a: np.ndarray) -> np.ndarray:
     return matrix - matrix.swapaxes(0, 1)
 
 
-def _products_of_quaternions() -> np.ndarray:
-    """Build the multiplication table (4, 4, 4) of quaternions: two factors, then the product."""
-    products = np.zeros((4, 4, 4))
-    products[0] = products[:, 0] = np.eye(4)
-    products[1:, 1:, 0], products[1:, 1:, 1:] = -np.eye(3), -skew(np.eye(3))
-    return products
-
-
-_PRODUCT = _products_of_quaternions()
-_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # linear map y -> y (0, a), per component of a
+_PRODUCT = np.zeros((4, 4, 4))  # multiplication table of quaternions: two factors, then the product
+_PRODUCT[0] = _PRODUCT[:, 0] = np.eye(4)
+_PRODUCT[1:, 1:, 0], _PRODUCT[1:, 1:, 1:] = -np.eye(3), -skew(np.eye(3))
+_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # y -> y (0, a), per component of a
 _TURNING = np.einsum(  # rotation matrices a -> y (0, a) y*, per product of two components of a quaternion y
     "ajc,b,cbi->abij", _PRODUCT[:, 1:], [1.0, -1.0, -1.0, -1.0], _PRODUCT[..., 1:]
 ).reshape(16, 9)
@@ -48,29 +42,19 @@ def turn(R: np.ndarray, a: np.ndarray) -> np.ndarray:
     return np.einsum("...abj,...bj->...aj", R, a)
 
 
-def turn_back(R: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Multiply the transposes of matrices (..., 3, 3, N) with vectors (..., 3, N)."""
-    return np.einsum("...baj,...bj->...aj", R, a)
-
-
 def turn_tensors(R: np.ndarray, tensors: np.ndarray) -> np.ndarray:
-    """Turn tensors (3, 3, N) by rotations (..., 3, 3, N): R tensor R^T."""
-    half = np.einsum("...abj,bcj->...acj", R, tensors)
+    """Turn tensors by rotations, which are broadcast, (..., 3, 3, N) each: R tensor R^T."""
+    half = np.einsum("...abj,...bcj->...acj", R, tensors)
     return np.einsum("...acj,...dcj->...adj", half, R)
 
 
 def turn_law(R: np.ndarray, law: np.ndarray) -> np.ndarray:
     """Rotate stiffness or mass matrices of sections (6, 6, N) by rotations (3, 3, N)."""
-    turned = np.empty_like(law)
-    for i in (slice(0, 3), slice(3, 6)):
-        for j in (slice(0, 3), slice(3, 6)):
-            turned[i, j] = turn_tensors(R, law[i, j])
-    return turned
+    blocks = law.reshape(2, 3, 2, 3, -1).swapaxes(1, 2)
+    return turn_tensors(R, blocks).swapaxes(1, 2).reshape(law.shape)
 
 
-def integrate_curvature(
-    cells: Cells, curvature: np.ndarray, kinks: np.ndarray, root: np.ndarray = _UNIT
-) -> np.ndarray:
+def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) -> np.ndarray:
     """Integrate a curvature to rotations from the root to the Gauss points of cells and to the tip.
 
     The unit quaternion of R' = R skew(curvature) satisfies a linear equation, y' = y (0, curvature)/2, which
@@ -85,8 +69,6 @@ def integrate_curvature(
         Twist rate and curvatures in the turned axes, per x/L, at the points.
     kinks : ndarray, shape (c, 4)
         Unit quaternions by which the axes turn where each of the c cells begins.
-    root : ndarray, shape (..., 4), optional
-        Unit quaternions by which the root has turned.
 
     Returns
     -------
@@ -102,11 +84,10 @@ def integrate_curvature(
     halves, shape = np.diff(cells.ends) / 4, curvature.shape[:-2]
     rates = np.moveaxis(curvature.reshape(-1, 3, len(halves), cells.points) * halves[:, None], 1, -1)
     within, across = _collocate(rates, integrals_between_points(cells.points), gauss_rule(cells.points)[1])
-    root = np.broadcast_to(root, (*shape, 4)).reshape(-1, 4)
-    starts, turned = [root], product(kinks[:, None], within)
+    starts = [np.tile(UNIT, (len(rates), 1))]
     for step in np.moveaxis(product(kinks, across), 1, 0):
         starts.append(product(starts[-1], step))
-    turned = product(np.stack(starts[:-1], axis=1)[:, :, None], turned)
+    turned = product(product(np.stack(starts[:-1], axis=1), kinks)[:, :, None], within)
     every = np.concatenate([turned.reshape(len(rates), -1, 4), starts[-1][:, None]], axis=1)
     return rotation_matrices(every).reshape(*shape, 3, 3, -1)
 
@@ -123,23 +104,15 @@ def _collocate(rates: np.ndarray, A: np.ndarray, b: np.ndarray) -> tuple[np.ndar
     y = np.concatenate([np.cos(angle), turns * np.sinc(angle / np.pi)], axis=-1)
     for _ in range(_ITERATIONS):
         before, slope = y, np.einsum("scja,scjab->scjb", y, operators)
-        y = _UNIT + A @ slope
+        y = UNIT + A @ slope
         if np.abs(y - before).max() <= _CONVERGED:
-            return y, _UNIT + b @ slope
-    p = len(A)
-    matrix = -A[:, None, :, None] * np.moveaxis(operators, 4, 2)[:, :, None]
-    matrix = matrix.reshape(*rates.shape[:2], 4 * p, 4 * p)
-    matrix[..., np.arange(4 * p), np.arange(4 * p)] += 1.0
-    unit = np.broadcast_to(np.tile(_UNIT, p)[:, None], (*matrix.shape[:3], 1))
-    y = np.linalg.solve(matrix, unit).reshape(y.shape)
-    return y, _UNIT + b @ np.einsum("scja,scjab->scjb", y, operators)
-
-
-def quaternion_about(axis: int, angle: np.ndarray | float) -> np.ndarray:
-    """Build the unit quaternions (..., 4) of rotations by angles (...) [rad] about axis 0, 1 or 2."""
-    turned = np.zeros((*np.shape(angle), 4))
-    turned[..., 0], turned[..., 1 + axis] = np.cos(np.divide(angle, 2)), np.sin(np.divide(angle, 2))
-    return turned
+            break
+    else:
+        size = 4 * len(A)
+        feedback = np.einsum("ij,scjab->scibja", A, operators).reshape(*rates.shape[:2], size, size)
+        y = np.linalg.solve(np.eye(size) - feedback, np.tile(UNIT, len(A))[:, None]).reshape(y.shape)
+        slope = np.einsum("scja,scjab->scjb", y, operators)
+    return y, UNIT + b @ slope
 
 
 def quaternions_by_vectors(vectors: np.ndarray) -> np.ndarray:
@@ -159,8 +132,3 @@ def rotation_matrices(y: np.ndarray) -> np.ndarray:
     squares = (y[..., None] * y[..., None, :]).reshape(-1, 16)
     matrices = squares @ _TURNING / squares[:, ::5].sum(axis=1, keepdims=True)
     return np.moveaxis(matrices.reshape(*y.shape[:-1], 3, 3), 1, -1)
-
-
-def longer_semi_axis(c: np.ndarray) -> np.ndarray:
-    """Compute the longer semi-axis (...) of the ellipses Re(c exp(i phi)) over phi, c of shape (d, ...)."""
-    return np.sqrt(((np.abs(c) ** 2).sum(axis=0) + np.abs((c * c).sum(axis=0))) / 2)

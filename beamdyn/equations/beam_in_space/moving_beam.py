@@ -18,8 +18,9 @@ Arrays over N + 1 + k stations have the N Gauss points of the strains, the tip a
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -32,8 +33,7 @@ from beamdyn.equations.root_motion import RootMotion
 _AT_REST = np.zeros(3)
 
 
-@dataclass(frozen=True)
-class Carrier:
+class Carrier(NamedTuple):
     """Motion of the carrier, in axes that turn with it, at one time or several.
 
     Parameters
@@ -44,9 +44,13 @@ class Carrier:
         Acceleration of the root, less gravity [m/s2].
     """
 
-    turning: np.ndarray = field(default_factory=_AT_REST.copy)
-    turning_rate: np.ndarray = field(default_factory=_AT_REST.copy)
-    root_acceleration: np.ndarray = field(default_factory=_AT_REST.copy)
+    turning: np.ndarray = _AT_REST
+    turning_rate: np.ndarray = _AT_REST
+    root_acceleration: np.ndarray = _AT_REST
+
+    def at(self, times: int | slice) -> Carrier:
+        """Select the motion at one time, or some, of those along the first axis."""
+        return Carrier(self.turning[times], self.turning_rate[times], self.root_acceleration[times])
 
     @classmethod
     def of_root(cls, axis: np.ndarray, root: RootMotion) -> Carrier:
@@ -106,11 +110,9 @@ class MovingBeam(FieldsOnly):
         tangent_rate = cross(turning_rate[..., :-1], bent.tangents) + straining
         tangent_rate += cross(w, self._tangent_rate + strained[0]) + bent.shortening_rate(self.rates)
         turning, turning_rate = (stations.of_all(each) for each in (self._turning, turning_rate))
-        W, W_rate, root = (each[..., None] for each in vars(self.carrier).values())
-        of_lever = cross(turning, masses.lever)
-        relative = (
-            stations.to_all(tangent_rate) + cross(turning_rate, masses.lever) + cross(turning, of_lever)
-        )
+        W, W_rate, root = (each[..., None] for each in self.carrier)
+        lever, of_lever = masses.lever, cross(turning, masses.lever)
+        relative = stations.to_all(tangent_rate) + cross(turning_rate, lever) + cross(turning, of_lever)
         carried = cross(W_rate, masses.centre) + root
         carried = carried + cross(W, cross(W, masses.centre) + 2 * (self.velocity + of_lever))
         F = masses.mass * (relative + carried)

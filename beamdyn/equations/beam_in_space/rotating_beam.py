@@ -9,10 +9,9 @@ derivative by the coordinates, the gyroscopic matrix per speed is E - E^T.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import NamedTuple
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -23,7 +22,7 @@ from beamdyn.equations.beam_in_space import bent_beam
 from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
 from beamdyn.equations.beam_in_space.finite_rotations import turn, turn_law, turn_tensors
 from beamdyn.equations.beam_in_space.moving_beam import Carrier, MovingBeam
-from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses
+from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, StationForces
 from beamdyn.equations.beam_in_space.tip_forces import TipForces, forces_at_tip
 from beamdyn.equations.discretization import CLAMPED, FIXED, ArcQuadrature, Discretization, RootConditions
 from beamdyn.equations.equations_of_motion import Equations, Shape, SteadyPencil
@@ -40,80 +39,63 @@ from beamdyn.scene.sections import offset_components
 
 _AXES = np.eye(3)
 _KEPT = 4  # number of states of the beam that are cached
-_HINGES = "curvature", "second curvature"  # strains of the fields whose functions turn the root
+_SIGNS = 1.0, 1.0, 1.0, -1.0, -1.0, 1.0  # -1 of strains whose fields turn sections about a negative axis
 # Directions of the deflection in the names of a bent beam's blocks.
 _DIRECTIONS = "in the direction of bending", "across"
 _ROOT: tuple[Quantity, ...] = "root_axial", "root_transverse", "root_across"
+QUANTITIES: tuple[Quantity, ...] = "speed_squared", "acceleration", *_ROOT  # those that load the beam
 
 
-class _Strain(NamedTuple):
-    """The strain that a field causes: name, order of derivative by x, conditions at the root, and sign."""
-
-    name: str
-    order: int
-    conditions: RootConditions
-    sign: float = 1.0
-
-
-def _strains_of_fields(scene: Scene) -> dict[str, _Strain]:
-    """Find the strain that each field causes; a sign of -1 where it turns sections about a negative axis."""
+def _strains_of_fields(scene: Scene) -> dict[str, tuple[int, int, RootConditions]]:
+    """Find the strain that each field causes: place in `STRAINS`, order of the derivative by x, root."""
     mount, warps = scene.mount, scene.modelled_beam.warping_stiffness is not None
     torsion = CLAMPED if warps else FIXED
     resists = "warping_stiffness" if warps else "torsion_stiffness"
     return {
-        "bending": _Strain("curvature", 2, Bending().conditions(mount)),
-        "second bending": _Strain("second curvature", 2, SecondBending().conditions(mount), -1.0),
-        "shear": _Strain("shear", 1, Shear().conditions(mount)),
-        "second shear": _Strain("second shear", 1, SecondShear().conditions(mount)),
-        "stretch": _Strain("stretch", 1, FIXED._replace(stiffness="axial_stiffness")),
-        "torsion": _Strain("twist rate", 1, torsion._replace(stiffness=resists), -1.0),
+        "bending": (5, 2, Bending().conditions(mount)),
+        "second bending": (4, 2, SecondBending().conditions(mount)),
+        "shear": (1, 1, Shear().conditions(mount)),
+        "second shear": (2, 1, SecondShear().conditions(mount)),
+        "stretch": (0, 1, FIXED._replace(stiffness="axial_stiffness")),
+        "torsion": (3, 1, torsion._replace(stiffness=resists)),
     }
-
-
-def axis_of_rotation(scene: Scene) -> np.ndarray:
-    """Compute the axis (3,) of positive rotation of the carrier along e1, e2, e3."""
-    (c, s), (cosine, sine) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
-    return -np.array([sine, cosine * s, cosine * c])
 
 
 def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear: Equations) -> RotatingBeam:
     """Assemble the equations of a scene for large deflection in space, over those of the straight beam."""
     beam = scene.modelled_beam
     quadrature, spaces = ArcQuadrature(discretization.cells(beam)), discretization.spaces(beam)
-    stations, length = BeamStations(quadrature, beam.length, beam.lumps[0]), beam.length
-    functions = np.zeros((linear.size, 6, len(quadrature.xi)))
-    known, slopes = _strains_of_fields(scene), np.zeros((linear.size, stations.sections + 1))
-    hinges = np.zeros((linear.size, 3))
+    stations, xi, n = BeamStations(quadrature, beam.length, beam.lumps[0]), quadrature.xi, linear.size
+    functions, known = np.zeros((n, 6, len(xi))), _strains_of_fields(scene)
+    hinges, slopes = np.zeros((n, 3)), np.zeros((n, stations.sections))
     for name, place in linear.blocks.items():
-        strain = known[name]
-        of_field = spaces.functions(strain.conditions)
-        along = of_field.evaluate(quadrature.xi, strain.order)
-        functions[place, bent_beam.STRAINS.index(strain.name)] = strain.sign * along / length**strain.order
-        if strain.name in _HINGES:
-            turn_of_root = of_field.evaluate(np.zeros(1), 1)[:, 0] / length
-            hinges[place, bent_beam.STRAINS.index(strain.name) - 3] = strain.sign * turn_of_root
-        if strain.name == "curvature":
-            slopes[place] = of_field.evaluate(np.concatenate([[0.0], quadrature.xi, [1.0]]), 1) / length
+        component, order, conditions = known[name]
+        of_field, sign = spaces.functions(conditions), _SIGNS[component]
+        functions[place, component] = sign * of_field.evaluate(xi, order) / beam.length**order
+        if order == 2:  # its functions turn the root
+            at_root, *turned = of_field.evaluate(np.array([0.0, *xi, 1.0]), 1).T / beam.length
+            hinges[place, component - 3] = sign * at_root
+            slopes[place] += (sign > 0) * np.array(turned).T
     if beam.matrices is None:
         # Stretch is added to bending, so that the lines through the centres of tension keep their lengths.
-        offset, across = _tension(beam, quadrature.xi)
+        offset, across = _tension(beam, xi)
         functions[:, 0] += offset * functions[:, 5] - across * functions[:, 4]
     curvature, kinks = curve_of_axis(beam, quadrature)
-    nothing = np.zeros((linear.size, linear.size))
     model = bent_beam.BeamInSpace(
         stations,
         _masses(scene, stations),
-        np.concatenate([np.zeros((3, len(quadrature.xi))), curvature]),
+        np.concatenate([np.zeros_like(curvature), curvature]),
         functions,
         linear.matrices[0]["unity"],
-        linear.matrices[1].get("unity", nothing),
-        *_fibres(beam, quadrature.xi),
+        linear.matrices[1].get("unity", np.zeros((n, n))),
+        *_fibres(beam, xi),
         kinks,
         None if np.isinf(scene.mount.root_stiffnesses).all() else hinges,
-        slopes[:, 1:],
+        slopes,
     )
-    load = forces_at_tip(scene, model.at(np.zeros(linear.size)))
-    rotating = RotatingBeam(model, linear, axis_of_rotation(scene), load)
+    (c, s), (cosine, sine) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
+    axis, load = -np.array([sine, cosine * s, cosine * c]), forces_at_tip(scene, model.at(np.zeros(n)))
+    rotating = RotatingBeam(model, linear, axis, load)
     return rotating if beam.matrices is None else _with_law(rotating, scene, discretization)
 
 
@@ -124,30 +106,21 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
     xi = model.stations.quadrature.xi
     law = turn_law(_turned_sections(beam, xi)[..., :-1], beam.matrices.at("stiffness", xi))
     if isinstance(discretization, Ritz) and not discretization.on_each_segment:
-        linear = _with_blocks_of(linear, discretization.functions)
-        strains = [bent_beam.STRAINS.index(_strains_of_fields(scene)[name].name) for name in linear.blocks]
-        model = replace(model, functions=_strains_by_forces(model, law, discretization.functions)[strains])
-        model = replace(model, functions=model.functions.reshape(linear.size, *law.shape[1:]), slopes=None)
+        size = discretization.functions
+        blocks = {name: slice(k * size, (k + 1) * size) for k, name in enumerate(linear.blocks)}
+        shapes = {name: Shape(name, np.eye(size)) for name in blocks}
+        linear = replace(linear, blocks=blocks, loads=(), shapes=shapes, sections=(), coarse=None)
+        components = [_strains_of_fields(scene)[name][0] for name in linear.blocks]
+        strains = _strains_by_forces(model, law, size)[components]
+        model = replace(model, functions=strains.reshape(linear.size, *law.shape[1:]), slopes=None)
     K = bent_beam.elastic_stiffness(model.stations, model.functions, law)
-    terms, none = [*terms_of_blocks(linear, "stiffness", K, 0)], np.zeros_like(K)
-    undamped = replace(
-        rotating,
-        beam=replace(model, stiffness=K, damping=none),
-        linear=replace(linear, terms=(*terms,)),
-    )
+    model = replace(model, stiffness=K, damping=np.zeros_like(K))
+    linear = replace(linear, terms=(*terms_of_blocks(linear, "stiffness", K, 0),))
+    undamped = replace(rotating, beam=model, linear=linear)
     if not scene.is_damped:
         return undamped
-    terms += damping_terms(undamped.about_straight, scene)
-    damped = replace(linear, terms=(*terms,))
-    damping = damped.matrices[1]["unity"]
-    return replace(undamped, beam=replace(undamped.beam, damping=damping), linear=damped)
-
-
-def _with_blocks_of(linear: Equations, size: int) -> Equations:
-    """Return equations without terms and loads, whose blocks have the same names and a given size each."""
-    blocks = {name: slice(k * size, (k + 1) * size) for k, name in enumerate(linear.blocks)}
-    shapes = {name: Shape(name, np.eye(size)) for name in blocks}
-    return replace(linear, blocks=blocks, terms=(), loads=(), shapes=shapes, sections=(), coarse=None)
+    linear = replace(linear, terms=(*linear.terms, *damping_terms(undamped.about_straight, scene)))
+    return replace(undamped, beam=replace(model, damping=linear.matrices[1]["unity"]), linear=linear)
 
 
 def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
@@ -157,11 +130,9 @@ def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int
     the sections turn with the axis of the beam.
     """
     xi, unloaded = model.stations.quadrature.xi, model.at(np.zeros(model.size)).rotations[..., :-1]
-    back = np.zeros_like(law)
-    back[:3, :3] = back[3:, 3:] = unloaded.swapaxes(0, 1)
-    compliance = np.linalg.inv(np.moveaxis(law, 2, 0)) @ np.moveaxis(back, 2, 0)
-    each = legendre.legvander(2 * xi - 1, count - 1).T
-    return each[:, None] * np.moveaxis(compliance, 0, 2).swapaxes(0, 1)[:, None]
+    compliance = np.linalg.inv(np.moveaxis(law, 2, 0)).reshape(-1, 6, 2, 3)
+    of_each = np.einsum("jaxb,cbj->xcaj", compliance, unloaded).reshape(law.shape)
+    return of_each[:, None] * legendre.legvander(2 * xi - 1, count - 1).T[:, None]
 
 
 def terms_of_blocks(
@@ -252,48 +223,21 @@ class RotatingBeam(FieldsOnly):
     axis: np.ndarray
     load: TipForces | None = None
 
-    @property
-    def quantities(self) -> tuple[Quantity, ...]:
-        """Quantities of the root's motion that load the beam, such as its acceleration along an axis."""
-        return "speed_squared", "acceleration", *_ROOT
-
-    @property
-    def length(self) -> float:
-        """Length of the beam [m]."""
-        return self.beam.length
-
-    @property
-    def size(self) -> int:
-        """Number n of coordinates."""
-        return self.beam.size
-
-    @property
-    def angles(self) -> np.ndarray:
-        """Measure of changes of the shape per coordinate, shape (n, k): see `BeamInSpace.angles`."""
-        return self.beam.angles
-
-    @property
-    def stiffness(self) -> np.ndarray:
-        """Elastic stiffness matrix, shape (n, n)."""
-        return self.beam.stiffness
-
     @cached_property
     def turning(self) -> dict[Quantity, float]:
-        """Quantities of the root's motion per squared speed of steady rotation, but for those that are 0."""
+        """Values of the quantities of the root's motion per squared speed of steady rotation."""
         root = root_motion(self.linear.mount, MotionSample.steady(1.0))
-        values: dict[Quantity, float] = {name: float(getattr(root, name)) for name in self.quantities}
-        return {name: value for name, value in values.items() if value}
+        return {name: float(getattr(root, name)) for name in QUANTITIES}
+
+    @property
+    def straight(self) -> BentState:
+        """State of the straight beam, without a load at its tip."""
+        return (replace(self, load=None) if self.load else self).at(np.zeros(self.beam.size))
 
     @cached_property
     def about_straight(self) -> Equations:
         """Equations of small motions about the straight beam, without a load at its tip."""
         return self.straight.linearized()
-
-    @cached_property
-    def straight(self) -> BentState:
-        """State of the straight beam, without a load at its tip."""
-        unloaded = self if self.load is None else replace(self, load=None)
-        return unloaded.at(np.zeros(self.size))
 
     def reduced(self, modal: Equations) -> RotatingBeam:
         """Return the beam in the coordinates to which equations about the straight beam were reduced."""
@@ -301,7 +245,7 @@ class RotatingBeam(FieldsOnly):
 
     def basis_of(self, modal: Equations) -> np.ndarray:
         """Compute the basis (n, m) of a reduced model in the coordinates of the beam."""
-        basis = np.zeros((self.size, modal.size))
+        basis = np.zeros((self.beam.size, modal.size))
         for name, place in self.linear.blocks.items():
             shape = modal.shapes[name if name in modal.shapes else f"{name}, {_DIRECTIONS[0]}"]
             basis[place, modal.blocks[shape.block]] = shape.matrix
@@ -312,37 +256,27 @@ class RotatingBeam(FieldsOnly):
         own, rule = self.beam, self.beam.stations.quadrature
         between = other.beam.stations.quadrature.interpolate_to(rule.xi)
         strains = np.tensordot(q, other.beam.functions, 1) @ between.T * np.sqrt(rule.weights)
-        matrix = (own.functions * np.sqrt(rule.weights)).reshape(self.size, -1)
+        matrix = (own.functions * np.sqrt(rule.weights)).reshape(own.size, -1)
         if own.hinges is not None and other.beam.hinges is not None:
             matrix, strains = np.c_[matrix, own.hinges], np.r_[strains.ravel(), q @ other.beam.hinges]
         return np.linalg.lstsq(matrix.T, strains.ravel())[0]
 
     def at(self, q: np.ndarray) -> BentState:
         """Return the state of the beam at coordinates q (..., n); recent states are cached."""
-        key = q.tobytes()
-        if key not in self._kept:
-            if len(self._kept) >= _KEPT:
-                del self._kept[next(iter(self._kept))]
-            self._kept[key] = BentState(self, self.beam.at(q.copy()))
-        return self._kept[key]
+        return self._states(q.tobytes(), q.shape)
 
     @cached_property
-    def _kept(self) -> dict[bytes, BentState]:
-        return {}
-
-    def tip(self, q: np.ndarray) -> np.ndarray:
-        """Compute the position (..., 3) of the tip along e1, e2, e3 [m] at coordinates q (..., n)."""
-        return self.beam.at(q).tip
+    def _states(self) -> Callable[[bytes, tuple[int, ...]], BentState]:
+        return lru_cache(_KEPT)(lambda q, n: BentState(self, self.beam.at(np.frombuffer(q).reshape(n))))
 
     def curvature(self, q: np.ndarray, xi: np.ndarray) -> np.ndarray:
         """Compute the curvature (..., k) [1/m] in the direction of bending, at q (..., n) and xi (k,)."""
-        own = self.beam.functions[:, bent_beam.STRAINS.index("curvature")]
-        return q @ own @ self.beam.stations.quadrature.interpolate_to(xi).T
+        return q @ self.beam.functions[:, -1] @ self.beam.stations.quadrature.interpolate_to(xi).T
 
     def tip_angle(self, q: np.ndarray) -> float:
         """Compute the angle of the tip from e1 [rad] at q (n,); it is signed for one plane only."""
         if self.beam.is_planar:
-            return float(q @ self.angles[:, -1])
+            return float(q @ self.beam.angles[:, -1])
         along = self.beam.at(q).rotations[:, 0, -1]
         return float(np.arctan2(np.hypot(along[1], along[2]), along[0]))
 
@@ -362,84 +296,47 @@ class BentState(FieldsOnly):
     of: RotatingBeam
     bent: bent_beam.BentBeam
 
-    def positions(self, xi: np.ndarray) -> np.ndarray:
-        """Compute the positions (k, 3) along e1, e2, e3 [m] at x/L = xi of shape (k,)."""
-        weights = self.of.length * self.of.beam.stations.quadrature.integrate_to(xi)
-        return weights @ self.bent.tangents.T
+    def under(self, values: Mapping[Quantity, float]) -> bent_beam.Work:
+        """Compute the work of inertial forces under given values of the root's quantities (cached).
 
-    def under(self, values: Mapping[Quantity, float]) -> bent_beam.ForcedBeam:
-        """Load the beam with the inertial forces under given values of the root's quantities (cached)."""
+        The value of "unity" is the share of the load at the tip that acts instead.  Signs are those of the
+        left-hand side of the equations of motion.
+        """
         key = tuple(values.items())
         if key not in self._known:
-            root = np.array([values.get(quantity, 0.0) for quantity in _ROOT])
-            turning = values.get("speed_squared", 0.0), values.get("acceleration", 0.0)
-            self._known[key] = self.bent.under(self.bent.masses.carried(self.of.axis, *turning, root))
+            self._known[key] = self.bent.under(self._forces(values))
         return self._known[key]
 
     @cached_property
-    def _known(self) -> dict[tuple[tuple[Quantity, float], ...], bent_beam.ForcedBeam]:
+    def _known(self) -> dict[tuple[tuple[Quantity, float], ...], bent_beam.Work]:
         return {}
 
-    @cached_property
-    def _loaded(self) -> bent_beam.ForcedBeam | None:
-        """The beam with the load at its tip."""
-        return None if self.of.load is None else self.bent.under(self.of.load.on(self.bent))
-
-    @property
-    def force_at_rest(self) -> np.ndarray:
-        """Generalized elastic force, less that of the load at the tip (n,)."""
-        elastic = self.of.stiffness @ self.q
-        return elastic if self._loaded is None else elastic - self._loaded.work
-
-    @property
-    def stiffness_at_rest(self) -> np.ndarray:
-        """Derivative (n, n) of `force_at_rest`; not symmetric where the load has no potential."""
-        return self.of.stiffness if self._loaded is None else self.of.stiffness - self._loaded.work_change
-
-    def inertia(self, values: Mapping[Quantity, float]) -> np.ndarray:
-        """Compute the generalized inertial force (n,) under given values of the root's quantities."""
-        return self.under(values).work
-
-    def inertia_change(self, values: Mapping[Quantity, float]) -> np.ndarray:
-        """Compute the derivative (n, n) of the generalized inertial force by the coordinates."""
-        return self.under(values).work_change
-
-    def inertia_of(self, quantity: Quantity) -> np.ndarray:
-        """Compute the generalized inertial force (n,) per unit of one quantity of the root's motion."""
-        return self.inertia({quantity: 1.0})
-
-    def stiffness_of(self, quantity: Quantity) -> np.ndarray:
-        """Compute the derivative (n, n) by the coordinates of the inertial force per unit of one quantity."""
-        return self.inertia_change({quantity: 1.0})
+    def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
+        """Compute the forces on the stations, or the share of the load at the tip."""
+        if "unity" in values:
+            assert self.of.load is not None
+            return self.of.load.on(self.bent, -values["unity"])
+        root = np.array([values.get(quantity, 0.0) for quantity in _ROOT])
+        turning = values.get("speed_squared", 0.0), values.get("acceleration", 0.0)
+        return self.bent.masses.carried(self.of.axis, *turning, root)
 
     def work(self, rates: np.ndarray, accelerations: np.ndarray, root: RootMotion) -> np.ndarray:
         """Compute the residual (..., n) of the equations of motion; the arguments have the shape of q."""
         carrier = Carrier.of_root(self.of.axis, root)
         return MovingBeam(self.bent, rates, carrier, self.of.load).residual(accelerations)
 
-    @property
-    def q(self) -> np.ndarray:
-        """Coordinates of this state, shape (..., n)."""
-        return self.bent.q
-
-    @property
-    def mass(self) -> np.ndarray:
-        """Mass matrix at this state, shape (n, n)."""
-        return self.bent.mass
-
     @cached_property
     def gyroscopic(self) -> np.ndarray:
         """Gyroscopic matrix per speed at this state, shape (n, n)."""
-        euler = self.stiffness_of("acceleration")
+        euler = self.under({"acceleration": 1.0}).change
         return euler - euler.T
 
     def steady(self) -> SteadyPencil:
-        """Return the equations of small motions at steady speed, as those of `linearized` are there."""
-        linear, none = self.of.linear, np.zeros((self.of.size, self.of.size))
-        K0, C = (of_order.get("unity", none) for of_order in linear.matrices[:2])
-        K0 = K0 if self._loaded is None else K0 - self._loaded.work_change
-        K2, f2 = self.inertia_change(self.of.turning), -self.force_at_rest - self.inertia(self.of.turning)
-        return SteadyPencil(self.bent.mass, C, self.gyroscopic, K0, K2, f2, linear.shift, linear.planes)
+        """Return the equations of small motions at steady speed, with the inertial forces as their load."""
+        linear, (force, K2) = self.of.linear, self.under(self.of.turning)
+        K0 = linear.matrices[0]["unity"] + (self.under({"unity": 1.0}).change if self.of.load else 0.0)
+        C = linear.matrices[1].get("unity", np.zeros_like(K0))
+        return SteadyPencil(self.bent.mass, C, self.gyroscopic, K0, K2, -force, linear.shift, linear.planes)
 
     def linearized(self) -> Equations:
         """Return the equations of small motions about this state, whose elastic force is among the loads."""
@@ -449,13 +346,12 @@ class BentState(FieldsOnly):
             *terms_of_blocks(linear, "Coriolis coupling", self.gyroscopic, 1, "speed"),
             *(t for t in linear.terms if t.quantity == "unity" and t.order < 2),
         ]
-        if self._loaded is not None:
-            terms += terms_of_blocks(linear, "stiffness by the load at the tip", -self._loaded.work_change, 0)
-        loads = [*self._loads("elastic force", self.force_at_rest, "unity")]
-        for quantity in self.of.quantities:
-            change = self.stiffness_of(quantity)
-            terms += terms_of_blocks(linear, f"stiffness by {quantity}", change, 0, quantity)
-            loads += self._loads(f"load by {quantity}", self.inertia_of(quantity), quantity)
+        loads = [*self._loads("elastic force", self.of.beam.stiffness @ self.bent.q, "unity")]
+        for quantity in QUANTITIES if self.of.load is None else ("unity", *QUANTITIES):
+            cause = "the load at the tip" if quantity == "unity" else quantity
+            work, change = self.under({quantity: 1.0})
+            terms += terms_of_blocks(linear, f"stiffness by {cause}", change, 0, quantity)
+            loads += self._loads(f"load by {cause}", work, quantity)
         shapes, deflections = {}, {}
         for name, place in linear.blocks.items():
             for direction in range(linear.planes):
@@ -463,10 +359,8 @@ class BentState(FieldsOnly):
                 key = name if own and own.direction == direction else f"{name}, {_DIRECTIONS[direction]}"
                 deflections[key] = self._deflection(place, direction)
                 shapes[key] = Shape(name, np.eye(place.stop - place.start))
-        shapes |= {name: shape for name, shape in linear.shapes.items() if name not in shapes}
-        return replace(
-            linear, terms=(*terms,), loads=(*loads,), deflections=deflections, shapes=shapes, coarse=None
-        )
+        shapes, given = linear.shapes | shapes, {"terms": (*terms,), "loads": (*loads,)}
+        return replace(linear, deflections=deflections, shapes=shapes, coarse=None, **given)
 
     def _loads(self, name: str, vector: np.ndarray, quantity: Quantity) -> Iterator[Load]:
         """Split a force of the left-hand side (n,) into loads of the right-hand side, one for each block."""
@@ -475,12 +369,11 @@ class BentState(FieldsOnly):
 
     def _deflection(self, place: slice, direction: int) -> Deflection:
         """Build the deflection in a direction by the coordinates of one block, with its inertial loads."""
-        masses, axis = self.bent.masses, np.array([-_AXES[2], _AXES[1]][direction])
-        by_root = self.bent.work(masses.translated(_AXES[1 + direction]).force)
-        by_turning = -self.bent.work(masses.euler(axis).force)
-        none = np.zeros(place.stop - place.start)
+        axis = np.array([-_AXES[2], _AXES[1]][direction])
+        by_root = self.under({_ROOT[1 + direction]: 1.0}).work[place]
+        by_turning = -self.bent.work(self.bent.masses.carried(axis, acceleration=1.0).force)[place]
         functions = DeflectedFunctions(self.bent, place, direction)
-        return Deflection(functions, by_root[place], by_turning[place], none, direction)
+        return Deflection(functions, by_root, by_turning, np.zeros_like(by_root), direction)
 
 
 @dataclass(frozen=True)
@@ -512,10 +405,9 @@ class DeflectedFunctions(FieldsOnly):
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
         """Evaluate the functions (order 0) or their slopes by x/L (order 1) at xi (k,): shape (n, k)."""
+        if order > 1:
+            raise ValueError("only the deflection and its slope follow a deflected beam")
         stations = self.bent.beam.stations
-        moving = self.bent.displacement_rates[self.place, 1 + self.direction] * stations.length
-        if order == 0:
-            return moving @ stations.quadrature.integrate_to(xi).T
-        if order == 1:
-            return moving @ stations.quadrature.interpolate_to(xi).T
-        raise ValueError(f"order = {order}: give 0, the deflection, or 1, its slope")
+        moving = self.bent.displacement_rates[self.place, 1 + self.direction]
+        rule = stations.quadrature.interpolate_to if order else stations.quadrature.integrate_to
+        return stations.length * moving @ rule(xi).T

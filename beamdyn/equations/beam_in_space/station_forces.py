@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -45,6 +46,10 @@ class BeamStations(FieldsOnly):
     def count(self) -> int:
         """Number N + 1 + k of all stations: Gauss points, tip and point masses."""
         return self.sections + len(self.lumps)
+
+    def to_places(self, xi: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Integrate values (..., N) per length from the root to places x/L = xi (k,): shape (..., k)."""
+        return self.length * values @ self.quadrature.integrate_to(xi).T
 
     @cached_property
     def _to_lumps(self) -> np.ndarray:
@@ -97,23 +102,17 @@ class Masses:
     centre: np.ndarray
     inertia: np.ndarray
 
-    @cached_property
-    def turns(self) -> bool:
-        """Whether any station has a tensor of inertia."""
-        return bool(self.inertia.any())
-
     def turned(self, R: np.ndarray, positions: np.ndarray) -> MassesInSpace:
         """Place the masses at positions (..., 3, N + 1 + k) of the axis, turned by R (..., 3, 3, N + 1)."""
         levers = np.zeros_like(positions)
         levers[..., : self.centre.shape[1]] = turn(R, self.centre)
         inertia = np.zeros((*R.shape[:-1], len(self.mass)))
-        if self.turns:
+        if self.inertia.any():
             inertia[..., : R.shape[-1]] = turn_tensors(R, self.inertia)
         return MassesInSpace(self.mass, positions + levers, levers, inertia)
 
 
-@dataclass(frozen=True)
-class StationForces:
+class StationForces(NamedTuple):
     """Forces on the stations and their change with a small motion: (F, M) = force + tangent (X, W).
 
     Parameters
@@ -150,32 +149,12 @@ class MassesInSpace:
     lever: np.ndarray
     inertia: np.ndarray
 
-    @cached_property
-    def has_levers(self) -> bool:
-        """Whether any centre of mass lies off the axis."""
-        return bool(self.lever.any())
-
-    @cached_property
-    def turns(self) -> bool:
-        """Whether any mass has a tensor of inertia."""
-        return bool(self.inertia.any())
-
-    @cached_property
+    @property
     def matrix(self) -> np.ndarray:
         """Compute the mass matrices (6, 6, N + 1 + k) of the stations."""
-        return self._of_centre(np.eye(3), self.inertia)
-
-    def centrifugal(self, axis: np.ndarray) -> StationForces:
-        """Compute inertial forces per squared speed about a unit axis (3,), and their derivatives."""
-        return self.carried(axis, speed_squared=1.0)
-
-    def euler(self, axis: np.ndarray) -> StationForces:
-        """Compute the inertial forces per angular acceleration about an axis (3,), and their derivatives."""
-        return self.carried(axis, acceleration=1.0)
-
-    def translated(self, direction: np.ndarray) -> StationForces:
-        """Compute inertial forces per acceleration of the root in a direction (3,), and derivatives."""
-        return self.carried(np.zeros(3), root=direction)
+        matrix = self._of_centre(np.eye(3))
+        matrix[3:, 3:] += self.inertia
+        return matrix
 
     def carried(
         self,
@@ -191,39 +170,25 @@ class MassesInSpace:
         """
         about = skew(axis)
         B = speed_squared * about + acceleration * np.eye(3)
-        A, momentum, turning = B @ about, None, np.zeros((3, 3, 1))
-        if self.turns:
-            momentum = np.einsum("abj,b->aj", self.inertia, axis)
-            change = np.einsum("abj,bc->acj", self.inertia, about) - skew(
-                momentum
-            )  # derivative by a rotation
-            turning = np.tensordot(B, change, 1)
-        tangent = self._of_centre(A, turning)
-        forces = self._with_levers(self.mass * (A @ self.centre + root[:, None]), tangent)
-        if momentum is not None:
-            forces.force[3:] += B @ momentum
-        return forces
-
-    def _with_levers(self, F: np.ndarray, tangent: np.ndarray) -> StationForces:
-        """Add to forces at the mass centres their moments about the axis, with their derivatives."""
-        if self.has_levers:
+        F, tangent = self.mass * (B @ about @ self.centre + root[:, None]), self._of_centre(B @ about)
+        M = np.zeros_like(F)
+        if self.inertia.any():
+            momentum = axis @ self.inertia
+            M += B @ momentum
+            tangent[3:, 3:] += np.tensordot(B, about.T @ self.inertia - skew(momentum), 1)
+        if self.lever.any():
+            M += cross(self.lever, F)
             tangent[3:, 3:] += np.einsum("abj,bcj->acj", skew(F), skew(self.lever))
-        moments = cross(self.lever, F) if self.has_levers else np.zeros_like(F)
-        return StationForces(np.concatenate([F, moments]), tangent)
+        return StationForces(np.concatenate([F, M]), tangent)
 
-    def _of_centre(self, A: np.ndarray, turning: np.ndarray) -> np.ndarray:
-        """Build matrices (6, 6, N + 1 + k) of forces and moments by displacements and rotations.
+    def _of_centre(self, A: np.ndarray) -> np.ndarray:
+        """Build matrices (6, 6, N + 1 + k) of forces and moments about the axis by small motions.
 
-        The forces are the mass times A times the displacement of the mass centre, the moments `turning` times
-        the rotation of the section; both are taken about the axis.
+        The forces are the mass times A times the displacement of the mass centre, which is X + W x lever.
         """
         matrix = np.zeros((6, 6, len(self.mass)))
         matrix[:3, :3] = A[..., None] * self.mass
-        matrix[3:, 3:] = turning
-        if self.has_levers:
-            levers = skew(self.lever)
-            by_turning = -np.einsum("abj,bcj->acj", matrix[:3, :3], levers)
-            matrix[:3, 3:] = by_turning
-            matrix[3:, :3] = np.einsum("abj,bcj->acj", levers, matrix[:3, :3])
-            matrix[3:, 3:] += np.einsum("abj,bcj->acj", levers, by_turning)
+        if self.lever.any():
+            matrix[:3, 3:] = -np.einsum("abj,bcj->acj", matrix[:3, :3], skew(self.lever))
+            matrix[3:] = np.einsum("abj,bcj->acj", skew(self.lever), matrix[:3])
         return matrix

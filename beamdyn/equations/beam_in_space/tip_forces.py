@@ -1,12 +1,12 @@
-"""Forces at the tip of a beam in space, of fixed direction or following, and equilibria under them."""
+"""Forces at the tip of a beam in space, which keep their direction or follow the tip."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.equations.beam_in_space.bent_beam import BeamInSpace, BentBeam
+from beamdyn.equations.beam_in_space.bent_beam import BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import skew
 from beamdyn.equations.beam_in_space.station_forces import StationForces
 from beamdyn.scene.mount import aligned_cos_sin
@@ -15,8 +15,7 @@ from beamdyn.scene.scene import Scene
 _NOTHING = np.zeros(3)
 
 
-@dataclass(frozen=True)
-class TipForces:
+class TipForces(NamedTuple):
     """A force and a couple at the tip.
 
     Parameters
@@ -30,8 +29,8 @@ class TipForces:
         they are those in space.  A couple that keeps its direction has no potential.
     """
 
-    force: np.ndarray = field(default_factory=_NOTHING.copy)
-    couple: np.ndarray = field(default_factory=_NOTHING.copy)
+    force: np.ndarray = _NOTHING
+    couple: np.ndarray = _NOTHING
     follows: bool = False
 
     def forces(self, bent: BentBeam) -> np.ndarray:
@@ -43,9 +42,9 @@ class TipForces:
         force[..., stations.sections - 1] = both.reshape(*both.shape[:-2], 6)
         return force
 
-    def on(self, bent: BentBeam) -> StationForces:
-        """Return the load on the stations at one set of coordinates, with the sign of the right-hand side."""
-        force, tip = self.forces(bent), bent.beam.stations.sections - 1
+    def on(self, bent: BentBeam, share: float = 1.0) -> StationForces:
+        """Return a share of the load on the stations at one set of coordinates."""
+        force, tip = share * self.forces(bent), bent.beam.stations.sections - 1
         tangent = np.zeros((6, *force.shape))
         if self.follows:
             tangent[:3, 3:, tip], tangent[3:, 3:, tip] = -skew(force[:3, tip]), -skew(force[3:, tip])
@@ -61,41 +60,3 @@ def forces_at_tip(scene: Scene, unloaded: BentBeam) -> TipForces | None:
     if load.follows:
         axes = unloaded.rotations[..., -1].T @ axes
     return TipForces(axes @ load.force, axes @ load.moment, load.follows)
-
-
-@dataclass(frozen=True)
-class LoadedBeam:
-    """Equilibrium of a beam at rest under p times a load at its tip.
-
-    Parameters
-    ----------
-    beam : BeamInSpace
-        The beam.
-    load : TipForces
-        The load.
-    scale : float
-        Change of p that counts as an angle of 1.
-    """
-
-    beam: BeamInSpace
-    load: TipForces
-    scale: float = 1.0
-
-    @property
-    def angles(self) -> np.ndarray:
-        """Measure of changes of the shape per coordinate, shape (n, k): see `BeamInSpace.angles`."""
-        return self.beam.angles
-
-    def residual(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Compute the elastic force less the load (n,) at coordinates q (n,) and a multiple p of the load."""
-        return self.beam.stiffness @ q + p * self.rate(q, p)
-
-    def jacobian(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Compute the tangent stiffness (n, n); it is not symmetric where the load has no potential."""
-        bent = self.beam.at(q)
-        return self.beam.stiffness - p * bent.work_change(self.load.on(bent))
-
-    def rate(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Compute the derivative of the residual by p, shape (n,)."""
-        bent = self.beam.at(q)
-        return -bent.work(self.load.on(bent).force)

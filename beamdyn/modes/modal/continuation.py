@@ -6,12 +6,16 @@ and by the parameter over its scale (Keller's pseudo-arclength method).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
-from typing import Protocol
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
+
+from beamdyn.equations.beam_in_space.bent_beam import Work
+from beamdyn.equations.beam_in_space.rotating_beam import RotatingBeam
+from beamdyn.equations.root_motion import Quantity
 
 # First, longest and shortest step along a curve, as an arc length (see `_metric`).
 _FIRST, _LONGEST, _SHORTEST = 0.05, 0.2, 1e-7
@@ -24,37 +28,84 @@ _STALLED = 1e-9
 _STRAYED = 0.5  # correction of a step over its length, above which the step may have met another curve
 _LOOSE = 2.0  # largest correction of a step over its length where both sides are known to be on one curve
 _SYMMETRIC = 1e-9  # relative skew-symmetric part of a matrix that counts as rounding
-_NEAR = 1e-4  # step within which a change of stability is taken for a bifurcation, not for another curve
-
-
-class Problem(Protocol):
-    """Equations r(q, p) = 0 of coordinates q (n,) and a parameter p."""
-
-    @property
-    def angles(self) -> np.ndarray:
-        """Slope angles per coordinate (n, k), the measure of changes of the coordinates."""
-        ...
-
-    @property
-    def scale(self) -> float:
-        """Change of the parameter that counts as much as an angle of 1 rad."""
-        ...
-
-    def residual(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Compute the residual r (n,) at coordinates q (n,) and a parameter p."""
-        ...
-
-    def jacobian(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Compute the derivative of r by q, shape (n, n)."""
-        ...
-
-    def rate(self, q: np.ndarray, p: float) -> np.ndarray:
-        """Compute the derivative of r by p, shape (n,)."""
-        ...
+_MOST_TURNS = 20 * np.pi  # angle [rad] by which a load may bend or twist a section
+_NEAR = 1e-4  # arc length within which directions of another sign are a bifurcation, and no other curve
 
 
 class NotConverged(ArithmeticError):
     """Raised when Newton's method finds no solution."""
+
+
+class NoEquilibrium(ArithmeticError):
+    """Raised when the beam has no equilibrium on the branch at this speed.
+
+    Examples
+    --------
+    >>> issubclass(bd.NoEquilibrium, Exception)
+    True
+    """
+
+
+@dataclass(frozen=True)
+class Loading:
+    """Equations r(q, p) = 0 of equilibrium under loads that grow in proportion to a parameter p.
+
+    Parameters
+    ----------
+    elastica : RotatingBeam
+        Equations of motion.
+    growing : dict of str to float
+        Quantities of the root's motion per p, or "unity" for the load at the tip: see `BentState.under`.
+    scale : float
+        Change of p that counts as much as an angle of 1 rad.
+    given : dict of str to float
+        Quantities that act besides, or the load at the tip.
+    """
+
+    elastica: RotatingBeam
+    growing: Mapping[Quantity, float]
+    scale: float = 1.0
+    given: Mapping[Quantity, float] = field(default_factory=dict)
+
+    @property
+    def angles(self) -> np.ndarray:
+        """Slope angles along the beam per coordinate (n, k), the measure of changes of the coordinates."""
+        return self.elastica.beam.angles
+
+    def at(self, q: np.ndarray, p: float) -> Work:
+        """Compute the residual r (n,) at coordinates q (n,) and p, and its derivative (n, n) by q."""
+        state, K = self.elastica.at(q), self.elastica.beam.stiffness
+        force, change = state.under(self.growing)
+        sums = K @ q + p * force, K + p * change
+        return Work(*map(np.add, sums, state.under(self.given)) if self.given else sums)
+
+    def rate(self, q: np.ndarray) -> np.ndarray:
+        """Compute the derivative of the residual by p, shape (n,)."""
+        return self.elastica.at(q).under(self.growing).work
+
+    @cached_property
+    def at_rest(self) -> np.ndarray:
+        """Coordinates (n,) in equilibrium at p = 0: 0 but for a load at the tip, which grows from nothing.
+
+        Raises
+        ------
+        NoEquilibrium
+            If the branch does not reach the whole load.
+        """
+        straight = np.zeros(self.elastica.beam.size)
+        if not self.at(straight, 0.0).work.any():
+            return straight
+        growing = Loading(self.elastica, self.given)
+        try:
+            return reach(growing, start_curve(growing, straight, 0.0, 1.0), [1.0])[0]
+        except NotConverged as error:
+            said = f"the beam was followed to {error.args[1]:.3g} of the load at its tip, and not beyond"
+            raise NoEquilibrium(said) from None
+
+    @cached_property
+    def bends(self) -> bool:
+        """Whether what grows, or a load at the tip, loads the straight beam otherwise than along it."""
+        return bool(self.at_rest.any() or self.rate(self.at_rest).any())
 
 
 @dataclass(frozen=True)
@@ -79,7 +130,7 @@ class Point:
     p_rate: float
 
 
-def solve_at(problem: Problem, q: np.ndarray, p: float) -> np.ndarray:
+def solve_at(load: Loading, q: np.ndarray, p: float) -> np.ndarray:
     """Solve r(q, p) = 0 for q by Newton's method.
 
     Raises
@@ -87,21 +138,21 @@ def solve_at(problem: Problem, q: np.ndarray, p: float) -> np.ndarray:
     NotConverged
         If it does not converge.
     """
-    return _newton(problem, q, p, None)[0]
+    return _newton(load, q, p, None)[0]
 
 
-def start_curve(problem: Problem, q: np.ndarray, p: float, towards: float) -> Point:
+def start_curve(load: Loading, q: np.ndarray, p: float, towards: float) -> Point:
     """Find the direction of a curve at a solution, towards larger (1) or smaller (-1) parameters."""
-    q_rate = -np.linalg.solve(problem.jacobian(q, p), problem.rate(q, p)) * problem.scale
-    return _normalized(problem, q, p, q_rate, 1.0, towards)
+    q_rate = -np.linalg.solve(load.at(q, p).change, load.rate(q)) * load.scale
+    return _normalized(load, q, p, towards * q_rate, towards)
 
 
-def follow(problem: Problem, start: Point, longest: float = _LONGEST, easy: int = _EASY) -> Iterator[Point]:
-    """Yield the points of a curve beyond `start`, in steps adapted to its curvature.
+def follow(load: Loading, start: Point, longest: float = _LONGEST, easy: int = _EASY) -> Iterator[Point]:
+    """Yield the points of a curve beyond `start`, in steps adapted to its curvature, and turning points.
 
     Parameters
     ----------
-    problem : Problem
+    load : Loading
         The equations.
     start : Point
         A point of the curve.
@@ -115,12 +166,12 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST, easy: int 
     NotConverged
         If the curve cannot be followed further.
     """
-    point, step, before = start, _FIRST, count_negative(problem, start.q, start.p)
+    point, step, before = start, _FIRST, count_negative(load, start.q, start.p)
     while True:
         try:
-            following, iterations = advance(problem, point, step)
+            following, iterations = advance(load, point, step)
             # If stability changes other than at a turning point, the point is on another curve.
-            stability = count_negative(problem, following.q, following.p)
+            stability = count_negative(load, following.q, following.p)
             if abs(stability - before) != int(following.p_rate * point.p_rate < 0) and step > _NEAR:
                 raise NotConverged
         except NotConverged:
@@ -128,17 +179,40 @@ def follow(problem: Problem, start: Point, longest: float = _LONGEST, easy: int 
             if step < _SHORTEST:
                 raise
             continue
+        if following.p_rate * point.p_rate < 0:
+            yield find_turning_point(load, point, following)
         point, before = following, stability
         yield point
-        # `longest` times the arc length in which the slope angles change by 1, or the parameter by its size.
-        by_angles, by_parameter = _metric(problem, point.q_rate, 0.0), 1 / (1 + abs(point.p) / problem.scale)
+        # The slope angles change by 1, or the parameter by its size, at least by the smaller of arc lengths.
+        by_angles, by_parameter = _metric(load, point.q_rate, 0.0), 1 / (1 + abs(point.p) / load.scale)
         most = longest * (1 / max(by_angles, by_parameter))
         step = min(most, 1.5 * step) if iterations <= easy else max(step / 2, _SHORTEST)
 
 
-def count_negative(problem: Problem, q: np.ndarray, p: float) -> int:
-    """Count the negative eigenvalues of the Jacobian at a solution: 0 where it is stable, if symmetric."""
-    matrix = problem.jacobian(q, p)
+def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
+    """Compute coordinates (k, n) at parameters, in the order in which a curve meets them.
+
+    Raises
+    ------
+    NotConverged
+        If the curve ends, or turns back, before; its arguments are why, and the parameter at that point.
+    """
+    found, before, towards, why = [], start, np.sign(start.p_rate), "could not be followed beyond"
+    with suppress(NotConverged):
+        for after in follow(load, start):
+            while len(found) < len(goals) and towards * (after.p - goals[len(found)]) >= 0:
+                found.append(find_at(load, before, after, goals[len(found)]))
+            if len(found) == len(goals):
+                return np.array(found)
+            before, why = after, why if after.p_rate else "turns back at"
+            if not after.p_rate or np.abs(after.q @ load.angles).max() > _MOST_TURNS:
+                break
+    raise NotConverged(why, before.p)
+
+
+def count_negative(load: Loading, q: np.ndarray, p: float) -> int:
+    """Number of negative eigenvalues of the Jacobian at a solution: 0 where it is stable, if symmetric."""
+    matrix = load.at(q, p).change
     return int((scaled_eigenvalues(matrix, np.diag(matrix)) < 0).sum())
 
 
@@ -157,91 +231,99 @@ def scaled_eigenvalues(matrix: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
     return np.sort(values.real[values.imag == 0])
 
 
-def advance(problem: Problem, point: Point, step: float, strayed: float = _STRAYED) -> tuple[Point, int]:
+def advance(load: Loading, point: Point, step: float, strayed: float = _STRAYED) -> tuple[Point, int]:
     """Advance along a curve by an arc length; return the number of iterations, too.
 
     A correction larger than the step times `strayed` is refused.
     """
-    q, p = point.q + step * point.q_rate, point.p + step * point.p_rate * problem.scale
-    corrected, p_corrected, iterations = _newton(problem, q, p, point)
-    correction = np.abs((corrected - q) @ problem.angles).max() + abs(p_corrected - p) / problem.scale
+    q, p = point.q + step * point.q_rate, point.p + step * point.p_rate * load.scale
+    corrected, p_corrected, iterations = _newton(load, q, p, point)
+    correction = np.abs((corrected - q) @ load.angles).max() + abs(p_corrected - p) / load.scale
     if correction > strayed * abs(step):
         raise NotConverged
-    A = _bordered(problem, corrected, p_corrected, point)
-    tangent = np.linalg.solve(A, np.append(np.zeros(len(q)), 1.0))
-    return _normalized(problem, corrected, p_corrected, tangent[:-1], tangent[-1], None), iterations
+    across = np.append(np.zeros(len(q)), 1.0)
+    tangent = np.linalg.solve(_bordered(load, corrected, p_corrected, point), across)
+    return _normalized(load, corrected, p_corrected, tangent[:-1], tangent[-1]), iterations
 
 
-def find_turning_point(problem: Problem, before: Point, after: Point) -> Point:
+def find_turning_point(load: Loading, before: Point, after: Point) -> Point:
     """Find the point between two successive points of a curve at which the parameter is extreme."""
-    return _find_between(problem, before, after, lambda point: point.p_rate)
+    return replace(_find_between(load, before, after, lambda point: point.p_rate), p_rate=0.0)
 
 
-def find_at(problem: Problem, before: Point, after: Point, p: float) -> np.ndarray:
+def find_loss_between(load: Loading, before: Point, after: Point) -> float:
+    """Find the parameter between two successive points of a curve at which stability is lost or gained."""
+    from scipy.optimize import brentq  # imported here, because it takes as long to import as all the rest
+
+    diagonal = np.diag(load.at(before.q, before.p).change)
+
+    def least(p: float) -> float:
+        stiffness = load.at(find_at(load, before, after, p), p).change
+        return float(scaled_eigenvalues(stiffness, diagonal)[0])
+
+    return float(brentq(least, before.p, after.p, xtol=1e-14 * after.p))
+
+
+def find_at(load: Loading, before: Point, after: Point, p: float) -> np.ndarray:
     """Find the coordinates at a parameter between two successive points of a curve."""
     if p in (before.p, after.p):
         return before.q if p == before.p else after.q
     share = (p - before.p) / (after.p - before.p)
     between = before.q + share * (after.q - before.q)
-    size = _metric(problem, after.q - before.q, 0.0)
+    size = _metric(load, after.q - before.q, 0.0)
     with suppress(NotConverged):
-        q = solve_at(problem, between, p)
-        if _metric(problem, q - between, 0.0) < size / 2:
+        q = solve_at(load, between, p)
+        if _metric(load, q - between, 0.0) < size / 2:
             return q
-    point = _find_between(problem, before, after, lambda point: (point.p - p) / problem.scale)
-    return solve_at(problem, point.q, p)
+    point = _find_between(load, before, after, lambda point: (point.p - p) / load.scale)
+    return solve_at(load, point.q, p)
 
 
-def _find_between(problem: Problem, before: Point, after: Point, function: Callable[[Point], float]) -> Point:
+def _find_between(load: Loading, before: Point, after: Point, function: Callable[[Point], float]) -> Point:
     """Find the root of a function between two successive points of a curve, along its arc."""
     from scipy.optimize import brentq  # imported here, because it takes as long to import as all the rest
 
-    reach = _metric(problem, after.q - before.q, (after.p - before.p) / problem.scale)
+    reach = _metric(load, after.q - before.q, (after.p - before.p) / load.scale)
 
     def at(step: float) -> Point:
-        return advance(problem, before, step, _LOOSE)[0] if step else before
+        return advance(load, before, step, _LOOSE)[0] if step else before
 
     while function(at(reach)) * function(before) > 0:
         reach *= 1.1
     return at(float(brentq(lambda step: function(at(step)), 0.0, reach)))
 
 
-def _newton(problem: Problem, q: np.ndarray, p: float, point: Point | None) -> tuple[np.ndarray, float, int]:
+def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tuple[np.ndarray, float, int]:
     """Iterate to a solution, at fixed p or in the plane across a curve's direction at `point`."""
     last = np.inf
     for iteration in range(1, _ITERATIONS + 1):
-        r = problem.residual(q, p)
+        r, A = load.at(q, p)
         if point is None:
-            change = np.linalg.solve(problem.jacobian(q, p), -r)
+            change = np.linalg.solve(A, -r)
         else:
-            full = np.linalg.solve(_bordered(problem, q, p, point), np.append(-r, 0.0))
-            change, p = full[:-1], p + full[-1] * problem.scale
+            full = np.linalg.solve(_bordered(load, q, p, point), np.append(-r, 0.0))
+            change, p = full[:-1], p + full[-1] * load.scale
         q = q + change
-        size = float(np.abs(change @ problem.angles).max())
+        size = float(np.abs(change @ load.angles).max())
         if size < _CONVERGED or (size < _STALLED and size > last / 4):
             return q, p, iteration
         last = size
     raise NotConverged
 
 
-def _bordered(problem: Problem, q: np.ndarray, p: float, point: Point) -> np.ndarray:
+def _bordered(load: Loading, q: np.ndarray, p: float, point: Point) -> np.ndarray:
     """Compute the Jacobian by coordinates and scaled parameter, bordered by the direction of the curve."""
-    weights = problem.angles @ (problem.angles.T @ point.q_rate) / problem.angles.shape[1]
-    return np.block(
-        [
-            [problem.jacobian(q, p), problem.rate(q, p)[:, None] * problem.scale],
-            [weights[None, :], np.array([[point.p_rate]])],
-        ]
-    )
+    weights = load.angles @ (load.angles.T @ point.q_rate) / load.angles.shape[1]
+    A, rate = load.at(q, p).change, load.rate(q)[:, None] * load.scale
+    return np.block([[A, rate], [weights[None], np.array([[point.p_rate]])]])
 
 
-def _metric(problem: Problem, q: np.ndarray, p: float) -> float:
+def _metric(load: Loading, q: np.ndarray, p: float) -> float:
     """Compute the arc length of a change: the root mean square of angles, and the scaled parameter."""
-    return float(np.sqrt(np.mean((q @ problem.angles) ** 2) + p**2))
+    return float(np.sqrt(np.mean((q @ load.angles) ** 2) + p**2))
 
 
-def _normalized(
-    problem: Problem, q: np.ndarray, p: float, q_rate: np.ndarray, p_rate: float, towards: float | None
-) -> Point:
-    size = _metric(problem, q_rate, p_rate) * (1.0 if towards is None else np.copysign(1.0, towards * p_rate))
+def _normalized(load: Loading, q: np.ndarray, p: float, q_rate: np.ndarray, p_rate: float) -> Point:
+    """Make a point of a curve whose direction is scaled to an arc length of 1."""
+    size = _metric(load, q_rate, p_rate)
     return Point(q, p, q_rate / size, p_rate / size)

@@ -9,7 +9,7 @@ eigenproblem of their own, which at one speed would be most of the work (`diagon
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -59,6 +59,12 @@ class Eigen:
     eigenvalue: np.ndarray
     vector: np.ndarray
     rounding: np.ndarray
+
+    @classmethod
+    def joined(cls, parts: Iterable[Eigen]) -> Eigen:
+        """Join the modes at some speeds with those at others."""
+        values = zip(*((p.eigenvalue, p.vector, p.rounding) for p in parts), strict=True)
+        return cls(*map(np.concatenate, values))
 
 
 class Eigensolver(ABC):

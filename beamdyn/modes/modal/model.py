@@ -66,10 +66,10 @@ class Model(FieldsOnly):
     @cached_property
     def solver(self) -> Eigensolver:
         """Solver of the eigenproblem at steady speeds."""
-        return self._deflected if self.scene.physics.large_deflection else solver_of(self.equations)
+        return self.deflected if self.scene.physics.large_deflection else solver_of(self.equations)
 
     @cached_property
-    def _deflected(self) -> DeflectedSolver:
+    def deflected(self) -> DeflectedSolver:
         """Eigensolver about equilibria of any deflection."""
         from beamdyn.modes.modal.equilibrium import DeflectedSolver  # imported here, as few scenes need it
 
@@ -87,7 +87,7 @@ class Model(FieldsOnly):
     def coarse_solver(self) -> Eigensolver:
         """Eigensolver of the coarser model that error estimates compare with."""
         if self.scene.physics.large_deflection:
-            return self._deflected.guiding(self.compared.bent)
+            return self.deflected.guiding(self.compared.bent)
         if self.equations.coarse is None:
             return self.coarser.solver
         return solver_of(self.equations, self.equations.coarse)
@@ -109,13 +109,13 @@ class Model(FieldsOnly):
         """Build the equations of small motions at a steady speed [rad/s], about the equilibrium there."""
         if not self.scene.physics.large_deflection:
             return self.equations
-        return self._deflected.equations(np.array([speed]))[0]
+        return self.bent.at(self.deflected.equilibria(np.array([speed]))[0]).linearized()
 
     def static_tips(self, speeds: np.ndarray) -> np.ndarray:
         """Compute static tip deflections [m] at steady speeds [rad/s] in each direction: (S, planes)."""
         if not self.scene.physics.large_deflection:
             return self.solver.solve_static(speeds, self.equations.tips)
-        return self._deflected.tips(speeds)
+        return self.deflected.tips(speeds)
 
     def over_strip(self, along: int, across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Compute mesh points over a strip: x [m] (n,), eta from 1 to -1 (k,), and y = -eta b/2 [m] (n, k).
