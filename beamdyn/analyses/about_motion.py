@@ -22,6 +22,7 @@ from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.varying import Folder
 from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.plots.export import animate
+from beamdyn.steady.best_resistance import ROUGH, sought
 
 if TYPE_CHECKING:
     from beamdyn.common.results.result import Result
@@ -141,10 +142,19 @@ def _roughness(road: str | None, highest: str | None) -> bd.RoadRoughness | None
     return None if road is None else bd.RoadRoughness(road, **limit)
 
 
+def _resistance_sooner(
+    scene: bd.Scene, road: str | None = None, highest: str | None = None, **options: Any
+) -> Result:
+    """Try few resistances, as a preliminary answer."""
+    given = {"discretization": "ritz", **options, "tolerance": _ROUGH, "road": _roughness(road, highest)}
+    return sought(ROUGH, scene, **given)
+
+
 @analysis(
     'beamdyn best-resistance examples/bimorph.toml --speed "55 rad/s"',
     'beamdyn best-resistance examples/bimorph.toml --speed "90 km/h" --road A',
     screen="Best resistance",
+    sooner=_resistance_sooner,
     about_scene=_HARVESTER,
 )
 def best_resistance(

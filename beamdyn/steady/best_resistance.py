@@ -20,13 +20,31 @@ from beamdyn.common.results.statements import announced
 from beamdyn.linear.spectra import RoadRoughness
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.steady.harvest import Harvest, HarvestedPowers, electrodes_of, harvest
+from beamdyn.steady.harvest import ElectricLines, Harvest, electrodes_of, harvest
 from beamdyn.steady.response import steady_response
 from beamdyn.steady.road_harvest import check_road, harvest_on_road
 
-_DECADES, _GRID = 4.0, 33  # decades and number of resistances tried first, on either side of 1/(omega C)
+_DECADES = 4.0  # decades over which resistances are tried first, on either side of 1/(omega C)
 _WIDTH, _HEIGHT = 7.5, 4.8  # width and height of the picture [inch]
-_TOLERANCE = 1e-6  # relative accuracy to which the best resistance is sought
+
+
+@dataclass(frozen=True)
+class ResistanceSearch:
+    """How the best resistance is sought.
+
+    Parameters
+    ----------
+    tried : int
+        Number of resistances that are tried first.
+    tolerance : float
+        Relative accuracy to which the best one is refined.
+    """
+
+    tried: int = 33
+    tolerance: float = 1e-6
+
+
+FULL, ROUGH = ResistanceSearch(), ResistanceSearch(9, 1e-2)  # of an answer, and of a preliminary one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,6 +139,19 @@ def best_resistance(
     >>> 1e3 < best.resistance < 1e7  # ohm
     True
     """
+    return sought(FULL, scene, speed, modes, tolerance, discretization, road)
+
+
+def sought(
+    search: ResistanceSearch,
+    scene: Scene,
+    speed: float,
+    modes: int | str,
+    tolerance: float,
+    discretization: DiscretizationChoice,
+    road: RoadRoughness | None,
+) -> BestResistance:
+    """Find the best load resistance, by a search; otherwise as `best_resistance`."""
     start = perf_counter()
     check_scene(scene)
     electrodes = electrodes_of(scene)
@@ -141,14 +172,14 @@ def best_resistance(
     def lost(decade: float) -> float:
         resistance = 10.0 ** float(decade)
         other = replace(request, scene=with_resistance(request.scene, resistance))
-        tried[resistance] = float(HarvestedPowers.of(other).power[0])
+        tried[resistance] = float(ElectricLines.of(other).power[0])
         if road is not None:
             asked = other.scene, electrodes_of(other.scene), other.speeds, response.stable, road
             on_road, _ = harvest_on_road(*asked, request.basis.modes, discretization, response.amplitude)
             tried[resistance] += float(on_road.power[0])
         return -tried[resistance]
 
-    grid = np.linspace(middle - _DECADES, middle + _DECADES, _GRID)
+    grid = np.linspace(middle - _DECADES, middle + _DECADES, search.tried)
     lowest = [lost(each) for each in grid]
     k = int(np.argmin(lowest))
     if not lowest[k] < 0:
@@ -156,8 +187,8 @@ def best_resistance(
         if electrodes.coupling == 0:
             bound, remedy = "the layers do not couple: no voltage follows", "give e31 or d31"
         raise InvalidValue("speed", speed, bound, remedy, "rad/s")
-    bounds = grid[max(k - 1, 0)], grid[min(k + 1, _GRID - 1)]
-    best = minimize_scalar(lost, bounds=bounds, method="bounded", options={"xatol": _TOLERANCE / 3})
+    bounds = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
+    best = minimize_scalar(lost, bounds=bounds, method="bounded", options={"xatol": search.tolerance / 3})
     chosen = with_resistance(scene, 10.0 ** float(best.x))
     found = harvest(chosen, [speed], modes, tolerance, discretization, road)
     resistances, power = np.array(sorted(tried.items())).T

@@ -22,6 +22,7 @@ from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import LIMITS, Statement, announced, unannounced
 from beamdyn.common.words import Named, Words
+from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.harvested import electric_rows, strain_rows
 from beamdyn.linear.spectra import RoadRoughness
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
@@ -336,19 +337,34 @@ def _resonances(scene: Scene, speeds: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class HarvestedPowers:
-    """Mean powers, largest voltage, current and strain, and truncation error of harmonics, at S speeds."""
+class ElectricLines:
+    """The spectral lines of steady motion at S speeds: complex amplitudes of coordinates, voltage, current.
 
-    power: np.ndarray
-    input_power: np.ndarray
+    Parameters
+    ----------
+    equations : Equations
+        Equations of the n coordinates.
+    pairs : ndarray, shape (L, 2)
+        Multiples of the speed and of the road's frequency of each line.
+    coordinates, velocity : ndarray, shape (S, n, L)
+        Coordinates, and their rates.
+    voltage, current : ndarray, shape (S, L)
+        Voltage [V] and current [A].
+    truncation : ndarray, shape (S,)
+        Relative error by the harmonics left out.
+    """
+
+    equations: Equations
+    pairs: np.ndarray
+    coordinates: np.ndarray
+    velocity: np.ndarray
     voltage: np.ndarray
     current: np.ndarray
-    strain: np.ndarray
     truncation: np.ndarray
 
     @classmethod
-    def of(cls, request: ResponseRequest) -> HarvestedPowers:
-        """Solve all coordinates of a request's modal basis, and compute powers and largest values."""
+    def of(cls, request: ResponseRequest) -> ElectricLines:
+        """Solve all coordinates of a request's modal basis."""
         motion, speeds = check_steady_state(request.scene.motion), request.speeds
         equations = request.model.modal_equations(request.basis)
         vibration = vibration_of(request.model, request.basis, motion, speeds)
@@ -362,19 +378,46 @@ class HarvestedPowers:
             row.row @ (q if row.order == 0 else velocity)
             for row in electric_rows(equations, request.model.equations, request.scene.beam)
         )
-        static = ~pairs.any(axis=1)
-        halves = np.where(static, 1.0, 0.5)
+        return cls(equations, pairs, q, velocity, voltage, current, truncation)
+
+    @property
+    def halves(self) -> np.ndarray:
+        """Factor (L,) of the mean of a product of two amplitudes: 1 of what is at rest, else 1/2."""
+        return np.where(self.pairs.any(axis=1), 0.5, 1.0)
+
+    @property
+    def power(self) -> np.ndarray:
+        """Mean power (S,) [W]."""
+        return np.real(self.voltage.conj() * self.current) @ self.halves
+
+
+@dataclass(frozen=True)
+class HarvestedPowers:
+    """Mean powers and largest voltage, current and strain at S speeds, with an error of the harmonics."""
+
+    power: np.ndarray
+    input_power: np.ndarray
+    voltage: np.ndarray
+    current: np.ndarray
+    strain: np.ndarray
+    truncation: np.ndarray
+
+    @classmethod
+    def of(cls, request: ResponseRequest) -> HarvestedPowers:
+        """Solve all coordinates of a request's modal basis, and compute powers and largest values."""
+        lines = ElectricLines.of(request)
+        equations, pairs, q, velocity = lines.equations, lines.pairs, lines.coordinates, lines.velocity
         C = equations.matrices[1].get("unity", np.zeros((equations.size, equations.size)))
-        spent = np.real(np.einsum("sil,ij,sjl->sl", velocity.conj(), C, velocity)) @ halves
+        spent = np.real(np.einsum("sil,ij,sjl->sl", velocity.conj(), C, velocity)) @ lines.halves
         rows = strain_rows(equations, request.scene.beam)
         strain = [largest_over_phases(row[None] @ q, pairs) for row in rows]
         return cls(
-            power=np.real(voltage.conj() * current) @ halves,
+            power=lines.power,
             input_power=spent,
-            voltage=largest_over_phases(voltage[:, None], pairs),
-            current=largest_over_phases(current[:, None], pairs),
+            voltage=largest_over_phases(lines.voltage[:, None], pairs),
+            current=largest_over_phases(lines.current[:, None], pairs),
             strain=np.max(strain, axis=0),
-            truncation=truncation,
+            truncation=lines.truncation,
         )
 
     def apart(self, other: HarvestedPowers) -> np.ndarray:

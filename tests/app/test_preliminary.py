@@ -91,3 +91,13 @@ def test_a_picture_in_haste_has_the_layout_of_the_last_one():
 def test_a_picture_that_another_process_makes_comes_first_in_haste():
     found = first_of("Loads")
     assert found.picture.startswith('<img class="drawing"') and not found.is_whole
+
+
+def test_a_preliminary_best_resistance_is_sought_less_finely():
+    document, screen = SCREENS["Best resistance"]
+    first = first_of("Best resistance")
+    whole = page_tasks.solve(document, screen, document.base_entries, first)
+    assert first.is_rough and isinstance(whole, ShownAnswer)
+    found, best = first.answer.result, whole.answer.result
+    assert found.resistance == pytest.approx(best.resistance, rel=0.03)  # 1e-2 of a decade is 2.3 %
+    assert len(found.resistances) < len(best.resistances) / 2

@@ -159,7 +159,12 @@ class Form:
         made = DragSlider(follow, **ends, step=drag.step, value=at, on_change=lambda e: write(e.value))
         unit = f" [{drag.unit}]" if drag.unit else ""
         made.props(f'dense aria-label="{form_entries.label(entry)}{unit}"').classes("q-px-md")
-        field.on_value_change(lambda: None if (at := place()) is None else made.set_value(at))
+
+        def come() -> None:  # to what has been written into the field; a slider that is held is there already
+            if (at := place()) is not None:
+                (made.set_value(at) if self._held else made.put(at, self._writer))
+
+        field.on_value_change(come)
 
     def _select(self, entry: Input, text: str) -> Any:
         options = {option: option.replace("_", " ") for option in form_entries.options_of(entry)}
@@ -180,7 +185,7 @@ class Form:
             placeholder="" if entry.required else usual,
             on_change=lambda e: self._heard(entry, e.value or ""),
         )
-        field.props("debounce=100 autocomplete=off spellcheck=false" + " autogrow" * several)
+        field.props("debounce=20 autocomplete=off spellcheck=false" + " autogrow" * several)
 
         def tidy() -> None:  # on leaving the field, the text as read replaces the text as typed
             read = self._read(entry.path)
@@ -201,8 +206,8 @@ class Form:
         self.typed[entry.path] = typed
         read, field = self._read(entry.path), self.fields[entry.path]
         self._units[entry.path] = form_entries.unit_of(read.text, entry) or self._units[entry.path]
-        field.props["hint"] = read.remark or form_entries.help_of(entry)
-        field.props["suffix"] = self._units[entry.path] if form_entries.is_bare(field.value or "") else ""
+        _say(field, "hint", read.remark or form_entries.help_of(entry))
+        _say(field, "suffix", self._units[entry.path] if form_entries.is_bare(field.value or "") else "")
         self._changed(entry.path, read.text)
 
     def _read(self, path: str) -> form_entries.Reading:
@@ -265,3 +270,9 @@ class Form:
         self._tables[form_entries.table_of(path)].open()
         if path in self._rest:
             self._rest[path].open()
+
+
+def _say(field: Any, name: str, words: str) -> None:
+    """Change a property of a field, if it differs: the page would be rendered for an equal one as well."""
+    if field.props.get(name, "") != words:
+        field.props[name] = words

@@ -91,8 +91,9 @@ class Header:
     def mark(self, stale: Collection[str], history: History, other: OtherDesign | None) -> None:
         """Show which screens are stale, what can be undone, and which design is compared."""
         for name, tab in self._tabs.items():
-            tab.props["label"] = f"{name} (stale)" if name in stale else name
-            tab.update()
+            label = f"{name} (stale)" if name in stale else name
+            if tab.props["label"] != label:  # an equal one would have the page rendered as well
+                tab.props["label"] = label
         self._undo.set_enabled(history.can_undo)
         self._redo.set_enabled(history.can_redo)
         self._compared.set_visibility(other is not None)

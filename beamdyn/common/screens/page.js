@@ -46,10 +46,11 @@ window.putDesign = (name, design) => {
 // What has been typed, undo and redo, links, width ------------------------------------------------------
 
 // A key stroke in a field is kept until the program has stored it, and its screen is marked until the program
-// has heard it (a field tells what is typed after 0.1 s, one of a list when it is left).  A link that is put
+// has heard it (a field tells what is typed after 20 ms, one of a list when it is left).  A link that is put
 // into the address of an open page is followed.  The keys of undo and redo are passed on after what has been
 // typed, and it is reported when the page becomes narrow or wide.
 window.narrowPage = matchMedia("(max-width: 600px)"); // below it drawings have narrow paper, as in page.css
+const TOLD = 50; // time after which a field has told what is typed [ms]
 let strokes = 0;
 const askAfter = (delay) => {
   const stroke = ++strokes;
@@ -69,7 +70,7 @@ document.addEventListener("input", (event) => {
   keep(sessionStorage, "typed", typed);
   field.closest(".screen").classList.add("typed");
   if (field.closest(".lists")) ++strokes;
-  else askAfter(150);
+  else askAfter(TOLD);
 });
 narrowPage.addEventListener("change", (event) => emitEvent("narrow", event.matches));
 window.addEventListener("hashchange", () => { if (location.hash.length > 1) location.reload(); });
@@ -79,7 +80,7 @@ document.addEventListener("keydown", (event) => {
   const way = key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : "";
   if (!way) return;
   event.preventDefault();
-  setTimeout(() => emitEvent(way), 150);
+  setTimeout(() => emitEvent(way), TOLD);
 });
 
 // While NiceGUI tries to reach the program it shows its element "popup"; these are other words for it.

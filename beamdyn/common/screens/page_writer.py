@@ -41,7 +41,8 @@ class PageWriter:
         Text, content, style, classes and attributes are written, and the text of a field, but no other
         property of a component.
         """
-        if not self.is_ahead:
+        elements = tuple(e for e in elements if "update" not in vars(e))  # others are written further out
+        if not elements or not self.is_ahead:
             yield
             return
         before = {element: _written(element) for element in elements}

@@ -84,7 +84,7 @@ class ScreenView:
         self._holds = False  # whether a slider of the form is held
         self._charted = 0.0  # time at which the charts were shown last [s]
         self._player: Player | None = None
-        self._previews = False  # whether a part of an answer is shown, whose rest comes soon
+        self._previews = False  # whether a part of an answer is shown, or soon will be, whose rest follows
         self._writer = PageWriter(lambda: self.dragged or self._previews or self._plays)
         self._asked: Entries = {}  # entries that were last submitted to be solved
         # Entries for which a picture was requested last; pictures that come with a rough answer do not count.
@@ -195,6 +195,7 @@ class ScreenView:
         elif self._sketch is not None and path in self._choices:
             self._sketch.show(self.work.entries)
         self.form.hide(self.work.idle)
+        self._previews = self._drawn  # the picture comes sooner if the page is not rendered before
         self.solve(held=self._holds)
         if not self._holds:  # while a slider is held, entries are neither stored nor told to other screens
             self._edited()
@@ -258,17 +259,22 @@ class ScreenView:
         if completes and not held:
             self._way.want(partial(self._make, page_tasks.solve, entries, drawn), gives_way=True)
         elif self.screen.picture is not None or (drawn is not None and (held or drawn.rest > SOON)):
-            self._draw_first(entries)
+            self._draw_first(entries, held)
         else:
             self._way.want(partial(self._make, page_tasks.solve, entries))
         self.state()
 
-    def _draw_first(self, entries: Entries) -> None:
-        """Have entries solved as far as the drawing shows them; cancel a picture that is being made."""
+    def _draw_first(self, entries: Entries, held: bool) -> None:
+        """Have entries solved as far as the drawing shows them; cancel a picture of other entries.
+
+        While something is dragged, each picture that has been begun is shown; while text is typed into a
+        field, only the last.
+        """
         if self.screen.picture is not None:
             self._made[0].close()
             self._pictured = {}
-        self._way.want(partial(self._make, page_tasks.solve_for_drawing, entries, self.narrow))
+        start = partial(self._make, page_tasks.solve_for_drawing, entries, self.narrow)
+        self._way.want(start, gives_way=not held)
 
     async def settled(self) -> None:
         """Wait until the present entries have been solved."""
@@ -326,16 +332,17 @@ class ScreenView:
         stale, drawn = self.work.stale(self.screen), self.work.drawn(self.screen)
         failed = bool(self.work.mistakes.get(self.screen.name))
         follows = not failed and ((held and not slow) or (drawn and busy))
-        toggle(self._head, "stale", stale and not follows)
-        toggle(self._good, "greyed", stale and (failed or (slow and not drawn) or not (busy or held)))
-        toggle(self._good, "refused", stale and failed)
         self._busy.show(slow, self._way.words)
         words = _STALE if self._answered else "No result yet."
         state = "Computing. " if busy else "Refused. " if failed else ""
         now = f"{state}{words}" if stale else state.strip() or "Up to date."
         waits = "The drawing follows; the tables wait." if held else "The tables follow."
         waits = f"Preliminary. {waits}" if self._answered and self._answered.is_rough else waits
-        self._status.set_text(waits if follows and (held or stale) else now)
+        with self._writer.writing(self._head, self._good, self._status):
+            toggle(self._head, "stale", stale and not follows)
+            toggle(self._good, "greyed", stale and (failed or (slow and not drawn) or not (busy or held)))
+            toggle(self._good, "refused", stale and failed)
+            self._status.set_text(waits if follows and (held or stale) else now)
         for panel in self._asking:
             panel.state()
 
@@ -379,11 +386,12 @@ class ScreenView:
         answered = self._answered
         if answered is None:
             return
-        with self._writer.writing(self._headline, self._good):
+        with self._writer.writing(self._headline, self._good, self._tables, self._head, self._status):
             self._headline.set_content(headline_of(self.work, self.screen, answered))
             self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
+            toggle(self._tables, "waits", not answered.is_whole)
+            self.state()  # here, since what is written directly must be told together
         self._draw()
-        toggle(self._tables, "waits", not answered.is_whole)
         if answered.picture:
             self._made[0].put(answered.answer, answered.picture)
         elif self.screen.picture is not None and answered.entries != self._pictured:
