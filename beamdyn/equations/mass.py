@@ -97,18 +97,15 @@ def product_by_mass(beam: Beam, spaces: Spaces, rows: RootConditions, columns: R
     return of_sections + product_at_lumps(beam, spaces.functions(rows), spaces.functions(columns))
 
 
-def load_by_mass(beam: Beam, space: Space) -> np.ndarray:
-    """Integrate functions over the mass [kg], shape (n,)."""
-    xi, mass = beam.lumps
-    of_sections = space.load(beam.mass_per_length) * beam.length
-    return of_sections + space.evaluate(xi) @ mass if mass.size else of_sections
-
-
-def first_moment_by_mass(beam: Beam, space: Space) -> np.ndarray:
-    """Integrate functions times the distance from the root over the mass [kg m], shape (n,)."""
+def loads_by_mass(beam: Beam, space: Space) -> tuple[np.ndarray, np.ndarray]:
+    """Integrate functions [kg], and functions times the distance from the root [kg m], over the mass."""
     (xi, mass), length = beam.lumps, beam.length
-    of_sections = space.load(_moment_per_length(beam)) * length**2
-    return of_sections + space.evaluate(xi) @ (mass * xi * length) if mass.size else of_sections
+    load = space.load(beam.mass_per_length) * length
+    moment = space.load(_moment_per_length(beam)) * length**2
+    if not mass.size:
+        return load, moment
+    at_lumps = space.evaluate(xi)
+    return load + at_lumps @ mass, moment + at_lumps @ (mass * xi * length)
 
 
 def product_at_lumps(beam: Beam, rows: Functions, columns: Functions) -> np.ndarray:

@@ -36,7 +36,7 @@ from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.profile import ONE, Profile, combine
 from beamdyn.scene.scene import Scene
-from beamdyn.scene.sections import centrifugal_inertia, section_tensor
+from beamdyn.scene.sections import section_tensor, tip_inertia
 
 _NAME = "torsion"
 _TURNED = FIXED._replace(stiffness="torsion_stiffness")  # conditions of torsion at the root
@@ -118,7 +118,7 @@ def _terms(scene: Scene, space: Space) -> Iterator[Term]:
     if oblique is not None and a1 * a2:
         turned = L * space.gram(oblique, 0)
         yield _term("spin of sections of torsion", turned, "speed_squared", -4 * a1 * a2)
-    B = centrifugal_inertia(tip, beam.tip_twist)
+    B = tip_inertia(tip, beam.tip_twist).centrifugal
     factor = (B[0, 0] - B[1, 1]) * (a1**2 - a2**2) + 4 * B[0, 1] * a1 * a2
     yield _term("spin of the tip body in torsion", turn, "speed_squared", float(factor))
 
@@ -127,7 +127,7 @@ def _loads(scene: Scene, space: Space) -> Iterator[Load]:
     """Yield the loads on torsion, without those of offsets."""
     beam, (a1, a2) = scene.modelled_beam, axis_in_section(scene)
     _, broad, oblique = _inertias(beam)
-    L, B = beam.length, centrifugal_inertia(_tip_body(scene), beam.tip_twist)
+    L, B = beam.length, tip_inertia(_tip_body(scene), beam.tip_twist).centrifugal
     turned = L * space.load(broad) + (B[0, 0] - B[1, 1]) * space.end(0)
     yield Load("twisting by rotation", _NAME, turned, "speed_squared", -a1 * a2)
     if beam.twist is not None:

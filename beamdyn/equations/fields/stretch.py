@@ -14,7 +14,7 @@ from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.bending_and_shear import SecondShear
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
 from beamdyn.equations.fields.transverse import TransverseField, Trial, plane_components
-from beamdyn.equations.mass import first_moment_by_mass, gram_by_mass, load_by_mass, product_by_mass
+from beamdyn.equations.mass import gram_by_mass, loads_by_mass, product_by_mass
 from beamdyn.scene.beam import TipMass
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene
@@ -71,8 +71,9 @@ class Stretch(Field):
         assert beam.axial_stiffness is not None, "a scene with stretch has an axial stiffness"
         end, (cosine, _) = space.end(0), exact_cos_sin(scene.mount.precone)
         M = gram_by_mass(beam, space) + tip.mass * np.outer(end, end)
-        P = load_by_mass(beam, space) + tip.mass * end
-        Q = first_moment_by_mass(beam, space) + tip.mass * (beam.length + tip.offset) * end
+        P, Q = loads_by_mass(beam, space)
+        P = P + tip.mass * end
+        Q = Q + tip.mass * (beam.length + tip.offset) * end
         terms = [
             Term("stretch mass", s, s, 2, M),
             Term("axial stiffness", s, s, 0, space.gram(beam.axial_stiffness, 1) / beam.length),

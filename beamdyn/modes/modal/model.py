@@ -58,7 +58,8 @@ class Model(FieldsOnly):
     @cached_property
     def _of_fields(self) -> Equations:
         """Equations of motion built from the fields of the straight beam."""
-        check_axis(self.scene.beam, self.scene.physics)  # a curved axis needs other equations
+        if self.scene.chooses_physics:  # other scenes have been checked: a curved axis needs other equations
+            check_axis(self.scene.beam, self.scene.physics)
         beam = self.scene.modelled_beam
         scene = replace(self.scene, beam=beam) if self.scene.bends_in_space else self.scene
         return assemble_over(scene, self.discretization.spaces(beam))

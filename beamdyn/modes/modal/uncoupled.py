@@ -199,13 +199,11 @@ class UncoupledSolver(Eigensolver):
         """Whether no part has damping or gyroscopic terms."""
         return all(solver.conservative for solver in self.solvers)
 
-    def quotient_at_rest(self, v: np.ndarray) -> np.ndarray:
-        """Compute the Rayleigh quotients (S,) of vectors (S, n) at rest, part by part."""
-        each = [
-            solver.energies_at_rest(v[:, part]) for part, solver in zip(self.parts, self.solvers, strict=True)
-        ]
-        stiffness, mass = np.sum(each, axis=0)
-        return stiffness / mass
+    def energies_at_rest(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Compute products (S,) of vectors (S, n) with themselves by stiffness at rest, and by mass."""
+        parts = zip(self.parts, self.solvers, strict=True)
+        stiffness, mass = np.sum([solver.energies_at_rest(v[:, part]) for part, solver in parts], axis=0)
+        return stiffness, mass
 
     @cached_property
     def lowest_at_rest(self) -> float:
