@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from beamdyn.common.inputs.checks import MOST, InvalidValue, refuse
-from beamdyn.common.results.digits import percent, told_from
+from beamdyn.common.results.short_text import percent, told_from
 from beamdyn.common.results.statements import (
     EXCITATION,
     INPUT,

@@ -9,16 +9,15 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.plots.campbell import Curves, plot_campbell
-from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.short_text import error_at_most, listed, warned
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words
 from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.left_out_changes import left_out_of_modes, nothing_known
+from beamdyn.modes.model_error.left_out_changes import find_unlisted, left_out_of_modes, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.unlisted_modes import find_unlisted
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 

@@ -25,7 +25,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.mass import PLACES, steady_tension
 from beamdyn.modes.modal.error_estimate import parts_of_distances

@@ -16,12 +16,12 @@ from beamdyn.accuracy.refinement import MODES_OF_MOMENTS
 from beamdyn.common.inputs.checks import real, real_array
 from beamdyn.common.plots.export import write_series
 from beamdyn.common.plots.plots import plot_transient
-from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.short_text import error_at_most, number, warned
 from beamdyn.common.results.statements import TOLERANCE, Statement
 from beamdyn.equations.effects import modelled_directions
-from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES
+from beamdyn.modes.modal.model import SPEED_SAMPLES
 from beamdyn.modes.model_error.effect_choice import warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber

@@ -13,7 +13,7 @@ import beamdyn as bd
 from beamdyn.analyses import analyses
 from beamdyn.cli import commands
 from beamdyn.common.edge import outputs
-from brakes.cli import answering
+from brakes.cli import main as brakes
 from tests.drawn_texts import drawn_texts, overlapping
 
 ROOT = Path(__file__).parents[2]
@@ -81,9 +81,7 @@ def test_examples_in_the_help_of_commands(draw, words):
 
 @pytest.mark.parametrize(("command", "file"), BRAKES)
 def test_brakes(draw, command, file):
-    assert [
-        overlapping(figure) for figure in draw(answering.main, command, str(ROOT / "examples" / file))
-    ] == [[]]
+    assert [overlapping(figure) for figure in draw(brakes, command, str(ROOT / "examples" / file))] == [[]]
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.common.results.digits import told_from
+from beamdyn.common.results.short_text import told_from
 from beamdyn.common.results.statements import MODEL_ERROR
 from benchmarks import solids
 

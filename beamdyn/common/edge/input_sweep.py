@@ -13,11 +13,11 @@ from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.inputs import Section
 from beamdyn.common.edge.varied_inputs import Axis, Coordinate, designs_of, unknown
 from beamdyn.common.inputs.checks import reason_of
-from beamdyn.common.inputs.designs import Designs, VariedInput, part_at, with_parts
+from beamdyn.common.inputs.described import Designs, VariedInput, part_at, with_parts
 from beamdyn.common.parallel.tasks import Task, TaskRunner
 from beamdyn.common.results.columns import Column, Columns, column_named
-from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.result import Result
+from beamdyn.common.results.short_text import counted, warned
 
 MOST_ONE_BY_ONE = 2000  # largest number of designs that are solved one by one, which takes minutes
 _CHUNK = 16  # number of designs in a task

@@ -8,12 +8,12 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.input_sweep import sweep_csv
-from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import View
 from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.results.columns import Column, Columns, column_named, name_in_heads
-from beamdyn.common.results.digits import percent, supported
+from beamdyn.common.results.short_text import percent, supported
 from beamdyn.common.spreading.spread_result import Spread, spread_figure
 from beamdyn.common.spreading.tolerances import Normal
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.short_text import percent
 from beamdyn.common.results.statements import Statement, after
 from beamdyn.common.spreading.first_order import KnownDerivatives, first_order_of, slopes_from
 from beamdyn.common.spreading.spread_result import Spread

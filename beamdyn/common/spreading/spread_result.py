@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.results.digits import supported
-from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import COLOURS, Axes, Figure, new_axes, new_figure
 from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.short_text import counted, supported, warned
 from beamdyn.common.spreading.first_order import FirstOrderRange
 from beamdyn.common.spreading.statistics import Scatter, SobolIndices
 from beamdyn.common.spreading.tolerances import SpreadInput

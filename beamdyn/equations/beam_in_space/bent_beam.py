@@ -37,7 +37,7 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space.finite_rotations import (
     cross,
     integrate_curvature,

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.numerics import gauss_rule
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space import finite_rotations
 from beamdyn.equations.discretization import integrals_between_points
 

@@ -12,8 +12,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
-from beamdyn.modes.modal.uncoupled import solver_of
+from beamdyn.modes.modal.solvers import eigenvalues_over_speeds, solve_over_speeds, solver_of
 from beamdyn.scene.scene import Scene
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models gives no estimate

@@ -7,7 +7,7 @@ from math import inf, pi
 
 import numpy as np
 
-from beamdyn.common.results.digits import percent
+from beamdyn.common.results.short_text import percent
 from beamdyn.common.results.statements import INPUT, Statement
 from beamdyn.studies.beside_data.pairing import NO_MODE, pair
 
