@@ -178,9 +178,7 @@ def __getattr__(name: str) -> Any:
         return sorted(_modules())
     if name not in _modules():
         raise AttributeError(f"module 'beamdyn' has no attribute {name!r}")
-    # Kept here, so that this function is not asked again.
-    found = globals()[name] = getattr(import_module(_modules()[name]), name)
-    return found
+    return getattr(import_module(_modules()[name]), name)
 
 
 def __dir__() -> list[str]:

@@ -54,7 +54,7 @@ READERS = {
     "beamdyn/analyses/about_loads.py",
     "beamdyn/analyses/about_linear_models.py",
     "beamdyn/analyses/about_wanted_answers.py",
-    "beamdyn/analyses/options.py",
+    "beamdyn/analyses/values.py",
     "beamdyn/app/scene_form.py",
     "beamdyn/analyses/about_campbell.py",
     "beamdyn/common/screens/examples.py",

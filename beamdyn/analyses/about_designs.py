@@ -13,19 +13,10 @@ import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, analysis
 from beamdyn.analyses.options import Count, Discretization, FrequencyTolerance, Order, Text
 from beamdyn.analyses.values import in_unit_of, parse_positive, parse_speed, parse_window
+from beamdyn.common.edge.command_options import NO_SPREAD, NOTHING_VARIED, OPTION, SpreadOptions, VaryOptions
 from beamdyn.common.edge.console import at_work
 from beamdyn.common.edge.inputs import Input, Quantity, describe
-from beamdyn.common.edge.varied_inputs import (
-    NO_SPREAD,
-    NOTHING_VARIED,
-    OPTION,
-    SpreadOptions,
-    VaryOptions,
-    designs_of,
-    numbers,
-    parse_axis,
-    parse_spreads,
-)
+from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis, parse_spreads
 from beamdyn.common.inputs.checks import check_used
 from beamdyn.common.inputs.described import MOST_DESIGNS, check_designs
 from beamdyn.common.results.columns import ShownUnit

@@ -15,8 +15,8 @@ from beamdyn.common.edge.config import ConfigError, parse, validated
 from beamdyn.common.edge.data_text import DataText
 from beamdyn.common.edge.inputs import Lines, Quantity, Section, describe, of_file
 from beamdyn.common.plots.axes_and_lines import panels, set_up_axes
+from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import COLOURS, figure_of
-from beamdyn.common.results.short_text import number
 from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.common.screens.screens import Document, FoldedPart, FollowingFile, Screen
 from beamdyn.files.decks.deck import Deck, is_deck, read_deck_text

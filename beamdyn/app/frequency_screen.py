@@ -19,8 +19,8 @@ from beamdyn.common.edge.console import table
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.plots.plots import mark_critical
+from beamdyn.common.results.one_line import known_digits, number
 from beamdyn.common.results.pictures import new_figure
-from beamdyn.common.results.short_text import known_digits, number
 from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus

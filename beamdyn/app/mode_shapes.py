@@ -13,7 +13,7 @@ from beamdyn.app.scene_form import DRAGS, read_at_speed
 from beamdyn.app.scene_screen import scene_screen
 from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.shapes import Drawing
-from beamdyn.common.results.short_text import number
+from beamdyn.common.results.one_line import number
 from beamdyn.common.screens.screen_parts import Drag, KeyResult, Slider
 from beamdyn.equations.effects import words_of_directions
 from beamdyn.modes.model_error.left_out_effects import say_size

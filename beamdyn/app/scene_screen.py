@@ -16,9 +16,9 @@ from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.views import rows_of, tables_of
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.columns import ShownUnit
+from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import number
 from beamdyn.common.results.statements import joined
 from beamdyn.common.screens.screens import Screen
 from beamdyn.modes.model_error import left_out_effects

@@ -22,8 +22,8 @@ from beamdyn.app.scene_screen import left_out_table, scene_screen
 from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.console import table
 from beamdyn.common.plots.axes_and_lines import note_below
+from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import new_figure
-from beamdyn.common.results.short_text import number
 from beamdyn.common.screens.screen_parts import Drag, KeyResult
 from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_effects import say_size

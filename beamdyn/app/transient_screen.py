@@ -21,7 +21,7 @@ from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartBand, ChartCurv
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.edge.inputs import of_file
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.short_text import number
+from beamdyn.common.results.one_line import number
 from beamdyn.common.screens.screen_parts import KeyResult, Slider
 from beamdyn.equations.effects import modelled_directions
 from beamdyn.scene.scene import Scene

@@ -170,6 +170,13 @@ def _sampled_tension(beam: Beam) -> tuple[np.ndarray, np.ndarray]:
     return n_a(PLACES), n_b(PLACES)
 
 
+@lru_cache(maxsize=64)
+def sampled_axial_stiffness(beam: Beam) -> np.ndarray:
+    """Evaluate the axial stiffness [N], which the beam must have, at `PLACES`: shape (101,)."""
+    assert beam.axial_stiffness is not None
+    return beam.axial_stiffness(PLACES)
+
+
 def _add_constant(profile: Profile, constant: float) -> Profile:
     rows = tuple((row[0] + constant, *row[1:]) for row in profile.coefficients)
     return Profile(profile.breakpoints, rows)

@@ -9,8 +9,8 @@ from time import perf_counter
 
 import numpy as np
 
+from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.common.results.short_text import counted
 from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.effects import OmittedEffect, list_left_out
 from beamdyn.equations.explanations import Explanation, SampledScene

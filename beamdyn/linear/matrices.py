@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, real_array, refuse, several
+from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import counted, error_at_most, warned
 from beamdyn.common.results.statements import GROWING, Speeds, Statement, announced_of_plain_beam
 from beamdyn.equations.circuit import BLOCK
 from beamdyn.equations.effects import check_direction

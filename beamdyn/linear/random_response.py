@@ -11,9 +11,9 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, ascending, refuse
 from beamdyn.common.plots.plots import plot_frequency_response
+from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most, number, warned
 from beamdyn.common.results.statements import announced_of_plain_beam
 from beamdyn.linear import inputs_outputs, mean_square, spectra
 from beamdyn.linear.convergence import (

@@ -12,9 +12,9 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import count, kind, positive
 from beamdyn.common.plots.curves import plot_exceedance
+from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most, number, warned
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.loads.stations import UNITS
 from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads, window_in

@@ -11,9 +11,9 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, count, one_of
 from beamdyn.common.plots.curves import plot_along_span
+from beamdyn.common.results.one_line import counted, error_at_most, number, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import counted, error_at_most, number, warned
 from beamdyn.equations.effects import modelled_directions
 from beamdyn.loads.load_rows import STRAIGHT, refuse_uncovered_camber
 from beamdyn.loads.stations import (

@@ -18,8 +18,8 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import THREE_DISCRETIZATIONS, error_of_finest
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
+from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most, number, warned
 from beamdyn.equations.beam_in_space.finite_rotations import longer_semi_axis
 from beamdyn.equations.beam_in_space.rotating_beam import BentState
 from beamdyn.equations.root_motion import root_motion

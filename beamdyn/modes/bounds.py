@@ -15,8 +15,8 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import count, real
+from beamdyn.common.results.one_line import listed, spanned, warned
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.common.results.short_text import listed, spanned, warned
 from beamdyn.common.results.statements import GROWING, NO_ANSWER, Statement, announced_of_plain_beam
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.flexibility import bound_flexibility

@@ -12,8 +12,8 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, within
+from beamdyn.common.results.one_line import error_at_most
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import (
     INPUT,

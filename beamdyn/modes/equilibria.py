@@ -13,9 +13,9 @@ from beamdyn.accuracy.refinement import SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue, one_of, positive, real, within
 from beamdyn.common.plots.plots import plot_branches
 from beamdyn.common.plots.plots_of_shapes import plot_bent_beam
+from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.common.results.short_text import error_at_most, listed, warned
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
 from beamdyn.common.words import Words
 from beamdyn.modes.modal import continuation

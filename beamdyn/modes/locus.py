@@ -14,9 +14,9 @@ from beamdyn.common.inputs.checks import ascending, count, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.plots import plot_locus, plot_locus_by_plane
 from beamdyn.common.results.columns import evenly_spread
+from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import announced
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance

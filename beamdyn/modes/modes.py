@@ -14,8 +14,8 @@ import numpy as np
 from beamdyn.common.inputs.checks import count, real, within
 from beamdyn.common.plots.export import write_shapes
 from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane, plot_surfaces
+from beamdyn.common.results.one_line import error_at_most, listed, states, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most, listed, states, warned
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statement, announced
 from beamdyn.common.words import Words

@@ -13,8 +13,8 @@ from scipy.optimize import brentq
 
 from beamdyn.accuracy.refinement import THREE_DISCRETIZATIONS, error_of_finest
 from beamdyn.common.inputs.checks import InvalidValue, positive
+from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most, listed, warned
 from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement, announced_of_plain_beam
 from beamdyn.common.words import Named, Words
 from beamdyn.equations import effects

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import kind, positive, set_fields, size
-from beamdyn.common.results.short_text import OneLine, counted, number, spanned
+from beamdyn.common.results.one_line import OneLine, counted, number, spanned
 from beamdyn.common.results.snapshots import ADDED_LATER, FieldsOnly
 from beamdyn.scene import input_checks
 from beamdyn.scene.harvester import Electrodes

@@ -18,7 +18,7 @@ from beamdyn.common.inputs.checks import (
     set_fields,
 )
 from beamdyn.common.inputs.described import Described, descriptions
-from beamdyn.common.results.short_text import OneLine, number
+from beamdyn.common.results.one_line import OneLine, number
 from beamdyn.scene.input_checks import warn_of_degrees
 
 _RATIO: Any = {"least": 0, "below": 1, "remedy": "1 % is 0.01"}

@@ -13,10 +13,9 @@ from typing import Annotated, Any, Literal
 from beamdyn.common.inputs.checks import InvalidValue, count, flag, one_of, refuse, set_fields
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.result import Result, plain
-from beamdyn.common.results.short_text import percent
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import TOLERANCE, Statement, joined
-from beamdyn.common.words import Setting, Words
+from beamdyn.common.words import Setting, Words, percent
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import Mount, aligned_cos_sin
 from beamdyn.scene.points import ACROSS, TipLoad

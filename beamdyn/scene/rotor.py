@@ -13,9 +13,9 @@ from beamdyn.common.drawing.layout import Paper, length_text, round_below
 from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol, arc
 from beamdyn.common.drawing.svg import svg_of
+from beamdyn.common.results.one_line import number, warned
 from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.common.results.short_text import number, warned
 from beamdyn.scene.scene import Scene, check_scene
 
 _STATIONS = 41  # number of positions along the beam at which its edge is drawn

@@ -12,7 +12,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, kind, moderate, not_negative, refuse, set_fields
 from beamdyn.common.results.columns import SI_UNITS, DisplayUnits
-from beamdyn.common.results.short_text import OneLine, given_fields, number
+from beamdyn.common.results.one_line import OneLine, given_fields, number
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.words import Named, Setting, Words
 from beamdyn.scene.beam import OFFSETS, Beam

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from beamdyn.common.inputs.checks import MOST, InvalidValue, refuse
-from beamdyn.common.results.short_text import percent, told_from
 from beamdyn.common.results.statements import (
     EXCITATION,
     INPUT,
@@ -19,7 +18,7 @@ from beamdyn.common.results.statements import (
     Statement,
     joined,
 )
-from beamdyn.common.words import Setting, Words
+from beamdyn.common.words import Setting, Words, percent, told_from
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 

@@ -13,9 +13,9 @@ from scipy.optimize import minimize_scalar
 
 from beamdyn.common.inputs.checks import BeyondModel, InvalidValue, real
 from beamdyn.common.plots.harvests import plot_resistances
+from beamdyn.common.results.one_line import error_at_most, number, states, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most, number, states, warned
 from beamdyn.common.results.statements import announced
 from beamdyn.linear.spectra import RoadRoughness
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice

@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.plots.campbell import Curves, plot_campbell
+from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most, listed, warned
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words
 from beamdyn.modes.modal.discretization_choice import choose_model

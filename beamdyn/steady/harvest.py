@@ -17,9 +17,9 @@ from beamdyn.common.plots.harvests import (
     plot_harvest,
     plot_harvest_panels,
 )
+from beamdyn.common.results.one_line import error_at_most, number, states, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most, number, states, warned
 from beamdyn.common.results.statements import LIMITS, Statement, announced, unannounced
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.harvested import electric_rows, strain_rows

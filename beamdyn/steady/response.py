@@ -14,9 +14,9 @@ from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import ascending, count, positive
 from beamdyn.common.plots.plots import plot_response
 from beamdyn.common.results.columns import evenly_spread
+from beamdyn.common.results.one_line import counted, error_at_most, states, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, plain
-from beamdyn.common.results.short_text import counted, error_at_most, states, warned
 from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.results.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement, announced
 from beamdyn.equations.effects import check_direction, modelled_directions

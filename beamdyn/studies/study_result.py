@@ -14,9 +14,9 @@ from beamdyn.common.plots.axes_and_lines import set_up_axes
 from beamdyn.common.plots.curves import curves, mark_missing
 from beamdyn.common.plots.maps import MapAnswer, MapInput, map_size, plot_maps
 from beamdyn.common.results.columns import ShownUnit, evenly_spread
+from beamdyn.common.results.one_line import counted, error_at_most, spanned, warned
 from beamdyn.common.results.pictures import Axes, add_legend
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import counted, error_at_most, spanned, warned
 from beamdyn.common.results.statements import InputValue, Statement, joined
 from beamdyn.common.words import InputName, Part, Words
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError

@@ -11,9 +11,9 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, kind
 from beamdyn.common.numerics import gauss_points_on, gauss_weights_on
 from beamdyn.common.plots.curves import plot_load_over_time
+from beamdyn.common.results.one_line import error_at_most, number
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most, number
 from beamdyn.equations.circuit import Voltage
 from beamdyn.equations.harvested import electric_rows, strain_rows
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable

@@ -22,10 +22,11 @@ from beamdyn.common.inputs import checks
 from beamdyn.common.parallel.tasks import Progress, RunInterrupted, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.plots import plot_sweep
+from beamdyn.common.results.one_line import counted, error_at_most, states, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import counted, error_at_most, states, supported, warned
 from beamdyn.common.results.statements import NO_ANSWER, TOLERANCE, Statement, announced, unannounced
+from beamdyn.common.words import supported
 from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import SPEED_SAMPLES, given_basis

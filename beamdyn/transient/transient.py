@@ -16,9 +16,9 @@ from beamdyn.accuracy.refinement import MODES_OF_MOMENTS
 from beamdyn.common.inputs.checks import real, real_array
 from beamdyn.common.plots.export import write_series
 from beamdyn.common.plots.plots import plot_transient
+from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import error_at_most, number, warned
 from beamdyn.common.results.statements import TOLERANCE, Statement
 from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.model import SPEED_SAMPLES

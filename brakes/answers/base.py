@@ -34,9 +34,9 @@ from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, pa
 from beamdyn.common.inputs.array_checks import solve_possible
 from beamdyn.common.inputs.described import Designs, VariedInput, check_designs, with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
+from beamdyn.common.results.one_line import counted, error_at_most
 from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import Provenance, Result, plain
-from beamdyn.common.results.short_text import counted, error_at_most
 from beamdyn.common.screens.screen_parts import Handle, KeyResult, Slider
 from brakes.answers.tables import format_number
 

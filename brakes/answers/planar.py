@@ -16,9 +16,9 @@ from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import describe
 from beamdyn.common.results.columns import evenly_spread
+from beamdyn.common.results.one_line import error_at_most, rounded_up
 from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import Result, plain
-from beamdyn.common.results.short_text import error_at_most, rounded_up
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.words import Words
 from brakes.answers.base import Answer

@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from beamdyn.common.results.one_line import counted, error_at_most, number, spanned, warned
 from beamdyn.common.results.result import Result, plain
-from beamdyn.common.results.short_text import counted, error_at_most, number, spanned, warned
 from brakes.planar import Position, Stroke
 from brakes.planar.statics import is_answer
 

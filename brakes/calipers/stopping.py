@@ -11,8 +11,8 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, kind, not_negative, one_of, positive
 from beamdyn.common.inputs.described import Described
+from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import number
 from brakes.planar.part import check_inputs
 
 # Limits of braking a two-wheeled vehicle at one wheel: grip of the tyre, and pitching over ----------

@@ -16,8 +16,8 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, not_negative, together
 from beamdyn.common.inputs.checks import InvalidValue, kind, refuse
 from beamdyn.common.results.columns import Meaning
+from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import spanned, warned
 from brakes.chain.lines import BrakeCable, HydraulicLine
 from brakes.chain.pedal import Pedal
 from brakes.common.limits import EDGE, passes, verdict

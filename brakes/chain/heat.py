@@ -26,8 +26,8 @@ from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import kind
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
+from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import spanned, warned
 from brakes.chain.braked import BrakedStop
 from brakes.common.heat import Duty, Fade, repeat_stops, warn_of_pv
 from brakes.vehicle import Stop

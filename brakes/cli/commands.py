@@ -16,18 +16,22 @@ from cyclopts import App, Parameter
 
 from beamdyn._version import __version__
 from beamdyn.common.edge import exit_codes
-from beamdyn.common.edge.console import at_work, console, show
-from beamdyn.common.edge.exit_codes import NoAnswer, examples
-from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, check_folder, write
-from beamdyn.common.edge.varied_inputs import (
+from beamdyn.common.edge.command_options import (
+    NO_FILES,
     NO_SPREAD,
     NOTHING_VARIED,
     OPTION,
     SPREAD,
+    Flag,
+    Outputs,
     SomeFolder,
     SpreadOptions,
     VaryOptions,
+    check_folder,
+    write,
 )
+from beamdyn.common.edge.console import at_work, console, show
+from beamdyn.common.edge.exit_codes import NoAnswer, examples
 from beamdyn.common.results.pictures import save_figure
 from beamdyn.common.screens.app_command import add_command
 from brakes.answers import STANDARD

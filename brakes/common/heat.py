@@ -29,8 +29,8 @@ from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import refuse, set_fields
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
+from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import spanned, warned
 
 _NODES = 20  # nodes of the quadrature between two temperatures of the curve
 _FEWER = 12  # nodes of the coarser quadrature that estimates the error of the finer one

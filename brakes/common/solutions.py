@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.common.results.short_text import number
 
 _LEVEL = 1e-12  # relative difference of two answers that counts as rounding
 

@@ -19,8 +19,8 @@ from beamdyn.common.inputs.array_checks import Numbers, keep_checked, positive, 
 from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
+from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import error_at_most, spanned, warned
 from brakes.common.locking import LEAST_MARGIN
 from brakes.forklift.levers import HasLevers, Levers
 from brakes.vehicle.axles import ACUTE, ROUNDING

@@ -20,8 +20,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from beamdyn.common.inputs.checks import count, kind, positive
+from beamdyn.common.results.one_line import number, warned
 from beamdyn.common.results.result import Result, plain
-from beamdyn.common.results.short_text import number, warned
 from brakes.forklift.duo_servo import DuoServo
 from brakes.planar import (
     GROUND,

@@ -9,8 +9,8 @@ import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.inputs.checks import kind
+from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import spanned, warned
 from brakes.forklift.duo_servo import ShoeMotion
 from brakes.forklift.forces import InternalForces, internal_forces
 from brakes.vehicle import Stop, StopConditions, Truck, stop

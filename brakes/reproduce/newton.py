@@ -15,8 +15,8 @@ from typing import ClassVar
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import positive
+from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import counted, number
 from brakes.forklift import Levers, equilibrium_equations
 
 _TOLERANCE = 1e-12  # tolerance of the largest residual of the equations, in units of T/r and r

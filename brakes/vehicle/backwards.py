@@ -21,8 +21,8 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, not_negative, positive, together
 from beamdyn.common.inputs.checks import kind, one_of
 from beamdyn.common.results.columns import Meaning
+from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import spanned
 from brakes.vehicle.axles import Axle, Braked, Vehicle, other
 from brakes.vehicle.stop import StopConditions
 from brakes.vehicle.truck import Truck

@@ -14,8 +14,8 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, numbers, positive, together
 from beamdyn.common.inputs.checks import kind, one_of, refuse
 from beamdyn.common.results.columns import Meaning
+from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import spanned
 from brakes.vehicle.axles import Axle, Vehicle
 
 _EDGE = 1e-9  # relative difference of two limits that count as equal

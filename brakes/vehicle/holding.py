@@ -20,8 +20,8 @@ from beamdyn.common.inputs.array_checks import Numbers, keep_checked, numbers, t
 from beamdyn.common.inputs.checks import kind, one_of, refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
+from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import spanned
 from brakes.vehicle.axles import ROUNDING, Axle, Braked, Vehicle
 from brakes.vehicle.stop import STANDARD_GRAVITY, STEEPEST, SlopeAngle
 

@@ -25,8 +25,8 @@ from beamdyn.common.inputs.array_checks import Numbers, keep_checked, numbers, p
 from beamdyn.common.inputs.checks import kind, one_of, refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
+from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import spanned, warned
 from brakes.vehicle.axles import Axle, Vehicle, other
 from brakes.vehicle.holding import Road
 from brakes.vehicle.rise import coast, to_rest

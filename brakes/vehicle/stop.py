@@ -34,8 +34,8 @@ from beamdyn.common.inputs.array_checks import Numbers, keep_checked, positive, 
 from beamdyn.common.inputs.checks import kind, one_of, refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
+from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import spanned
 from brakes.common.locking import LEAST_MARGIN
 from brakes.vehicle.axles import ACUTE, ROUNDING
 from brakes.vehicle.rise import to_rest

@@ -11,8 +11,8 @@ from beamdyn.analyses.about_motion import harvest
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.edge.rendering import in_haste
 from beamdyn.common.results.columns import ShownUnit
+from beamdyn.common.results.one_line import few_digits, number
 from beamdyn.common.results.pictures import new_figure
-from beamdyn.common.results.short_text import few_digits, number
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.open_document import ShownAnswer
 from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison

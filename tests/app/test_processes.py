@@ -12,7 +12,7 @@ from contextlib import suppress
 
 import pytest
 
-from beamdyn.common.results.short_text import few_digits, number
+from beamdyn.common.results.one_line import few_digits, number
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.open_document import OpenDocument, ShownAnswer
 from beamdyn.common.screens.page_tasks import outcome_of

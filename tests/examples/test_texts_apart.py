@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 import beamdyn as bd
 from beamdyn.analyses import analyses
 from beamdyn.cli import commands
-from beamdyn.common.edge import outputs
 from brakes.cli import main as brakes
 from tests.drawn_texts import drawn_texts, overlapping
 
@@ -52,7 +51,10 @@ _NO_PICTURE = ("critical", "limits", "matrices", "terms")
 def draw(monkeypatch, tmp_path):
     """Run a command of a program; the pictures that it would write."""
     drawn: list[Figure] = []
-    monkeypatch.setattr(outputs, "save_figure", lambda picture, *_: drawn.append(picture.figure.figure))
+    monkeypatch.setattr(
+        "beamdyn.common.edge.command_options.save_figure",
+        lambda picture, *_: drawn.append(picture.figure.figure),
+    )
     monkeypatch.chdir(ROOT)
 
     def run(main, *words: str) -> list[Figure]:

@@ -15,7 +15,7 @@ import pytest
 
 from beamdyn._version import __version__
 from beamdyn.common.edge.exit_codes import NoAnswer
-from beamdyn.common.results.short_text import rounded_up
+from beamdyn.common.results.one_line import rounded_up
 from brakes.answers.caliper import CALIPER, MECHANISM
 from brakes.calipers import NAMED
 from brakes.cli import main

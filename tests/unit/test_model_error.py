@@ -17,7 +17,7 @@ from beamdyn.cli.commands import main
 from beamdyn.common.edge.console import set_apart, table
 from beamdyn.common.edge.rendering import html
 from beamdyn.common.edge.views import rows_of, tables_of
-from beamdyn.common.results.short_text import count_sure
+from beamdyn.common.words import count_sure
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.model_error.added_effects import shift_eigenvalues
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, say_change

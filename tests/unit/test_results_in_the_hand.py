@@ -21,7 +21,7 @@ from beamdyn.common.edge.console import table
 from beamdyn.common.edge.rendering import csv_text, html
 from beamdyn.common.edge.views import View, rows_of, text_of, view_of
 from beamdyn.common.results.columns import Column, Columns, DisplayUnits
-from beamdyn.common.results.short_text import LONGEST, OneLine, error_at_most, number, spanned
+from beamdyn.common.results.one_line import LONGEST, OneLine, error_at_most, number, spanned
 from beamdyn.common.results.snapshots import fingerprint
 from benchmarks.cases.scenes import HARVESTER, SHORT_SPIN_UP
 from tests.unit.results_of_all_kinds import EXAMPLES_OF_INPUTS, MAKERS, SPEEDS, made, result_classes

@@ -12,7 +12,8 @@ import beamdyn as bd
 from beamdyn.common.edge.console import table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
-from beamdyn.common.results.short_text import rounded_up, supported
+from beamdyn.common.results.one_line import rounded_up
+from beamdyn.common.words import supported
 
 _MOST_PEAKS = 8  # largest number of peaks in a table
 _NO_WIDTH = "-"  # text of a table for a peak without a width

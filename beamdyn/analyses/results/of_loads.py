@@ -14,8 +14,8 @@ import beamdyn as bd
 from beamdyn.common.edge.console import table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import SI_UNITS, Column, Columns
-from beamdyn.common.results.short_text import supported
 from beamdyn.common.results.statements import said_in
+from beamdyn.common.words import supported
 from beamdyn.equations.effects import words_of_directions
 from beamdyn.loads.span_loads import REMEDIES
 from beamdyn.loads.stations import SHOWN, UNITS

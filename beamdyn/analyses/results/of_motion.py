@@ -17,8 +17,8 @@ from beamdyn.common.edge.console import set_apart, table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.pictures import Figure, figure_of
-from beamdyn.common.results.short_text import supported
 from beamdyn.common.results.statements import said_in
+from beamdyn.common.words import supported
 from beamdyn.equations.effects import modelled_directions, words_of_directions
 from beamdyn.scene.motion import RollingWheel
 

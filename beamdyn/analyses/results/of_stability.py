@@ -14,8 +14,7 @@ from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.views import View
 from beamdyn.common.inputs.described import VariedInput
 from beamdyn.common.results.columns import Column, Columns, column_named, evenly_spread, name_in_heads
-from beamdyn.common.results.short_text import supported_or_range
-from beamdyn.common.words import InputName
+from beamdyn.common.words import InputName, supported_or_range
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED
 
 _FEW_POINTS = 7  # number of points of each curve in a table

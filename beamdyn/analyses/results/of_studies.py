@@ -27,8 +27,7 @@ from beamdyn.common.results.columns import (
     name_in_heads,
 )
 from beamdyn.common.results.pictures import Figure, figure_of
-from beamdyn.common.results.short_text import supported
-from beamdyn.common.words import InputName
+from beamdyn.common.words import InputName, supported
 from beamdyn.equations.effects import first_drawn
 
 if TYPE_CHECKING:

@@ -24,7 +24,7 @@ from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderR
 from rich.table import Table
 from rich.text import Text
 
-from beamdyn.common.results.short_text import count_sure, supported
+from beamdyn.common.words import count_sure, supported
 
 if TYPE_CHECKING:
     from rich.progress import Progress

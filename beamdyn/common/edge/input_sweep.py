@@ -16,8 +16,8 @@ from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.inputs.described import Designs, VariedInput, part_at, with_parts
 from beamdyn.common.parallel.tasks import Task, TaskRunner
 from beamdyn.common.results.columns import Column, Columns, column_named
+from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import counted, warned
 
 MOST_ONE_BY_ONE = 2000  # largest number of designs that are solved one by one, which takes minutes
 _CHUNK = 16  # number of designs in a task

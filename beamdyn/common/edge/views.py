@@ -19,9 +19,9 @@ from beamdyn.common.edge.rendering import html, png
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.columns import Columns, meanings
+from beamdyn.common.results.one_line import brief, spanned
 from beamdyn.common.results.pictures import figure_of
 from beamdyn.common.results.result import Result, plain
-from beamdyn.common.results.short_text import brief, spanned
 from beamdyn.common.results.shown_by import SHOWN_BY
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, Self, get_args, get_type_hints
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, one_of
-from beamdyn.common.results.short_text import known_digits, spanned
+from beamdyn.common.results.one_line import known_digits, spanned
 
 # By kind of quantity: how many of each unit make one of the SI unit, which comes first.
 _PER_SI = {

@@ -18,7 +18,7 @@ from beamdyn.common.edge.html_report import further, report_page
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.rendering import csv_text, drawing, html, in_haste, picture, png
 from beamdyn.common.inputs.checks import reason_of
-from beamdyn.common.results.short_text import few_digits
+from beamdyn.common.results.one_line import few_digits
 from beamdyn.common.screens import form_entries
 from beamdyn.common.screens.open_document import OpenDocument, Outcome, ShownAnswer
 from beamdyn.common.screens.processes import TakesTooLong

@@ -16,7 +16,7 @@ from nicegui import ui
 
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.rendering import html
-from beamdyn.common.results.short_text import few_digits
+from beamdyn.common.results.one_line import few_digits
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.chart_board import ChartBoard
 from beamdyn.common.screens.compared_designs import with_other_curves

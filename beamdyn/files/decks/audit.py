@@ -9,8 +9,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import counted, number, warned
 from beamdyn.equations.mass import moments_about_root
 from beamdyn.files.decks.blade import Blade
 from beamdyn.modes.modes import natural_modes

@@ -14,8 +14,8 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.data_text import DataText, named_values, read_data
 from beamdyn.common.inputs.checks import InvalidValue, moderate, not_negative, size
 from beamdyn.common.results.files import check_writable, write_text
+from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import counted, number
 from beamdyn.files.decks import beamdyn_blade, bmodes, csv_table, elastodyn, openfast
 from beamdyn.files.decks.audit import DeckAudit, ModePolynomial, audit, fit_mode_polynomials
 from beamdyn.files.decks.blade import Blade, IgnoredProperty

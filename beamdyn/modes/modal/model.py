@@ -22,7 +22,7 @@ from beamdyn.common.results.statements import OUTSIDE, Statement
 from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.equations.mass import PLACES, steady_tension
+from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.eigenproblem import Eigensolver, Solver
 from beamdyn.modes.modal.solvers import solver_of
@@ -210,7 +210,7 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
     deflection = tips[:, 0] if tips.shape[1] == 1 else np.linalg.norm(tips, axis=1)
     if beam.axial_stiffness is None:
         return deflection, np.full(len(speeds), np.nan)
-    strain = steady_tension(beam, model.scene.mount) / beam.axial_stiffness(PLACES)
+    strain = steady_tension(beam, model.scene.mount) / sampled_axial_stiffness(beam)
     return deflection, np.abs(strain).max() * speeds**2
 
 

@@ -21,9 +21,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from beamdyn.common.results.short_text import percent, told_from
 from beamdyn.common.results.statements import MODEL_ERROR, Statement
-from beamdyn.common.words import Words
+from beamdyn.common.words import Words, percent, told_from
 from beamdyn.modes.model_error.added_effects import ASSUMED_POISSONS_RATIO
 from beamdyn.scene.scene import Scene
 

@@ -12,7 +12,7 @@ from typing import ClassVar, Self
 import numpy as np
 
 from beamdyn.common.inputs.checks import MOST, real_array
-from beamdyn.common.results.short_text import OneLine
+from beamdyn.common.results.one_line import OneLine
 from beamdyn.common.words import Words
 from beamdyn.scene.names_elsewhere import REPEATING, ROLLING_WHEEL
 

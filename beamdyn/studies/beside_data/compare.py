@@ -10,8 +10,8 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn.common.inputs.checks import kind
+from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import number
 from beamdyn.common.results.statements import INPUT, Speeds, Statement, unannounced
 from beamdyn.common.words import Words
 from beamdyn.modes.modes import Modes, natural_modes

@@ -11,8 +11,8 @@ import numpy as np
 from scipy import special  # scipy.stats has these functions, too, but takes long to load
 
 from beamdyn.common.inputs.checks import InvalidValue, count, kind
+from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import number
 from beamdyn.common.results.statements import INPUT, LIMITS, Speeds, Statement
 from beamdyn.common.words import Words
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies

@@ -13,9 +13,9 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, ascending, count, flag, kind, one_of, positive, real
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.results.columns import DisplayUnits
+from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import counted, error_at_most, warned
 from beamdyn.common.results.statements import after
 from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.plots.curves import plot_bars
+from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result, plain
-from beamdyn.common.results.short_text import counted, warned
 from beamdyn.common.results.statements import joined
 from beamdyn.common.words import InputName, Words
 from beamdyn.scene.numbers import with_numbers

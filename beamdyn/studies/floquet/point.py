@@ -13,9 +13,9 @@ import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.stability_charts import plot_exponent, plot_multipliers
+from beamdyn.common.results.one_line import counted, error_at_most, number, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import counted, error_at_most, number, warned
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice

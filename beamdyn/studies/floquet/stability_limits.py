@@ -10,9 +10,9 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
+from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.common.results.short_text import counted, warned
 from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene

@@ -13,9 +13,9 @@ from scipy.optimize import linear_sum_assignment
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.plots.curves import plot_bars
+from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.short_text import counted, number, warned
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.words import InputName
 from beamdyn.modes.repeated import JudgedByRepeating

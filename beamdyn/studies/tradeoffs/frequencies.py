@@ -13,7 +13,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.numerics import assign
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results.short_text import percent
+from beamdyn.common.words import percent
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.effects import LARGE_DEFLECTION, STRETCH
 from beamdyn.equations.fem import Fem

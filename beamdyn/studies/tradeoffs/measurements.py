@@ -15,9 +15,9 @@ from numpy.linalg import LinAlgError
 
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.plots.curves import plot_work_precision
+from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Result
-from beamdyn.common.results.short_text import counted, number
 from beamdyn.common.results.snapshots import ADDED_LATER
 
 _MOST_DIGITS = 14  # largest number of digits in `cost_per_digit`; double precision has 16

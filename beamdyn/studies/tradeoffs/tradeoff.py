@@ -12,9 +12,9 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, count, function, positive, real
 from beamdyn.common.plots.axes_and_lines import panels
+from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result
-from beamdyn.common.results.short_text import counted, warned
 from beamdyn.common.results.statements import OUTSIDE, announced_of_plain_beam, of_kind
 from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
