@@ -3,6 +3,8 @@
 A modal basis has the lowest modes of the beam at rest, or at the slowest and fastest speed of a motion.
 The papers use modes at rest, which converge slowly under rotation.  Modes at the slowest and the fastest
 speed together reproduce the frequencies at both, and nearly those between.
+
+Modes are of a kind (bending, torsion, camber) by the kinetic energy of each.
 """
 
 from __future__ import annotations
