@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from numpy.polynomial import Polynomial
 
     from beamdyn.common.edge.config import ConfigError
-    from beamdyn.common.inputs.designs import VariedInput
+    from beamdyn.common.inputs.described import VariedInput
     from beamdyn.common.parallel.tasks import StudyInterrupted
-    from beamdyn.common.results.display_units import DisplayUnits
+    from beamdyn.common.results.columns import DisplayUnits
     from beamdyn.common.results.result import load
     from beamdyn.common.results.statements import OutsideLinearTheory
     from beamdyn.common.spreading.first_order import FirstOrderRange

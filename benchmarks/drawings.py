@@ -22,8 +22,8 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.drawing.label_places import LabelRequest, Obstacles, place_labels
+from beamdyn.common.drawing.layout import Paper
 from beamdyn.common.drawing.shapes import Arrow, Drawing, Label
-from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.drawing.svg import svg_of
 from beamdyn.common.screens.handles import draw_sheet
 from beamdyn.common.screens.open_document import OpenDocument

@@ -19,8 +19,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.modes.modal.modal_basis import ModalBasis
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import ModalBasis, Model
 from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 from beamdyn.transient.elastica_steps import propagate_elastica
 from benchmarks.rows import Row, show

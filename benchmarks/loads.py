@@ -22,8 +22,7 @@ import beamdyn as bd
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.loads.load_rows import span_rows
 from beamdyn.loads.stations import stations_at
-from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
 from benchmarks.rows import Row, show
 
 LENGTH, WIDTH, THICK, E, RHO, G = 0.5, 0.02, 0.004, 200e9, 7800.0, 9.81

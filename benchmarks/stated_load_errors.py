@@ -25,7 +25,7 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.loads.cycles import TURNING_POINTS
 from beamdyn.loads.load_path import LoadPath
-from beamdyn.modes.modal.modal_basis import ModalBasis, find_speed_range
+from beamdyn.modes.modal.model import ModalBasis, find_speed_range
 from beamdyn.transient.simulate import Transient
 from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show

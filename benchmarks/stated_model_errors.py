@@ -25,7 +25,7 @@ import numpy as np
 import beamdyn as bd
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.additions import Addition, list_effects
+from beamdyn.modes.model_error.added_effects import Addition, list_effects
 from benchmarks.cases.random_physics import (
     random_mount,
     random_physics_beam,

@@ -24,7 +24,7 @@ import numpy as np
 
 import beamdyn as bd
 from beamdyn.common.results.statements import TOLERANCE, of_kind
-from beamdyn.modes.modal.modal_basis import ModalBasis, find_speed_range
+from beamdyn.modes.modal.model import ModalBasis, find_speed_range
 from beamdyn.transient.elastica_system import ElasticaSystem
 from beamdyn.transient.transient import Transient
 from benchmarks.cases.random_physics import random_still_scene

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 import beamdyn as bd
-from beamdyn.modes.modal.modal_basis import ModalBasis
+from beamdyn.modes.modal.model import ModalBasis
 from beamdyn.transient.chunks import SweepRequest, solve_chunk
 from benchmarks.cases.scenes import ROLLING
 from benchmarks.rows import Row, show

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.results.comparison import Comparison
-from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import rounded_up
+from beamdyn.common.words import supported
 from beamdyn.modes.equilibria import equilibrium
 from beamdyn.modes.modes import natural_modes
 from beamdyn.published import load

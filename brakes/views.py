@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from rich.console import Group
 
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.input_sweep import sweep_csv
-from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import View
 from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.results.columns import Column, Columns

@@ -3,8 +3,8 @@
 Writes caliper.png into the current directory.
 """
 
+from beamdyn.common.drawing.layout import Paper
 from beamdyn.common.drawing.on_axes import figure_of
-from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.results.pictures import save_figure
 from brakes import calipers
 from brakes.drawings.caliper import caliper_drawing

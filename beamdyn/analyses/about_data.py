@@ -15,9 +15,8 @@ from beamdyn.analyses.analysis import READ_SECOND, WRITTEN, Answer, AsText, anal
 from beamdyn.analyses.options import Text, none_given
 from beamdyn.analyses.values import in_unit_of, parse_amounts, parse_quantity, parse_speeds
 from beamdyn.common.edge.data_text import DataText
-from beamdyn.common.edge.inputs import describe
+from beamdyn.common.edge.inputs import describe, of_file
 from beamdyn.common.edge.varied_inputs import find_input, numbers
-from beamdyn.common.edge.wording import of_file
 from beamdyn.common.results.files import write_text
 from beamdyn.files.measured_curve_files import Frequency
 from beamdyn.files.measured_data import half_unit, measurements_of

@@ -13,13 +13,13 @@ import beamdyn as bd
 from beamdyn.analyses.analysis import Answer, analysis
 from beamdyn.analyses.options import Count, Discretization, FrequencyTolerance, Order, Text
 from beamdyn.analyses.values import in_unit_of, parse_positive, parse_speed, parse_window
+from beamdyn.common.edge.command_options import NO_SPREAD, NOTHING_VARIED, OPTION, SpreadOptions, VaryOptions
+from beamdyn.common.edge.console import at_work
 from beamdyn.common.edge.inputs import Input, Quantity, describe
-from beamdyn.common.edge.progress import at_work
 from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis, parse_spreads
-from beamdyn.common.edge.varying import NO_SPREAD, NOTHING_VARIED, OPTION, SpreadOptions, VaryOptions
 from beamdyn.common.inputs.checks import check_used
-from beamdyn.common.inputs.designs import MOST_DESIGNS, check_designs
-from beamdyn.common.results.display_units import ShownUnit
+from beamdyn.common.inputs.described import MOST_DESIGNS, check_designs
+from beamdyn.common.results.columns import ShownUnit
 from beamdyn.files.scene_inputs import SceneInput
 from beamdyn.scene.numbers import SCALE, SPEED, paths_of, unit_of
 from beamdyn.studies.answers import NO_ANSWERS

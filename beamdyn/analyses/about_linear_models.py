@@ -14,10 +14,9 @@ import beamdyn as bd
 from beamdyn.analyses.analysis import AsText, analysis
 from beamdyn.analyses.options import AtFinalSpeed, Count, CountOrAuto, Discretization, Named, RoadClass, Text
 from beamdyn.analyses.values import in_unit_of, parse_positive, parse_quantity, parse_speed
-from beamdyn.common.edge.csv_columns import read_csv
-from beamdyn.common.edge.data_text import read_data
+from beamdyn.common.edge.command_options import NO_FILES, Outputs
+from beamdyn.common.edge.data_text import read_csv, read_data
 from beamdyn.common.edge.inputs import Quantity
-from beamdyn.common.edge.outputs import NO_FILES, Outputs
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.linear import inputs_outputs
 from beamdyn.scene.motion import RollingWheel

@@ -29,7 +29,7 @@ from beamdyn.analyses.options import (
 )
 from beamdyn.analyses.results import of_loads
 from beamdyn.analyses.values import parse_quantity, parse_speeds, parse_window
-from beamdyn.common.edge.outputs import write_table
+from beamdyn.common.edge.command_options import write_table
 from beamdyn.common.inputs import checks
 from beamdyn.common.results.files import write_text
 

@@ -14,7 +14,7 @@ import beamdyn as bd
 from beamdyn.analyses import options
 from beamdyn.analyses.analysis import WRITTEN, Answer, Physics, analysis
 from beamdyn.analyses.results.cautions import critical_label, labels_of, warnings_of
-from beamdyn.common.edge.outputs import NO_ANSWER_FILES, NO_FILES, AnswerFiles, Outputs
+from beamdyn.common.edge.command_options import NO_ANSWER_FILES, NO_FILES, AnswerFiles, Outputs
 from beamdyn.common.plots.plots import mark_critical
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.statements import GROWING, OUTSIDE, of_kind
@@ -52,7 +52,10 @@ def equilibrium(
     physics=None,
 )
 def branches(
-    scene: bd.Scene, *, top_speed: options.PositiveSpeed, discretization: options.Discretization = "ritz"
+    scene: bd.Scene,
+    *,
+    top_speed: options.PositiveSpeed,
+    discretization: options.Discretization = "ritz",
 ) -> bd.EquilibriumBranches:
     """Branches of equilibria over speed: where the beam buckles, and where an equilibrium turns back.
 

@@ -16,12 +16,11 @@ from beamdyn.analyses.analysis import WRITTEN, Answer, AsText, analysis
 from beamdyn.analyses.results.cautions import notes_of
 from beamdyn.analyses.results.of_motion import time_of_peak, transient_table
 from beamdyn.analyses.values import at_most, parse_positive, parse_window
+from beamdyn.common.edge.command_options import NO_FILES, Folder, Outputs
+from beamdyn.common.edge.console import at_work
 from beamdyn.common.edge.exit_codes import Interrupted
-from beamdyn.common.edge.outputs import NO_FILES, Outputs
-from beamdyn.common.edge.progress import at_work
-from beamdyn.common.edge.varying import Folder
-from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.plots.export import animate
+from beamdyn.common.results.columns import evenly_spread
 from beamdyn.steady.best_resistance import ROUGH, sought
 
 if TYPE_CHECKING:

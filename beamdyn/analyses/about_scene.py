@@ -8,8 +8,8 @@ import beamdyn as bd
 from beamdyn.analyses.analysis import analysis
 from beamdyn.analyses.options import Count, Text, none_given, positive
 from beamdyn.analyses.values import parse_speed
-from beamdyn.common.edge.outputs import NO_ANSWER_FILES, AnswerFiles
-from beamdyn.common.edge.progress import at_work
+from beamdyn.common.edge.command_options import NO_ANSWER_FILES, AnswerFiles
+from beamdyn.common.edge.console import at_work
 
 MeasuredEnd = Annotated[float | None, positive("s", absent=none_given)]
 Budget = Annotated[float, positive("s", default="60 s")]

@@ -13,10 +13,10 @@ from beamdyn.analyses.analysis import Answer, analysis
 from beamdyn.analyses.options import Discretization, ModeCount
 from beamdyn.analyses.results.of_stability import chart_table
 from beamdyn.analyses.values import in_unit_of
+from beamdyn.common.edge.command_options import OPTION, Folder
+from beamdyn.common.edge.command_options import Workers as _Workers
 from beamdyn.common.edge.varied_inputs import parse_axis
-from beamdyn.common.edge.varying import OPTION, Folder
-from beamdyn.common.edge.varying import Workers as _Workers
-from beamdyn.common.evenly_spread import evenly_spread
+from beamdyn.common.results.columns import evenly_spread
 from beamdyn.scene.numbers import SPEED, number_at
 
 _FREQUENCY = "motion.frequency"

@@ -15,9 +15,9 @@ from cyclopts import Parameter
 from beamdyn.analyses.results.cautions import describe_choice, describe_left_out, noted, warnings_of
 from beamdyn.analyses.values import check_moves, in_unit_of
 from beamdyn.common.edge import exit_codes
+from beamdyn.common.edge.command_options import NO_FILES, Files, Outputs, on_axes, write
+from beamdyn.common.edge.console import show
 from beamdyn.common.edge.html_report import Question, Report
-from beamdyn.common.edge.outputs import NO_FILES, Files, Outputs, on_axes, write
-from beamdyn.common.edge.tables import show
 from beamdyn.common.edge.views import picture_of, rows_of, tables_of
 from beamdyn.common.results.pictures import Axes
 from beamdyn.files.scenes import load_scene

@@ -15,7 +15,7 @@ from cyclopts import Parameter, Token
 import beamdyn as bd
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.units import InvalidInput, quantity
-from beamdyn.common.results.display_units import known_unit
+from beamdyn.common.results.columns import known_unit
 from beamdyn.files.scenes import as_velocity
 from beamdyn.scene.motion import RollingWheel
 

@@ -18,12 +18,11 @@ from beamdyn.analyses.analysis import READ_SECOND, Analysis, Answer, meanings_in
 from beamdyn.analyses.results.cautions import noted
 from beamdyn.app.scene_form import ASIDE, COARSE, read_aside, read_scene
 from beamdyn.app.scene_screen import scene_screen
+from beamdyn.common.edge.command_options import Files
 from beamdyn.common.edge.data_text import DataText
 from beamdyn.common.edge.file_words import in_files
-from beamdyn.common.edge.inputs import Lines, Section, parts_of
-from beamdyn.common.edge.outputs import Files
+from beamdyn.common.edge.inputs import Lines, Section, of_file, parts_of
 from beamdyn.common.edge.views import picture_of
-from beamdyn.common.edge.wording import of_file
 from beamdyn.common.results.one_line import warned
 from beamdyn.common.results.pictures import figure_of
 from beamdyn.common.results.result import Result

@@ -13,8 +13,7 @@ import numpy as np
 from beamdyn.app.scene_form import first_frequency
 from beamdyn.common.edge.config import ConfigError, parse, validated
 from beamdyn.common.edge.data_text import DataText
-from beamdyn.common.edge.inputs import Lines, Quantity, Section, describe
-from beamdyn.common.edge.wording import of_file
+from beamdyn.common.edge.inputs import Lines, Quantity, Section, describe, of_file
 from beamdyn.common.plots.axes_and_lines import panels, set_up_axes
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import COLOURS, figure_of

@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from beamdyn.app.scene_form import inputs_of
-from beamdyn.common.drawing.layout import round_below
+from beamdyn.common.drawing.layout import Rows, round_below
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
-from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch, wall
 
 _DEEP = 0.012  # depth of the drawn beam, over its length

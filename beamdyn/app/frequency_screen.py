@@ -14,8 +14,8 @@ from beamdyn.analyses.results.cautions import critical_label, notes_of, warnings
 from beamdyn.app.scene_form import COARSE, coarser, read
 from beamdyn.app.scene_screen import brief, scene_screen, tables_with_choice
 from beamdyn.app.sweeps import frequency_outputs, sweeps_of
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
-from beamdyn.common.edge.tables import table
+from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
+from beamdyn.common.edge.console import table
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.plots.plots import mark_critical

@@ -11,8 +11,8 @@ from beamdyn import natural_modes
 from beamdyn.app.drawings import bent_beam, bent_strip
 from beamdyn.app.scene_form import DRAGS, read_at_speed
 from beamdyn.app.scene_screen import scene_screen
+from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.shapes import Drawing
-from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.results.one_line import number
 from beamdyn.common.screens.screen_parts import Drag, KeyResult, Slider
 from beamdyn.equations.effects import words_of_directions

@@ -11,7 +11,7 @@ import numpy as np
 from beamdyn import draw as draw_rotor
 from beamdyn.app.scene_form import first_frequency, read_scene
 from beamdyn.app.scene_screen import scene_screen
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.scene.rotor import RotorDrawing
 

@@ -15,7 +15,7 @@ from beamdyn.common.edge.config import validated
 from beamdyn.common.edge.inputs import Input, Quantity, Section, WholeNumber, describe
 from beamdyn.common.edge.units import unit_as_written
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.display_units import known_unit
+from beamdyn.common.results.columns import known_unit
 from beamdyn.common.screens.screen_parts import Drag, Preset
 from beamdyn.files.scene_inputs import MatricesInput, RectangularInput, SceneInput, StiffnessInput
 from beamdyn.files.scenes import scene_from_dict

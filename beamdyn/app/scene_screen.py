@@ -11,11 +11,11 @@ from rich.console import RenderableType
 from beamdyn.analyses.results.cautions import describe_choice, notes_of, warnings_of
 from beamdyn.app.drawings import sketch
 from beamdyn.app.scene_form import DRAGS, EFFORT, PRESETS, SCENE_TABLES
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.file_words import in_files
-from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import rows_of, tables_of
 from beamdyn.common.plots.axes_and_lines import note_below
-from beamdyn.common.results.display_units import ShownUnit
+from beamdyn.common.results.columns import ShownUnit
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.results.result import Result

@@ -12,7 +12,7 @@ from beamdyn import resonance_speeds, steady_response
 from beamdyn.app.scene_form import read
 from beamdyn.app.scene_screen import brief, scene_screen
 from beamdyn.app.sweeps import steady_outputs, sweeps_of
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve
+from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartBand, ChartCurve
 from beamdyn.common.edge.config import MissingValue
 from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.scene.validity import LARGE_DEFLECTION

@@ -25,7 +25,7 @@ from beamdyn.common.edge.input_sweep import (
 )
 from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.designs import check_designs
+from beamdyn.common.inputs.described import check_designs
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.screens.form_entries import entries_of

@@ -19,8 +19,8 @@ from beamdyn.app.mode_shapes import headline as headline_of_modes
 from beamdyn.app.mode_shapes import quick_headline as quick_headline_of_modes
 from beamdyn.app.scene_form import COARSE, DRAGS, coarser, read_aside, read_at_speed
 from beamdyn.app.scene_screen import left_out_table, scene_screen
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
-from beamdyn.common.edge.tables import table
+from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartCurve, ChartPoints
+from beamdyn.common.edge.console import table
 from beamdyn.common.plots.axes_and_lines import note_below
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import new_figure

@@ -16,10 +16,10 @@ from beamdyn.analyses.results.of_motion import time_of_peak, transient_table
 from beamdyn.app.drawings import bent_beam, drawn_larger
 from beamdyn.app.scene_form import COARSE, coarser, first_frequency, read_aside, read_scene
 from beamdyn.app.scene_screen import brief, left_out_table, scene_screen
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.layout import Rows
+from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.edge.config import MissingValue
-from beamdyn.common.edge.wording import of_file
+from beamdyn.common.edge.inputs import of_file
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.one_line import number
 from beamdyn.common.screens.screen_parts import KeyResult, Slider

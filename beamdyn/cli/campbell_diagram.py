@@ -16,10 +16,10 @@ from beamdyn.analyses.options import Discretization, FrequencyTolerance, ModeCou
 from beamdyn.analyses.results.of_modes import said_of_model
 from beamdyn.analyses.results.of_studies import crossings_columns
 from beamdyn.cli.decks import read_with
+from beamdyn.common.edge.command_options import NO_FILES, Flag, Outputs, write_table
 from beamdyn.common.edge.config import read
 from beamdyn.common.edge.exit_codes import examples
 from beamdyn.common.edge.html_report import Question
-from beamdyn.common.edge.outputs import NO_FILES, Flag, Outputs, write_table
 from beamdyn.files.scenes import load_scene
 
 if TYPE_CHECKING:

@@ -9,9 +9,9 @@ from cyclopts import App, Parameter
 
 from beamdyn.analyses.options import Text
 from beamdyn.analyses.values import parse_quantity, parse_speed
+from beamdyn.common.edge.command_options import Flag, Outputs
+from beamdyn.common.edge.console import show, table
 from beamdyn.common.edge.exit_codes import examples, warn
-from beamdyn.common.edge.outputs import Flag, Outputs
-from beamdyn.common.edge.tables import show, table
 from beamdyn.common.results.files import check_writable, write_text
 from beamdyn.files.decks.deck import read_deck
 from beamdyn.files.decks.deck_tables import deck_tables

@@ -6,10 +6,9 @@ from pathlib import Path
 
 from cyclopts import App
 
+from beamdyn.common.edge.command_options import Flag, SomeFolder, check_folder
+from beamdyn.common.edge.console import console
 from beamdyn.common.edge.exit_codes import NoAnswer, examples
-from beamdyn.common.edge.outputs import Flag, check_folder
-from beamdyn.common.edge.tables import console
-from beamdyn.common.edge.varying import SomeFolder
 from beamdyn.reproduce import compare_all
 
 

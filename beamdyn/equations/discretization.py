@@ -11,7 +11,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.common.numerics import gauss_points_on, gauss_rule, gauss_weights_on, legendre_series
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 

@@ -9,7 +9,7 @@ Derivation and conventions: docs/conventions.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -20,7 +20,7 @@ from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.equations.circuit import BLOCK, Circuit, Voltage, charge_terms, flux_terms
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.fields.field import Deflection, Load, SectionFunctions, Term
-from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
+from beamdyn.equations.root_motion import UNIT_SPEED, Quantity, RootMotion, root_motion
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 
@@ -245,31 +245,19 @@ class Equations:
     @cached_property
     def matrices(self) -> tuple[dict[Quantity, np.ndarray], ...]:
         """Sums of the matrices that each quantity multiplies, for time derivatives of q of orders 0, 1, 2."""
-        return self._sum_terms(self.blocks)
-
-    def _sum_terms(self, blocks: Mapping[str, slice]) -> tuple[dict[Quantity, np.ndarray], ...]:
-        """Sum the matrices of blocks that no term couples with others, and place them in given slices."""
         sums: tuple[dict[Quantity, np.ndarray], ...] = ({}, {}, {})
-        size = sum(place.stop - place.start for place in blocks.values())
         for term in self.terms:
-            if term.rows in blocks:
-                total = sums[term.order].setdefault(term.quantity, np.zeros((size, size)))
-                total[blocks[term.rows], blocks[term.columns]] += term.factor * term.matrix
+            total = sums[term.order].setdefault(term.quantity, np.zeros((self.size, self.size)))
+            total[self.blocks[term.rows], self.blocks[term.columns]] += term.factor * term.matrix
         return sums
 
     @cached_property
     def vectors(self) -> dict[Quantity, np.ndarray]:
         """Sums of the load vectors that each quantity of the root's motion multiplies."""
-        return self._sum_loads(self.blocks)
-
-    def _sum_loads(self, blocks: Mapping[str, slice]) -> dict[Quantity, np.ndarray]:
-        """Sum the load vectors of some blocks, and place them in given slices."""
         sums: dict[Quantity, np.ndarray] = {}
-        size = sum(place.stop - place.start for place in blocks.values())
         for load in self.loads:
-            if load.rows in blocks:
-                total = sums.setdefault(load.quantity, np.zeros(size))
-                total[blocks[load.rows]] += load.factor * load.vector
+            total = sums.setdefault(load.quantity, np.zeros(self.size))
+            total[self.blocks[load.rows]] += load.factor * load.vector
         return sums
 
     def root(self, sample: MotionSample) -> RootMotion:
@@ -290,43 +278,39 @@ class Equations:
 
     @cached_property
     def _steady(self) -> SteadyPencil:
-        return self._pencil(self.matrices, self.vectors)
+        rotating, parts = root_motion(self.mount, UNIT_SPEED), []
+        nothing = np.zeros((self.size, self.size))
+        for of_order in self.matrices:  # constant matrix, and the sum of those that steady rotation adds
+            moving: dict[Quantity, np.ndarray] = {q: A for q, A in of_order.items() if q != "unity"}
+            turning = _sum_over_quantities(moving, rotating, nothing.shape) if moving else nothing
+            parts.append((of_order.get("unity", nothing), turning))
+        (K0, K2), (C, G), (M, _) = parts
+        load = _sum_over_quantities(self.vectors, rotating, (self.size,))
+        return SteadyPencil(M, C, G, K0, K2, load, self.shift, self.planes)
 
     @cached_property
     def separate(self) -> tuple[SteadyPencil, ...]:
         """Equations at steady speed, separately for each set of blocks in `connected`."""
         sizes = {name: place.stop - place.start for name, place in self.blocks.items()}
-        each = [place_blocks({name: sizes[name] for name in names}) for names in self.connected]
-        return tuple(self._pencil(self._sum_terms(own), self._sum_loads(own)) for own in each)
-
-    def _pencil(
-        self, matrices: Sequence[dict[Quantity, np.ndarray]], vectors: dict[Quantity, np.ndarray]
-    ) -> SteadyPencil:
-        """Build the equations at steady speed from the matrices and loads of each quantity."""
-        rotating, parts = root_motion(self.mount, MotionSample.steady(1.0)), []
-        shape = matrices[2]["unity"].shape  # a mass matrix is always present
-        nothing = np.zeros(shape)
-        for of_order in matrices:  # constant matrix, and the sum of those that steady rotation adds
-            moving: dict[Quantity, np.ndarray] = {q: A for q, A in of_order.items() if q != "unity"}
-            turning = _sum_over_quantities(moving, rotating, shape) if moving else nothing
-            parts.append((of_order.get("unity", nothing), turning))
-        (K0, K2), (C, G), (M, _) = parts
-        load = _sum_over_quantities(vectors, rotating, shape[:1])
-        return SteadyPencil(M, C, G, K0, K2, load, self.shift, self.planes)
+        parts = []
+        for names in self.connected:
+            own = place_blocks({name: sizes[name] for name in names})
+            terms = tuple(term for term in self.terms if term.rows in own)
+            loads = tuple(load for load in self.loads if load.rows in own)
+            parts.append(replace(self, blocks=own, terms=terms, loads=loads).steady())
+        return tuple(parts)
 
     @cached_property
     def coupled(self) -> tuple[tuple[str, ...], ...]:
         """Sets of blocks that are coupled by mass or stiffness, without terms of angular acceleration."""
-        return self._connected(t for t in self.terms if t.order != 1 and t.quantity != "acceleration")
+        terms = (t for t in self.terms if t.order != 1 and t.quantity != "acceleration")
+        return replace(self, terms=tuple(terms)).connected
 
     @cached_property
     def connected(self) -> tuple[tuple[str, ...], ...]:
         """Sets of blocks that are coupled by any term."""
-        return self._connected(self.terms)
-
-    def _connected(self, terms: Iterable[Term]) -> tuple[tuple[str, ...], ...]:
         set_of = {name: {name} for name in self.blocks}
-        for term in terms:
+        for term in self.terms:
             joined = set_of[term.rows] | set_of[term.columns]
             set_of.update(dict.fromkeys(joined, joined))
         ordered = (tuple(each for each in self.blocks if each in set_of[name]) for name in self.blocks)

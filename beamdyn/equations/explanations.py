@@ -14,7 +14,7 @@ from beamdyn.equations.root_motion import RootMotion, root_motion
 from beamdyn.scene.motion import MotionSample, SteadyRotation
 from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
-from beamdyn.scene.sections import centrifugal_inertia, section_tensor
+from beamdyn.scene.sections import section_tensor, tip_inertia
 
 _ROUNDING = 1e-15  # rounding error of accelerations, as by that of pi in angles, relative to the largest one
 _SAMPLES = 501  # sampled times before the speed is steady, and as many at steady speed
@@ -177,7 +177,7 @@ def _has_different_inertias(scene: SampledScene) -> bool:
     tip, planes = scene.scene.beam.tip, scene.scene.physics.planes
     if tip is None:
         return False
-    inertia = centrifugal_inertia(tip, scene.scene.modelled_beam.tip_twist)
+    inertia = tip_inertia(tip, scene.scene.modelled_beam.tip_twist).centrifugal
     if scene.scene.mount.precone:
         return bool(inertia[:planes, :planes].any())
     c, s = aligned_cos_sin(scene.scene.mount.bending_angle)
@@ -190,7 +190,7 @@ def _has_oblique_inertia(scene: SampledScene) -> bool:
     (c, s), beam = aligned_cos_sin(scene.scene.mount.bending_angle), scene.scene.modelled_beam
     d, n, xi = np.array([c, -s]), np.array([s, c]), np.linspace(0, 1, 101)
     sections = (d[p] * n[q] * R(xi) for (p, q), R in section_tensor(beam, "rotary_inertia").items())
-    tip = beam.tip and d @ centrifugal_inertia(beam.tip, beam.tip_twist) @ n
+    tip = beam.tip and d @ tip_inertia(beam.tip, beam.tip_twist).centrifugal @ n
     return bool(np.any(sum(sections, np.zeros(1))) or tip)
 
 

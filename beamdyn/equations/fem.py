@@ -11,7 +11,7 @@ import numpy as np
 from skfem import Basis, BilinearForm, ElementLineHermite, ElementLineP2, LinearForm, Mesh, MeshLine
 
 from beamdyn.common.inputs.checks import count, one_of, refuse, set_fields
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.discretization import HINGED, Cells, RootConditions
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile

@@ -97,18 +97,15 @@ def product_by_mass(beam: Beam, spaces: Spaces, rows: RootConditions, columns: R
     return of_sections + product_at_lumps(beam, spaces.functions(rows), spaces.functions(columns))
 
 
-def load_by_mass(beam: Beam, space: Space) -> np.ndarray:
-    """Integrate functions over the mass [kg], shape (n,)."""
-    xi, mass = beam.lumps
-    of_sections = space.load(beam.mass_per_length) * beam.length
-    return of_sections + space.evaluate(xi) @ mass if mass.size else of_sections
-
-
-def first_moment_by_mass(beam: Beam, space: Space) -> np.ndarray:
-    """Integrate functions times the distance from the root over the mass [kg m], shape (n,)."""
+def loads_by_mass(beam: Beam, space: Space) -> tuple[np.ndarray, np.ndarray]:
+    """Integrate functions [kg], and functions times the distance from the root [kg m], over the mass."""
     (xi, mass), length = beam.lumps, beam.length
-    of_sections = space.load(_moment_per_length(beam)) * length**2
-    return of_sections + space.evaluate(xi) @ (mass * xi * length) if mass.size else of_sections
+    load = space.load(beam.mass_per_length) * length
+    moment = space.load(_moment_per_length(beam)) * length**2
+    if not mass.size:
+        return load, moment
+    at_lumps = space.evaluate(xi)
+    return load + at_lumps @ mass, moment + at_lumps @ (mass * xi * length)
 
 
 def product_at_lumps(beam: Beam, rows: Functions, columns: Functions) -> np.ndarray:
@@ -171,6 +168,13 @@ def steady_tension(beam: Beam, mount: Mount) -> np.ndarray:
 def _sampled_tension(beam: Beam) -> tuple[np.ndarray, np.ndarray]:
     n_a, n_b = axial_tension(beam)
     return n_a(PLACES), n_b(PLACES)
+
+
+@lru_cache(maxsize=64)
+def sampled_axial_stiffness(beam: Beam) -> np.ndarray:
+    """Evaluate the axial stiffness [N], which the beam must have, at `PLACES`: shape (101,)."""
+    assert beam.axial_stiffness is not None
+    return beam.axial_stiffness(PLACES)
 
 
 def _add_constant(profile: Profile, constant: float) -> Profile:

@@ -32,7 +32,7 @@ import numpy as np
 from scipy.linalg.lapack import dgeqp3, dorgqr
 
 from beamdyn.common.numerics import legendre_series, legendre_values
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.discretization import (
     ArcQuadrature,
     Cells,

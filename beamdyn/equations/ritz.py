@@ -58,6 +58,10 @@ class Ritz:
     3.516015269
     """
 
+    # The error of eigenvalues does not fall as a power of the number of functions.
+    order = None
+    rounding = 0.0  # the scaling of the functions keeps all digits of their integrals
+
     functions: int = 14
     basis: Literal["legendre", "eigenfunctions", "moments"] = "legendre"
 
@@ -73,16 +77,6 @@ class Ritz:
     def on_each_segment(self) -> bool:
         """Whether each segment between breakpoints has its own functions."""
         return self.basis == "legendre"
-
-    @property
-    def order(self) -> None:
-        """None: the error of eigenvalues does not fall as a power of the number of functions."""
-        return None
-
-    @property
-    def rounding(self) -> float:
-        """0: the scaling of the functions keeps all digits of their integrals."""
-        return 0.0
 
     @property
     def converges_regularly(self) -> bool:

@@ -13,6 +13,7 @@ from beamdyn.scene.mount import Mount, aligned_cos_sin, exact_cos_sin
 Quantity = Literal[
     "unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse", "root_across"
 ]
+UNIT_SPEED = MotionSample.steady(1.0)  # the carrier turns at 1 rad/s
 CONSTANT_AT_STEADY_SPEED: tuple[Quantity, ...] = ("unity", "speed", "acceleration", "speed_squared")
 
 

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.edge.csv_columns import CsvColumn, CsvTable, check_places, read_csv
-from beamdyn.common.edge.data_text import DataText, plain_name
+from beamdyn.common.edge.data_text import CsvColumn, CsvTable, DataText, check_places, plain_name, read_csv
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.inputs.checks import InvalidValue

@@ -8,8 +8,15 @@ from os import PathLike
 
 import numpy as np
 
-from beamdyn.common.edge.csv_columns import CsvColumn, CsvTable, read_csv
-from beamdyn.common.edge.data_text import DataText, number_at, plain_name, read_data
+from beamdyn.common.edge.data_text import (
+    CsvColumn,
+    CsvTable,
+    DataText,
+    number_at,
+    plain_name,
+    read_csv,
+    read_data,
+)
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.inputs.checks import InvalidValue, real_array
 from beamdyn.common.results.files import as_path

@@ -13,12 +13,10 @@ from numpy.polynomial import Polynomial
 from pydantic import BaseModel, BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, Tag
 from pydantic_core import CoreSchema, core_schema
 
-from beamdyn.common.edge.config import CoreSection
-from beamdyn.common.edge.described_tables import MadeSection, one_of_kinds, section_of
-from beamdyn.common.edge.inputs import Quantity, Section, describe
+from beamdyn.common.edge.config import CoreSection, MadeSection, one_of_kinds, section_of
+from beamdyn.common.edge.inputs import Quantity, Section, describe, of_file
 from beamdyn.common.edge.toml_columns import read_columns
 from beamdyn.common.edge.units import InvalidInput, quantity
-from beamdyn.common.edge.wording import of_file
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.harvester import Harvester

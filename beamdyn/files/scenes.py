@@ -13,16 +13,23 @@ from pathlib import Path
 from typing import Any, get_origin
 
 from beamdyn.common.edge.config import ConfigError, parse, read, validated
-from beamdyn.common.edge.csv_columns import CsvTable, check_places, read_csv
-from beamdyn.common.edge.data_text import DataText, named_file, plain_name, read_data
+from beamdyn.common.edge.data_text import (
+    CsvTable,
+    DataText,
+    check_places,
+    named_file,
+    plain_name,
+    read_csv,
+    read_data,
+)
 from beamdyn.common.edge.inputs import Quantity, SiNumber
 from beamdyn.common.edge.units import InvalidInput, quantity, unit_as_written
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.described import described_hints, description, kinds_of
-from beamdyn.common.results.display_units import DisplayUnits, known_unit
+from beamdyn.common.results.columns import DisplayUnits, known_unit
 from beamdyn.files.scene_inputs import PLACES, VARYING, SceneInput
 from beamdyn.scene.motion import KINDS
-from beamdyn.scene.motion.records import check_record_times
+from beamdyn.scene.motion.oscillating import check_record_times
 from beamdyn.scene.numbers import unit_of
 from beamdyn.scene.scene import Scene
 

@@ -17,7 +17,7 @@ from scipy.optimize import linear_sum_assignment
 
 from beamdyn.accuracy.refinement import LINEAR_MESHES, THREE_DISCRETIZATIONS, error_of_finest
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.words import Named, Setting, Words
 from beamdyn.equations.circuit import BENDS, coupling_of, strain_of
 from beamdyn.equations.discretization import Discretization
@@ -37,8 +37,7 @@ from beamdyn.linear.inputs_outputs import (
     OfLayers,
     StrainAtRoot,
 )
-from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.loads.load_rows import LoadRows, span_rows
 from beamdyn.loads.stations import SpanStations, StationOutputs, mode_error, through, with_neighbours
 from beamdyn.transient.record_steps import smooth_piece_ends

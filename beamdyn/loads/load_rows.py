@@ -27,8 +27,8 @@ from beamdyn.equations.discretization import Cells, Discretization
 from beamdyn.equations.effects import CAMBER, LARGE_DEFLECTION
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.fields import FIELDS
+from beamdyn.equations.fields.bending_shear_stretch import Stretch
 from beamdyn.equations.fields.field import FieldEquations
-from beamdyn.equations.fields.stretch import Stretch
 from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.loads.cut_beam import CutQuadrature, CutSpace, CutSpaces
 from beamdyn.loads.stations import SpanStations

@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, ascending, positive, refuse, within
-from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.statements import announced_of_plain_beam
+from beamdyn.common.words import percent, supported
 from beamdyn.linear.convergence import check_linear, with_forces
 from beamdyn.linear.inputs_outputs import DeflectionAt, Excitation
 from beamdyn.linear.mean_square import ParametricTerm, check_damped, parametric_term, partial_fractions

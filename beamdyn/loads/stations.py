@@ -14,7 +14,7 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import MODES_OF_FORCES, MODES_OF_MOMENTS
 from beamdyn.common.inputs.checks import InvalidValue, as_floats, positive, real_array, refuse
-from beamdyn.modes.modal.modal_basis import ModalBasis
+from beamdyn.modes.modal.model import ModalBasis
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.rectangle import Rectangle

@@ -16,7 +16,7 @@ from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.loads import span_loads
 from beamdyn.loads.load_path import LoadPath
 from beamdyn.loads.stations import SHOWN, Positions, SectionPoints
-from beamdyn.modes.modal.modal_basis import find_speed_range
+from beamdyn.modes.modal.model import find_speed_range
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
 from beamdyn.modes.repeated import BY_FREQUENCY, repeatable

@@ -90,7 +90,7 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.scene import Scene
-from beamdyn.scene.sections import centrifugal_inertia, section_tensor
+from beamdyn.scene.sections import section_tensor, tip_inertia
 
 _ROUNDING = 64 * float(np.finfo(float).eps)  # rounding error of a sum, relative to its terms
 _SHORTEST = 1e-12  # distance of a point mass from the tip, as x/L, below which it counts as at the tip
@@ -145,7 +145,7 @@ def decide_buckling(scene: Scene) -> Buckling:
         tilt = (sin2 - slope2) * (tip.inertia_about_bending_direction - tip.axial_inertia)
         by_plane = [_decide_in_plane(beam, a, cos2 + slope2, sin2 - slope2, tilt)]
     else:
-        (d, n), B = map(np.array, plane_components(scene)), centrifugal_inertia(tip, beam.tip_twist)
+        (d, n), B = map(np.array, plane_components(scene)), tip_inertia(tip, beam.tip_twist).centrifugal
         tilts = -slope2 * float(d @ B @ d), (1.0 - slope2) * float(n @ B @ n)
         by_plane = [
             _decide_in_plane(beam, a, 1.0 + slope2, -slope2, tilts[0]),
@@ -232,7 +232,7 @@ def _least_turning(scene: Scene) -> float:
     _, first, second = moments_about_root(scene.beam)
     reach = beam.length + tip.offset
     (d, n), (cosine, sine) = map(np.array, plane_components(scene)), exact_cos_sin(scene.mount.precone)
-    B = centrifugal_inertia(tip, beam.tip_twist)
+    B = tip_inertia(tip, beam.tip_twist).centrifugal
     for (i, j), inertia in section_tensor(beam, "rotary_inertia").items():
         B[i, j] -= beam.length * float(inertia.outboard_integral()(np.zeros(1))[0])
     turned = np.outer(n, n @ B)
@@ -313,7 +313,7 @@ def _tilting_inertia(
     if scene.physics.planes == 1:
         return rotary[:, 0, 0] * bool(components[1, 0]), np.zeros(len(rotary)), 0.0
     beam, turned = scene.modelled_beam, components @ rotary @ components.T
-    B = components @ centrifugal_inertia(beam.tip or TipMass(0.0), beam.tip_twist) @ components.T
+    B = components @ tip_inertia(beam.tip or TipMass(0.0), beam.tip_twist).centrifugal @ components.T
     cosine, sine = exact_cos_sin(scene.mount.precone)
     body = float(B[0, 1]) if abs(B[0, 1]) > _ALIGNED * np.abs(B).max() else 0.0
     oblique = np.abs(turned[:, 0, 1]) > _ALIGNED * np.abs(turned).max()

@@ -42,7 +42,7 @@ from beamdyn.modes.modal.discretization_choice import (
 )
 from beamdyn.modes.modal.error_estimate import UNRESOLVED
 from beamdyn.modes.modal.model import Model, bends, static_load
-from beamdyn.modes.model_error.additions import list_effects
+from beamdyn.modes.model_error.added_effects import list_effects
 from beamdyn.modes.model_error.effect_choice import PHYSICS_TOLERANCE, EffectSizes, choose_by
 from beamdyn.modes.model_error.left_out_changes import left_out_of_critical_speed, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError

@@ -10,22 +10,21 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.inputs.checks import ascending, count, within
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.plots import plot_locus, plot_locus_by_plane
+from beamdyn.common.results.columns import evenly_spread
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import announced
-from beamdyn.modes.kinds import BENDING, TellsKinds, kinds_of_modes
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
-from beamdyn.modes.modal.model import Model, plane_share, static_load
-from beamdyn.modes.modal.over_speeds import track
+from beamdyn.modes.modal.model import BENDING, Model, TellsKinds, kinds_of_modes, plane_share, static_load
+from beamdyn.modes.modal.solvers import track
 from beamdyn.modes.model_error.effect_choice import choose_physics
+from beamdyn.modes.model_error.left_out_changes import left_out_with_modes
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.unlisted_modes import left_out_with_modes
 from beamdyn.modes.modes import drawn_order, frequency_of, provenance_of, status_of, warn_of_modes
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds

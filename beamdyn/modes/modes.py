@@ -1,4 +1,4 @@
-"""Natural modes at a steady speed: frequencies, shapes, growth rates and their errors."""
+"""Natural modes at a steady speed: frequencies, shapes, growth rates, kinds and errors."""
 
 from __future__ import annotations
 
@@ -21,10 +21,17 @@ from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statem
 from beamdyn.common.words import Words
 from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.kinds import BENDING, TellsKinds, kinds_of_modes
 from beamdyn.modes.modal import discretization_choice
 from beamdyn.modes.modal.error_estimate import EstimatedModes
-from beamdyn.modes.modal.model import Model, plane_share, static_load, warn_of_straight
+from beamdyn.modes.modal.model import (
+    BENDING,
+    Model,
+    TellsKinds,
+    kinds_of_modes,
+    plane_share,
+    static_load,
+    warn_of_straight,
+)
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection, warn_of_strain
@@ -119,7 +126,7 @@ class Modes(TellsKinds, StatesModelError):
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of each frequency by the effects left out of the model, shape (m,)."""
         # Imported here, as few calls ask for it.
-        from beamdyn.modes.model_error.unlisted_modes import left_out_with_modes
+        from beamdyn.modes.model_error.left_out_changes import left_out_with_modes
 
         return left_out_with_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
 

@@ -15,7 +15,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, reason_of
 from beamdyn.common.results.statements import unannounced
 from beamdyn.equations.effects import CAMBER, LARGE_DEFLECTION
-from beamdyn.modes.model_error.additions import MOST_CAMBER, without_camber
+from beamdyn.modes.model_error.added_effects import MOST_CAMBER, without_camber
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.modes import natural_modes

@@ -66,16 +66,15 @@ import numpy as np
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.fields.transverse import plane_components
-from beamdyn.equations.root_motion import root_motion
+from beamdyn.equations.root_motion import UNIT_SPEED, root_motion
 from beamdyn.modes.flexibility import bound_on_cells, bound_traces
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.ritz_part import CoupledRitzPart, PlaneRitzPart
 from beamdyn.scene.beam import TipMass
-from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.scene import Scene
-from beamdyn.scene.sections import centrifugal_inertia, tilting_inertia
+from beamdyn.scene.sections import tip_inertia
 
 _EPS = float(np.finfo(float).eps)
 _MOST_STEPS = 12  # largest number of steps of the search for z from a Ritz value
@@ -220,7 +219,7 @@ class PlaneEnclosure(Enclosure):
         # Coefficients of the forms, and their terms' absolute values.
         tip, psi = scene.beam.tip or TipMass(0.0), scene.mount.bending_angle
         tension, turning = (v**2 for v in exact_cos_sin(scene.mount.precone))
-        root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
+        root = float(root_motion(scene.mount, UNIT_SPEED).root_axial)
         out = tension * sin(psi) ** 2 - turning
         tilt = out * np.array([tip.inertia_about_bending_direction, -tip.axial_inertia])
         pull = tip.mass * tip.offset * np.array([tension, tension * tip.offset, -root])
@@ -299,13 +298,13 @@ class CoupledEnclosure(Enclosure):
         self.part = CoupledRitzPart(scene.beam, moments, flexibility)
         self.stiffness, self.mass = self.part.stiffness, np.array([0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0])
         beam, tip, (d, n) = scene.beam, scene.beam.tip or TipMass(0.0), np.array(plane_components(scene))
-        root = float(root_motion(scene.mount, MotionSample.steady(1.0)).root_axial)
-        body = centrifugal_inertia(tip, beam.tip_twist)
+        root = float(root_motion(scene.mount, UNIT_SPEED).root_axial)
+        tilting, body = tip_inertia(tip, beam.tip_twist)
         self.spin = np.array([1.0, -root, 0.0, -1.0, 1.0, 0.0, -float(d @ body @ n)])
         # Tensors T of the slope at the tip (2, 2), per squared speed and per -z, and their absolute terms.
         pull = tip.mass * tip.offset * (1 + tip.offset - root)
         spin = pull * np.eye(2) + (np.outer(n, body @ n) + np.outer(body @ n, n)) / 2
-        self._tensors = spin, tilting_inertia(tip, beam.tip_twist)
+        self._tensors = spin, tilting
         pull = tip.mass * abs(tip.offset) * (1 + abs(tip.offset) + abs(root))
         inertia = tip.inertia + tip.inertia_about_bending_direction
         self._tensor_terms = np.array([pull + inertia + 2 * tip.axial_inertia, inertia])

@@ -6,9 +6,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from beamdyn.common.edge.progress import at_work
+from beamdyn.common.edge.console import at_work, comparison_table
 from beamdyn.common.edge.reports import draw_pictures, print_heading
-from beamdyn.common.edge.tables import comparison_table
 from beamdyn.common.results.comparison import Comparison
 from beamdyn.reproduce import blades, inward_beam, inward_beam_figures, printed_tables
 from beamdyn.reproduce.entries import Summary

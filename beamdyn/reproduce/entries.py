@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
-from beamdyn.common.results.digits import supported
+from beamdyn.common.words import supported
 
 
 @dataclass(frozen=True)

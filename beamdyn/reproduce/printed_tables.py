@@ -13,7 +13,7 @@ from numpy.polynomial import Polynomial
 from rich.console import Group
 
 import beamdyn as bd
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.console import table
 from beamdyn.common.results.published import values_alone
 from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import FIXED, Discretization

@@ -11,11 +11,10 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import kind, positive, set_fields, size
 from beamdyn.common.results.one_line import OneLine, counted, number, spanned
-from beamdyn.common.results.read_only import FieldsOnly
-from beamdyn.common.results.snapshots import ADDED_LATER
-from beamdyn.scene import beam_checks
-from beamdyn.scene.doubts import warn_of_material, warn_of_stiffness, warn_of_twist
+from beamdyn.common.results.snapshots import ADDED_LATER, FieldsOnly
+from beamdyn.scene import input_checks
 from beamdyn.scene.harvester import Electrodes
+from beamdyn.scene.input_checks import warn_of_material, warn_of_stiffness, warn_of_twist
 from beamdyn.scene.points import PointMass, PointSpring, TipMass, direction_of
 from beamdyn.scene.profile import Profile, Property, as_profile, check_positive, merge_breakpoints, to_profile
 from beamdyn.scene.rectangle import Rectangle
@@ -124,27 +123,27 @@ class Beam(FieldsOnly, OneLine):
                 check_positive(name, getattr(self, name))
         if self.tip is not None:
             kind("tip", self.tip, TipMass, "TipMass(mass) makes one")
-        beam_checks.check_together(self)
-        beam_checks.check_points(self, "point_masses", PointMass)
-        beam_checks.check_points(self, "point_springs", PointSpring)
+        input_checks.check_together(self)
+        input_checks.check_points(self, "point_masses", PointMass)
+        input_checks.check_points(self, "point_springs", PointSpring)
         if self.electrodes is not None:
             kind("electrodes", self.electrodes, Electrodes, "Harvester.on puts them on a beam")
         if self.section is not None:
             kind("section", self.section, Rectangle, "Beam.rectangular makes one")
             made = self.section.properties.items()
-            if not all(beam_checks.alike(getattr(self, name), profile) for name, profile in made):
+            if not all(input_checks.alike(getattr(self, name), profile) for name, profile in made):
                 set_fields(self, section=None)  # replacing a property detaches the beam from its section
         if self.has_offsets:  # offsets exclude a rectangle, whose centres coincide
             set_fields(self, section=None)
         along = (name for name in (*_REQUIRED, *OPTIONAL_PROPERTIES) if name != "outer_fibre")
-        beam_checks.check_matrices(self, [name for name in along if name in PROPERTY_UNITS])
-        beam_checks.check_axis(self)
+        input_checks.check_matrices(self, [name for name in along if name in PROPERTY_UNITS])
+        input_checks.check_axis(self)
 
     @cached_property
     def has_offsets(self) -> bool:
         """Whether a centre of mass or of tension, of the sections or of the tip body, lies off the axis."""
         given = (getattr(self, name) for name in OFFSETS)
-        beside = any(each is not None and beam_checks.first_place(each) is not None for each in given)
+        beside = any(each is not None and input_checks.first_place(each) is not None for each in given)
         return beside or bool(self.tip and self.tip.offset_across)
 
     @property
@@ -474,7 +473,7 @@ PROPERTY_UNITS = {  # units of all properties that vary along a beam, but for it
 
 # Units of the angles along a beam, which may have any sign.
 ANGLE_UNITS = {"twist": "rad", "sweep": "rad", "prebend": "rad"}
-OFFSETS = beam_checks.OFFSETS
+OFFSETS = input_checks.OFFSETS
 OF_ANY_SIGN = (*ANGLE_UNITS, *OFFSETS)
 _REQUIRED = ("mass_per_length", "bending_stiffness")
 OPTIONAL_PROPERTIES = tuple(

@@ -35,13 +35,11 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, one_of, real, refuse, set_fields
 from beamdyn.common.inputs.described import Described, descriptions
-from beamdyn.common.results.read_only import FieldsOnly
-from beamdyn.common.results.snapshots import ADDED_LATER
+from beamdyn.common.results.snapshots import ADDED_LATER, FieldsOnly
 from beamdyn.common.words import Words
-from beamdyn.scene.laminate import Coupled, Laminate, Material, composite, couple, laminate
 from beamdyn.scene.names_elsewhere import RECTANGULAR
 from beamdyn.scene.profile import ONE, Profile
-from beamdyn.scene.rectangle import Rectangle
+from beamdyn.scene.rectangle import Coupled, Laminate, Material, Rectangle, composite, couple, laminate
 
 Connection = Literal["series", "parallel", "unimorph"]
 _STRAINED, _STRESSED = ("e31", "c11e", "eps33s"), ("d31", "s11e", "eps33t")

@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.common.inputs import checks
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.read_only import ReadOnlyArrays
+from beamdyn.common.results.snapshots import ReadOnlyArrays
 from beamdyn.scene.measured_frequencies import set_doubts, table_of
 
 

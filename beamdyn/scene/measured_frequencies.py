@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, as_floats, kind, real_array, set_fields, several
-from beamdyn.common.results.read_only import ReadOnlyArrays
+from beamdyn.common.results.snapshots import ReadOnlyArrays
 
 Numbers = float | Sequence[float] | Sequence[Sequence[float]] | np.ndarray
 

@@ -19,7 +19,7 @@ from beamdyn.common.inputs.checks import (
 )
 from beamdyn.common.inputs.described import Described, descriptions
 from beamdyn.common.results.one_line import OneLine, number
-from beamdyn.scene.doubts import warn_of_degrees
+from beamdyn.scene.input_checks import warn_of_degrees
 
 _RATIO: Any = {"least": 0, "below": 1, "remedy": "1 % is 0.01"}
 

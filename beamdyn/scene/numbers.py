@@ -15,8 +15,7 @@ from functools import cache
 from typing import Any, get_type_hints
 
 from beamdyn.common.inputs.checks import InvalidValue, positive
-from beamdyn.common.inputs.described import description, kinds_of
-from beamdyn.common.inputs.designs import part_at, with_parts
+from beamdyn.common.inputs.described import description, kinds_of, part_at, with_parts
 from beamdyn.scene.beam import ANGLE_UNITS, OF_ANY_SIGN, OFFSETS, PROPERTY_UNITS, Beam, TipMass
 from beamdyn.scene.harvester import Harvester
 from beamdyn.scene.motion import KINDS, Motion

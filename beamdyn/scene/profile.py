@@ -18,7 +18,7 @@ from numpy.polynomial import Polynomial, legendre
 
 from beamdyn.common import numerics
 from beamdyn.common.inputs.checks import MOST, InvalidValue, real, real_array, refuse
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.words import Named, Words
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper

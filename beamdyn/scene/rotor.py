@@ -9,10 +9,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.common.drawing.layout import length_text, round_below
+from beamdyn.common.drawing.layout import Paper, length_text, round_below
 from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol, arc
-from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.drawing.svg import svg_of
 from beamdyn.common.results.one_line import number, warned
 from beamdyn.common.results.pictures import Figure

@@ -11,21 +11,25 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, kind, moderate, not_negative, refuse, set_fields
-from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
+from beamdyn.common.results.columns import SI_UNITS, DisplayUnits
 from beamdyn.common.results.one_line import OneLine, given_fields, number
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.words import Named, Setting, Words
 from beamdyn.scene.beam import OFFSETS, Beam
-from beamdyn.scene.loads_and_springs import (
+from beamdyn.scene.motion import Motion
+from beamdyn.scene.mount import NO_DAMPING, Damping, Mount, aligned_cos_sin, check_one_kind_of_ratios
+from beamdyn.scene.names_elsewhere import GIVE_OR_COMPUTE, GIVE_OR_RATIO, RECTANGULAR
+from beamdyn.scene.physics import (
+    AUTO,
+    AUTO_NAME,
     ROOT_SPRINGS,
+    AutomaticPhysics,
+    Physics,
+    PhysicsChoice,
     check_point_springs,
     check_root_springs,
     check_tip_load,
 )
-from beamdyn.scene.motion import Motion
-from beamdyn.scene.mount import NO_DAMPING, Damping, Mount, aligned_cos_sin, check_one_kind_of_ratios
-from beamdyn.scene.names_elsewhere import GIVE_OR_COMPUTE, GIVE_OR_RATIO, RECTANGULAR
-from beamdyn.scene.physics import AUTO, AUTO_NAME, AutomaticPhysics, Physics, PhysicsChoice
 from beamdyn.scene.points import NO_LOAD, TipLoad
 from beamdyn.scene.profile import Profile, mean
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, as_floats, real_array, set_fields, several
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.scene.profile import Profile, Table, merge_breakpoints, to_profile
 
 SIZE = 6

@@ -9,7 +9,7 @@ that is turned by beta has, along the directions e1, e2 at the root,
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -99,28 +99,35 @@ def offset_components(beam: Beam) -> tuple[Profile | None, ...]:
     return tuple(next(found) if offset is not None else None for offset in given for _ in range(2))
 
 
-def tilting_inertia(tip: TipMass, twist: float) -> np.ndarray:
-    """Compute a tip body's inertia [kg m2] against tilting towards e1 and e2, shape (2, 2)."""
-    return _turned(tip.inertia, tip.inertia_about_bending_direction, twist)
+class TipInertia(NamedTuple):
+    """Inertia of a tip body [kg m2] against tilts towards the directions e1 and e2.
 
-
-def centrifugal_inertia(tip: TipMass, twist: float) -> np.ndarray:
-    """Compute a tip body's inertia [kg m2] by which rotation resists its tilt out of plane, shape (2, 2).
-
-    In the axes of the section, this is diag(J_e - J_1, J_n - J_1): with respect to the axis of rotation,
-    tilting towards a direction exchanges the moment about that direction for the one about the beam.
+    Parameters
+    ----------
+    tilting : ndarray, shape (2, 2)
+        Inertia against tilting.
+    centrifugal : ndarray, shape (2, 2)
+        Inertia by which rotation resists a tilt out of plane: in the axes of the section diag(J_e - J_1,
+        J_n - J_1), as with respect to the axis of rotation, tilting towards a direction exchanges the moment
+        about that direction for the one about the beam.
     """
-    bending, across = tip.inertia_about_bending_direction, tip.inertia
-    return _turned(bending - tip.axial_inertia, across - tip.axial_inertia, twist)
+
+    tilting: np.ndarray
+    centrifugal: np.ndarray
 
 
-def _turned(first: float, second: float, angle: float) -> np.ndarray:
-    if not angle:
-        return np.array([[first, 0.0], [0.0, second]])
-    R = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    return R @ np.diag([first, second]) @ R.T
+def tip_inertia(tip: TipMass, twist: float) -> TipInertia:
+    """Compute the inertia of a tip body on a section that is turned by an angle [rad]."""
+    across, bending = tip.inertia, tip.inertia_about_bending_direction
+    tilting = np.diag([across, bending])
+    centrifugal = np.diag([bending - tip.axial_inertia, across - tip.axial_inertia])
+    if not twist:
+        return TipInertia(tilting, centrifugal)
+    R = np.array([[np.cos(twist), -np.sin(twist)], [np.sin(twist), np.cos(twist)]])
+    return TipInertia(R @ tilting @ R.T, R @ centrifugal @ R.T)
 
 
+@lru_cache(maxsize=256)
 def weight_degree(beam: Beam) -> int:
     """Find the highest polynomial degree that section properties add to integrals of deflections' products.
 

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from beamdyn.common.inputs.checks import MOST, InvalidValue, refuse
-from beamdyn.common.results.digits import percent, told_from
 from beamdyn.common.results.statements import (
     EXCITATION,
     INPUT,
@@ -19,7 +18,8 @@ from beamdyn.common.results.statements import (
     Statement,
     joined,
 )
-from beamdyn.common.words import Setting, Words
+from beamdyn.common.words import Setting, Words, percent, told_from
+from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
 LARGE_DEFLECTION = 0.1  # fraction of the length beyond which a linear theory has errors of several percent
@@ -61,8 +61,10 @@ def refuse_tip_load(scene: Scene) -> None:
 
 def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
     """Yield warnings of input that is not modelled, of narrow sections, and of a physics choice's limits."""
-    yield from _warn_of_narrow_section(scene)
-    yield from _warn_of_kinks(scene)
+    if scene.models_width and (section := scene.beam.strip) is not None:
+        yield from _warn_of_narrow_section(section)
+    if scene.physics.camber and (section := scene.beam.strip) is not None:
+        yield from _warn_of_kinks(section, scene.beam.length)
     if scene.physics_choice is not None:
         yield from scene.physics_choice.warnings()
         return
@@ -82,11 +84,8 @@ def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
             yield Statement(said, remedy, kind=INPUT, quantity=name, remedy=remedy)
 
 
-def _warn_of_narrow_section(scene: Scene) -> Iterator[Statement]:
-    """Yield a warning if the width is modelled and a section is too narrow for a plate."""
-    section = scene.beam.strip
-    if section is None or not scene.models_width:
-        return
+def _warn_of_narrow_section(section: Rectangle) -> Iterator[Statement]:
+    """Yield a warning if a section whose width is modelled is too narrow for a plate."""
     width, thickness = section.sides()
     narrowest = float((width / thickness).min())
     if narrowest < _NARROW * (1 - _ROUNDING_OF_SIDES):
@@ -100,12 +99,9 @@ def _warn_of_narrow_section(scene: Scene) -> Iterator[Statement]:
         yield Statement(said, worth, kind=MODEL_ERROR, quantity=quantity, value=narrowest, limit=_NARROW)
 
 
-def _warn_of_kinks(scene: Scene) -> Iterator[Statement]:
-    """Yield a warning if camber is modelled and the width has kinks, which the trial functions lack."""
-    section = scene.beam.strip
-    if section is None or not scene.physics.camber:
-        return
-    sharpest = float(section.kinks_of_width(scene.beam.length).max(initial=0.0))
+def _warn_of_kinks(section: Rectangle, length: float) -> Iterator[Statement]:
+    """Yield a warning if camber is modelled of a width with kinks, which its functions do not have."""
+    sharpest = float(section.kinks_of_width(length).max(initial=0.0))
     if (worth := _WORTH_OF_KINKS * sharpest) > _SMALL_WORTH:
         said = f"the slope of the width changes by {sharpest:.2g} at a kink, where functions of camber are "
         end = f"smooth: frequencies are up to {percent(worth)} too high; round the kink to find out"

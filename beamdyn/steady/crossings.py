@@ -16,9 +16,8 @@ from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words
 from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.left_out_changes import left_out_of_modes, nothing_known
+from beamdyn.modes.model_error.left_out_changes import find_unlisted, left_out_of_modes, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.unlisted_modes import find_unlisted
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene
 

@@ -22,8 +22,7 @@ from beamdyn.modes.modal.eigenproblem import Eigensolver
 from beamdyn.modes.modal.error_estimate import solve_with_error
 from beamdyn.modes.modal.line_roots import ROUNDING, coincides, find_roots
 from beamdyn.modes.modal.model import Model, plane_share
-from beamdyn.modes.modal.over_speeds import track
-from beamdyn.modes.modal.uncoupled import UncoupledSolver
+from beamdyn.modes.modal.solvers import UncoupledSolver, track
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.motion import Line
 from beamdyn.scene.names_elsewhere import WITH_WHEEL

@@ -11,18 +11,17 @@ from typing import Any, ClassVar
 import numpy as np
 
 from beamdyn.accuracy.refinement import refine
-from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.inputs.checks import ascending, count, positive
 from beamdyn.common.plots.plots import plot_response
+from beamdyn.common.results.columns import evenly_spread
 from beamdyn.common.results.one_line import counted, error_at_most, states, warned
 from beamdyn.common.results.pictures import Axes
-from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.results.result import Provenance, plain
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.results.statements import EXCITATION, GROWING, LIMITS, TOLERANCE, Statement, announced
 from beamdyn.equations.effects import check_direction, modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, ensure_size
-from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, given_basis
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import FEWEST_MODES, ModalBasis, Model, given_basis
 from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError

@@ -16,8 +16,7 @@ from beamdyn.common.numerics import longer_semi_axis
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.equilibrium import NoEquilibrium
-from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.harmonic_balance import solve_harmonic_balance

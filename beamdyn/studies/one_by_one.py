@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from beamdyn.common.inputs.designs import rows_of
+from beamdyn.common.inputs.described import rows_of
 from beamdyn.common.results import statements
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.loads.steady_loads import steady_loads
 from beamdyn.modes.critical import critical_point
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects

@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.designs import Designs, rows_of
+from beamdyn.common.inputs.described import Designs, rows_of
+from beamdyn.common.results.columns import evenly_spread
 from beamdyn.common.results.statements import EXCITATION, Statement
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import Ritz

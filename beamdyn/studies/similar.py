@@ -25,9 +25,9 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.mass import PLACES, steady_tension
+from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
 from beamdyn.modes.modal.error_estimate import parts_of_distances
 from beamdyn.modes.modal.many_designs import Estimate, PencilStack
 from beamdyn.modes.modal.model import Model
@@ -370,10 +370,12 @@ def _family(reference: Scene, nodes: Nodes, discretization: Discretization) -> P
 @lru_cache(maxsize=8)
 def _forces(reference: Scene, nodes: Nodes) -> np.ndarray:
     """Compute the axial strain of the node scenes per squared speed [s2], (T, points); nan if not known."""
-    scenes, stiffness = _node_scenes(reference, nodes), reference.beam.axial_stiffness
-    if stiffness is None:
+    scenes, beam = _node_scenes(reference, nodes), reference.beam
+    if beam.axial_stiffness is None:
         return np.full((len(scenes), 1), np.nan)
-    return np.array([steady_tension(scene.beam, scene.mount) for scene in scenes]) / stiffness(PLACES)
+    return np.array([steady_tension(scene.beam, scene.mount) for scene in scenes]) / sampled_axial_stiffness(
+        beam
+    )
 
 
 # Interpolation --------------------------------------------------------------------------------------

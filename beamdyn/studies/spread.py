@@ -13,7 +13,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, check_used, kind, one_of
 from beamdyn.common.parallel.tasks import Progress
-from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
+from beamdyn.common.results.columns import SI_UNITS, DisplayUnits
 from beamdyn.common.results.statements import announced, unannounced
 from beamdyn.common.spreading import DEFAULT_SAMPLES, tolerances
 from beamdyn.common.spreading.first_order import KnownDerivatives

@@ -15,7 +15,7 @@ import scipy
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs import checks
-from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs, rows_of
+from beamdyn.common.inputs.described import Designs, VariedInput, check_designs, rows_of
 from beamdyn.common.parallel.tasks import Progress, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.result import Provenance

@@ -9,12 +9,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from beamdyn.common.evenly_spread import evenly_spread
-from beamdyn.common.inputs.designs import Designs, VariedInput
+from beamdyn.common.inputs.described import Designs, VariedInput
 from beamdyn.common.plots.axes_and_lines import set_up_axes
 from beamdyn.common.plots.curves import curves, mark_missing
 from beamdyn.common.plots.maps import MapAnswer, MapInput, map_size, plot_maps
-from beamdyn.common.results.display_units import ShownUnit
+from beamdyn.common.results.columns import ShownUnit, evenly_spread
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, warned
 from beamdyn.common.results.pictures import Axes, add_legend
 from beamdyn.common.results.result import Provenance

@@ -14,8 +14,7 @@ from beamdyn.equations.effects import check_direction
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import RootMotion
 from beamdyn.modes.modal.equilibrium import Branch
-from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.system import ModalSystem
 

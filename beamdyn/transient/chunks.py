@@ -11,11 +11,10 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import FEWEST_MODES, ModalBasis, Model, find_speed_range
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.integration import integrate

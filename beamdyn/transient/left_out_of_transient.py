@@ -16,8 +16,7 @@ from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, reason_of
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.modes.backbone import SMALL, FreeVibration
 from beamdyn.modes.modal.discretization_choice import ensure_size
-from beamdyn.modes.modal.modal_basis import find_speed_range
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import Model, find_speed_range
 from beamdyn.modes.model_error.left_out_changes import (
     LOADED,
     SolvedValues,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self, TypeVar
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, as_floats
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space.rotating_beam import QUANTITIES
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.root_motion import Quantity
@@ -18,8 +18,7 @@ from beamdyn.modes.modal.continuation import NoEquilibrium
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.equilibrium import find_bent, follow_to, load_by_rotation
-from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, ModalBasis
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import SPEED_SAMPLES, ModalBasis, Model
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene

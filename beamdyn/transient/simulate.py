@@ -12,7 +12,7 @@ from beamdyn.common.inputs.checks import InvalidValue, ascending, positive, with
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.statements import announced
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range, given_basis
+from beamdyn.modes.modal.model import FEWEST_MODES, ModalBasis, find_speed_range, given_basis
 from beamdyn.modes.model_error.effect_choice import bend_for_peak, choose_for_motion
 from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.scene import Scene, check_scene

@@ -12,7 +12,7 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.modes.modal.modal_basis import FEWEST_MODES, ModalBasis, find_speed_range
+from beamdyn.modes.modal.model import FEWEST_MODES, ModalBasis, find_speed_range
 from beamdyn.transient.chunks import SweepRequest
 from beamdyn.transient.trajectory import SAMPLES
 from beamdyn.transient.transient import Transient, TransientRequest, warn_of_missed_modes

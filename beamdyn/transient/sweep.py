@@ -22,14 +22,14 @@ from beamdyn.common.inputs import checks
 from beamdyn.common.parallel.tasks import Progress, RunInterrupted, Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.plots import plot_sweep
-from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import counted, error_at_most, states, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import NO_ANSWER, TOLERANCE, Statement, announced, unannounced
+from beamdyn.common.words import supported
 from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES, given_basis
+from beamdyn.modes.modal.model import SPEED_SAMPLES, given_basis
 from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
 from beamdyn.modes.model_error.left_out_changes import nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError

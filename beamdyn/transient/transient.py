@@ -21,7 +21,7 @@ from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import TOLERANCE, Statement
 from beamdyn.equations.effects import modelled_directions
-from beamdyn.modes.modal.modal_basis import SPEED_SAMPLES
+from beamdyn.modes.modal.model import SPEED_SAMPLES
 from beamdyn.modes.model_error.effect_choice import warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from beamdyn.common.edge.exit_codes import NoAnswer
-from beamdyn.common.inputs.designs import part_at, with_parts
+from beamdyn.common.inputs.described import part_at, with_parts
 from brakes.answers import STANDARD
 from brakes.answers.base import BrakeType
 from brakes.answers.finding import find_in_file

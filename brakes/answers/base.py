@@ -14,9 +14,9 @@ import numpy as np
 from pydantic import BaseModel
 from rich.console import RenderableType
 
-from beamdyn.common.drawing.chart import Chart
-from beamdyn.common.drawing.sheet import Rows
-from beamdyn.common.edge.config import in_words_of_file, parse, path_of, read, said_of, validated
+from beamdyn.common.drawing.layout import Rows
+from beamdyn.common.drawing.shapes import Chart
+from beamdyn.common.edge.config import in_words_of_file, parse, read, said_of, validated
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import (
     MOST_ONE_BY_ONE,
@@ -29,10 +29,10 @@ from beamdyn.common.edge.input_sweep import (
     solve_cases,
     swept,
 )
-from beamdyn.common.edge.inputs import Input, describe
+from beamdyn.common.edge.inputs import Input, describe, path_of
 from beamdyn.common.edge.varied_inputs import MOST_AT_ONCE, Axis, designs_of, parse_axis
 from beamdyn.common.inputs.array_checks import solve_possible
-from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs, with_parts
+from beamdyn.common.inputs.described import Designs, VariedInput, check_designs, with_parts
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.results.one_line import counted, error_at_most
 from beamdyn.common.results.pictures import Figure

@@ -13,16 +13,15 @@ from typing import Any
 import numpy as np
 from rich.console import RenderableType
 
-from beamdyn.common.drawing.chart import Chart
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.layout import Rows
+from beamdyn.common.drawing.shapes import Chart
 from beamdyn.common.edge.config import ConfigError, MissingValue, parse, read
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.file_words import in_files, say
 from beamdyn.common.edge.input_sweep import Output
-from beamdyn.common.edge.inputs import Input
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.inputs import Input, in_range
 from beamdyn.common.edge.varied_inputs import numbers
-from beamdyn.common.edge.wording import in_range
 from beamdyn.common.inputs.described import descriptions
 from beamdyn.common.results.columns import Column, Columns
 from beamdyn.common.results.pictures import Figure

@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.designs import part_at, with_parts
+from beamdyn.common.inputs.described import part_at, with_parts
 from brakes.answers.tables import format_number
 
 Answer = TypeVar("Answer")

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from rich.console import RenderableType
 
-from beamdyn.common.drawing.chart import Chart
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.layout import Rows
+from beamdyn.common.drawing.shapes import Chart
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.input_sweep import Output
-from beamdyn.common.edge.tables import table
 from beamdyn.common.screens.screen_parts import Handle
 from brakes.answers.base import Answer
 from brakes.answers.rubbing import RubbingAnswer, RubbingType, heat_outputs

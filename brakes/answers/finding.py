@@ -17,7 +17,7 @@ from beamdyn.common.edge.inputs import Quantity, SlopeQuantity
 from beamdyn.common.edge.units import in_plain_characters, unit_as_written
 from beamdyn.common.edge.varied_inputs import Axis, find_input, parse_axis
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.designs import part_at
+from beamdyn.common.inputs.described import part_at
 from beamdyn.common.results.result import Provenance
 from brakes.answers.base import ERROR, BrakeType, SweepRequest
 from brakes.answers.spread import nominal_of

@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 from rich.console import RenderableType
 
-from beamdyn.common.drawing.chart import Chart
-from beamdyn.common.drawing.shapes import Drawing
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.layout import Rows
+from beamdyn.common.drawing.shapes import Chart, Drawing
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.input_sweep import Output
-from beamdyn.common.edge.tables import table
 from beamdyn.common.inputs.checks import InvalidValue
 from brakes.answers.base import Answer
 from brakes.answers.rubbing import RubbingAnswer, RubbingType, heat_outputs

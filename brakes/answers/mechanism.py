@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 from rich.console import RenderableType
 
-from beamdyn.common.drawing.chart import Chart
-from beamdyn.common.drawing.shapes import Drawing
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.layout import Rows
+from beamdyn.common.drawing.shapes import Chart, Drawing
 from beamdyn.common.edge.config import MissingValue
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.input_sweep import Output
-from beamdyn.common.edge.tables import table
 from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import plain
 from brakes.answers import planar

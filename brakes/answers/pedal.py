@@ -11,7 +11,7 @@ from rich.console import RenderableType
 
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import Output
-from beamdyn.common.edge.wording import of_file
+from beamdyn.common.edge.inputs import of_file
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.results.result import Result

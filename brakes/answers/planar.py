@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from rich.console import RenderableType
 
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.edge.inputs import describe
-from beamdyn.common.edge.tables import table
-from beamdyn.common.evenly_spread import evenly_spread
+from beamdyn.common.results.columns import evenly_spread
 from beamdyn.common.results.one_line import error_at_most, rounded_up
 from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import Result, plain

@@ -11,8 +11,8 @@ from typing import Any, ClassVar
 import numpy as np
 from rich.console import RenderableType
 
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.input_sweep import Output
-from beamdyn.common.edge.tables import table
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.pictures import Figure
 from brakes.answers import tables

@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.edge.command_options import SPREAD
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.input_sweep import Output, chosen
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.edge.varied_inputs import Axis, parse_spreads
-from beamdyn.common.edge.varying import SPREAD
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.designs import part_at
+from beamdyn.common.inputs.described import part_at
 from beamdyn.common.parallel.tasks import TaskRunner
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 from beamdyn.common.spreading.solve import SpreadAnswers, solve_spread

@@ -12,11 +12,10 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.edge.console import set_apart, table
 from beamdyn.common.edge.input_sweep import InputSweep, Output, columns, sweep_rows
 from beamdyn.common.edge.inputs import Input
-from beamdyn.common.edge.tables import set_apart, table
-from beamdyn.common.evenly_spread import evenly_spread
-from beamdyn.common.results.meanings import meanings
+from beamdyn.common.results.columns import evenly_spread, meanings
 from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words
 
 _SHOWN = 24  # largest number of rows of a sweep that are shown

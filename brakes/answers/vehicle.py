@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 from rich.console import RenderableType
 
+from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.on_axes import figure_of
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.input_sweep import Output
-from beamdyn.common.edge.tables import table
-from beamdyn.common.edge.wording import in_range, of_file
+from beamdyn.common.edge.inputs import in_range, of_file
 from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import plain
 from brakes import vehicle

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from beamdyn.common.edge.config import ConfigError
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.rendering import html
-from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.units import show
 from beamdyn.common.screens.screens import FoldedPart, Program
 from brakes.answers import STANDARD, caliper, forklift

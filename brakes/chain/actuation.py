@@ -15,7 +15,7 @@ import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, not_negative, together
 from beamdyn.common.inputs.checks import InvalidValue, kind, refuse
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.chain.lines import BrakeCable, HydraulicLine

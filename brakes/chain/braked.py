@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, positive
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.result import Result
 from brakes.chain.actuation import Actuation, Line, actuate, force_for
 from brakes.chain.pedal import Pedal

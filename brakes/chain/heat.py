@@ -25,7 +25,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import kind
 from beamdyn.common.inputs.described import Described
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.chain.braked import BrakedStop

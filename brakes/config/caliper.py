@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, create_model
 
-from beamdyn.common.edge.config import CoreSection, validated
-from beamdyn.common.edge.described_tables import MadeSection, fields_of, section_of
+from beamdyn.common.edge.config import CoreSection, MadeSection, fields_of, section_of, validated
 from beamdyn.common.edge.inputs import Quantity, Section, WholeNumber
 from beamdyn.common.edge.units import InvalidInput, quantity
 from brakes.calipers import NAMED, Caliper, Stance, StoppingDistance, stop

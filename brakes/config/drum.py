@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
-from beamdyn.common.edge.config import CoreSection, parse, read, validated
-from beamdyn.common.edge.described_tables import MadeSection, fields_of, section_of
-from beamdyn.common.edge.inputs import Section
-from beamdyn.common.edge.wording import in_range, of_file
+from beamdyn.common.edge.config import CoreSection, MadeSection, fields_of, parse, read, section_of, validated
+from beamdyn.common.edge.inputs import Section, in_range, of_file
 from beamdyn.common.inputs.checks import InvalidValue
 from brakes.config.heat import HeatInput
 from brakes.config.load import LoadInput, RubbingInput

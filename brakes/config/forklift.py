@@ -12,10 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import create_model, model_validator
 
-from beamdyn.common.edge.config import CoreSection, parse, read, validated
-from beamdyn.common.edge.described_tables import MadeSection, fields_of, section_of
-from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
-from beamdyn.common.edge.wording import of_file
+from beamdyn.common.edge.config import CoreSection, MadeSection, fields_of, parse, read, section_of, validated
+from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity, of_file
 from brakes.chain import Drums, HydraulicLine, Pedal
 from brakes.config.heat import REPEATED
 from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from beamdyn.common.edge.config import CoreSection
-from beamdyn.common.edge.described_tables import fields_of, section_of
+from beamdyn.common.edge.config import CoreSection, fields_of, section_of
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.units import InvalidInput, quantity
 from brakes.common.heat import Duty, FrictionCurve

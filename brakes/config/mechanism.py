@@ -10,8 +10,16 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, create_model
 
-from beamdyn.common.edge.config import CoreSection, MissingValue, parse, read, validated
-from beamdyn.common.edge.described_tables import MadeSection, fields_of, section_of
+from beamdyn.common.edge.config import (
+    CoreSection,
+    MadeSection,
+    MissingValue,
+    fields_of,
+    parse,
+    read,
+    section_of,
+    validated,
+)
 from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
 from beamdyn.common.edge.units import InvalidInput, show
 from beamdyn.common.inputs.described import described_hints, description, descriptions

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, model_validator
 
-from beamdyn.common.edge.config import CoreSection
-from beamdyn.common.edge.described_tables import section_of
+from beamdyn.common.edge.config import CoreSection, section_of
 from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity
 from brakes.chain import BrakeCable, HydraulicLine, Pedal, WheelBrakes
 from brakes.vehicle import Approach, Road, Truck, Vehicle

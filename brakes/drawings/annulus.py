@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline, Symbol, arc
-from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch
 from brakes.drawings.arrows import ForceArrows, rotation
 from brakes.machines import Cone, MachineResult, Plates

@@ -6,11 +6,20 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beamdyn.common.drawing.chart import Chart, ChartAxis
 from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
+from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.on_axes import draw_in
-from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.shapes import (
+    Arrow,
+    Chart,
+    ChartAxis,
+    Disc,
+    Drawing,
+    DrawnShape,
+    Label,
+    Outline,
+    Symbol,
+)
 from beamdyn.common.drawing.sketch import Sketch
 from beamdyn.common.results.pictures import Figure, new_figure
 from brakes.calipers import NAMED, Caliper, CaliperStroke

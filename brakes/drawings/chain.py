@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.shapes import Disc, Drawing, Outline, Symbol
-from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch
 
 _DOWN, _LEFT = (0.0, -1.0), (-1.0, 0.0)

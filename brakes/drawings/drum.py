@@ -6,9 +6,20 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark
 from beamdyn.common.drawing.chart_on_axes import plot_chart
-from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol, arc
+from beamdyn.common.drawing.shapes import (
+    Arrow,
+    Chart,
+    ChartAxis,
+    ChartCurve,
+    ChartMark,
+    Disc,
+    Drawing,
+    Label,
+    Outline,
+    Symbol,
+    arc,
+)
 from brakes.drawings.arrows import ForceArrows
 from brakes.drawings.machine import FRICTION_SHOWN, LIMIT_SHOWN, beside_charts, over_friction
 from brakes.drum import BrakeResult, DrumBrake, ShoeResult, brake_torque

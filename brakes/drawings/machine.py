@@ -7,10 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartMark
 from beamdyn.common.drawing.chart_on_axes import plot_chart
 from beamdyn.common.drawing.on_axes import draw_in
-from beamdyn.common.drawing.shapes import Drawing
+from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartCurve, ChartMark, Drawing
 from brakes.machines import MachineResult, solve_brake
 
 _POINTS = 101  # number of points of each curve

@@ -10,12 +10,22 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
-from beamdyn.common.drawing.layout import Fit
+from beamdyn.common.drawing.layout import Fit, Paper
 from beamdyn.common.drawing.on_axes import draw_in, draw_on, figure_of, frame_of
-from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, points_of_shape
-from beamdyn.common.drawing.sheet import Paper
+from beamdyn.common.drawing.shapes import (
+    Arrow,
+    Chart,
+    ChartAxis,
+    ChartCurve,
+    ChartPoints,
+    Drawing,
+    DrawnShape,
+    Label,
+    Outline,
+    Symbol,
+    points_of_shape,
+)
 from beamdyn.common.results.pictures import Figure, new_figure, save_animation
 from brakes.drawings import mechanism_parts as parts
 from brakes.planar import GROUND, Equilibrium, Load, Position, free_body

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline, Symbol
-from beamdyn.common.drawing.sheet import Rows
 from beamdyn.common.drawing.sketch import Sketch
 from brakes.drawings.arrows import ForceArrows
 from brakes.drawings.chain import line_sketch, wheel_sketch

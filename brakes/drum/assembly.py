@@ -11,7 +11,7 @@ import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, not_negative, together
 from beamdyn.common.inputs.checks import flag, kind, refuse, set_fields, several
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned
 from brakes.common.loads import take_load
 from brakes.common.locking import SlidesOrLocks

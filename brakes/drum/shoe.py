@@ -18,7 +18,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked
 from beamdyn.common.inputs.checks import one_of, refuse
 from beamdyn.common.inputs.described import Described
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned
 from brakes.common.locking import LEAST_MARGIN, SlidesOrLocks
 

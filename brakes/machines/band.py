@@ -12,7 +12,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.inputs.described import Described
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from brakes.machines.machine import Lining, Machine
 
 _FIRST = "arm of the band's first end about the lever's fulcrum, which the force on the lever pulls"

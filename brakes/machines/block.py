@@ -12,7 +12,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.inputs.checks import one_of, refuse
 from beamdyn.common.inputs.described import Described
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from brakes.machines.machine import Lining, Machine
 
 _ARM = "distance of the fulcrum from the line through the block's middle and the drum's centre"

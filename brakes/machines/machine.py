@@ -17,7 +17,7 @@ import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, not_negative, together
 from beamdyn.common.inputs.checks import flag, kind, one_of, refuse
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned
 from brakes.common.loads import take_load
 from brakes.common.locking import LEAST_MARGIN, SlidesOrLocks

@@ -27,7 +27,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.inputs.checks import one_of, refuse
 from beamdyn.common.inputs.described import Described
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from brakes.machines.machine import Lining, Machine
 
 _HALVINGS = 56  # number of bisections, which reduce an angle below 2 pi to its rounding

@@ -4,7 +4,6 @@
 `Joint` and `Load` tell how to write a new one.
 """
 
-from brakes.planar.freebody import Action, free_body
 from brakes.planar.friction import FrictionalEquilibrium, solve_with_friction
 from brakes.planar.joints import Bar, Cable, Contact, Pin, RotationLock, Slot
 from brakes.planar.kinematics import Stroke, Toggle, assemble, stroke, trace
@@ -12,7 +11,7 @@ from brakes.planar.loads import CablePair, Force, Moment, Spring, TorsionSpring
 from brakes.planar.mechanism import Mechanism, Position
 from brakes.planar.part import Joint, Load, Part, Shape
 from brakes.planar.rows import GROUND
-from brakes.planar.statics import Equilibrium, solve
+from brakes.planar.statics import Action, Equilibrium, free_body, solve
 from brakes.planar.system import AssemblyError, OutOfReachError
 
 JOINTS: tuple[type[Joint], ...] = (Pin, Bar, Slot, Contact, RotationLock, Cable)

@@ -9,8 +9,11 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import count, positive, real_array
 from beamdyn.common.words import Named, Words, amount
-from brakes.planar.curve import (
+from brakes.planar.mechanism import (
+    Mechanism,
     Node,
+    Position,
+    check_mechanism,
     find_zero,
     follow,
     node_at,
@@ -18,7 +21,6 @@ from brakes.planar.curve import (
     solve_at_sum,
     solve_at_values,
 )
-from brakes.planar.mechanism import Mechanism, Position, check_mechanism
 from brakes.planar.system import (
     AssemblyError,
     OppositeTravelError,

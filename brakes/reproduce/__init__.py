@@ -11,8 +11,8 @@ from pathlib import Path
 
 from rich.console import Console
 
+from beamdyn.common.edge.console import comparison_table
 from beamdyn.common.edge.reports import draw_pictures, print_heading, print_notes
-from beamdyn.common.edge.tables import comparison_table
 from beamdyn.common.results.comparison import Verdict
 from brakes.reproduce import drum_as_printed, eebrake, forklift_tables
 

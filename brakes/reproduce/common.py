@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.console import Group
 
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.console import table
 from beamdyn.common.results.comparison import Verdict
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import Group
 
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.console import table
 from beamdyn.common.plots.curves import grid
 from beamdyn.common.results.pictures import COLOURS
 from beamdyn.common.results.published import values_alone

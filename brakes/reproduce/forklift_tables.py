@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from rich.console import Group
 
+from beamdyn.common.drawing.layout import Paper
 from beamdyn.common.drawing.on_axes import figure_of
-from beamdyn.common.drawing.sheet import Paper
 from beamdyn.common.results.published import values_alone
 from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.drawings.forklift import distances, forces_over, truck

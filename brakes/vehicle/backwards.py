@@ -20,7 +20,7 @@ import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, not_negative, positive, together
 from beamdyn.common.inputs.checks import kind, one_of
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
 from brakes.vehicle.axles import Axle, Braked, Vehicle, other

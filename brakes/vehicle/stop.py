@@ -33,7 +33,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked, positive, together
 from beamdyn.common.inputs.checks import kind, one_of, refuse
 from beamdyn.common.inputs.described import Described
-from beamdyn.common.results.meanings import Meaning
+from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
 from brakes.common.locking import LEAST_MARGIN

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
+from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.drawing.strokes import INKS
 from beamdyn.common.screens.chart_options import chart_colours, options_of, thinned
 

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from beamdyn.app.drawings import bent_beam
 from beamdyn.app.program import BEAMDYN, SCENE
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.console import table
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.browser_memory import LinkedDesign, named_designs, read_typed, refused_name
 from beamdyn.common.screens.compared_designs import (

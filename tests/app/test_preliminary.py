@@ -10,7 +10,7 @@ pytest.importorskip("nicegui")
 from beamdyn.analyses.about_motion import harvest
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.edge.rendering import in_haste
-from beamdyn.common.results.display_units import ShownUnit
+from beamdyn.common.results.columns import ShownUnit
 from beamdyn.common.results.one_line import few_digits, number
 from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.screens import page_tasks

@@ -8,7 +8,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli import DONE, NO_ANSWER, main
-from beamdyn.common.edge.tables import comparison_table, console
+from beamdyn.common.edge.console import comparison_table, console
 from beamdyn.common.results.comparison import Comparison
 from beamdyn.published import load
 from beamdyn.reproduce import inward_beam, inward_beam_figures, printed_tables

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 import beamdyn as bd
 from beamdyn.analyses import analyses
 from beamdyn.cli import commands
-from beamdyn.common.edge import outputs
-from brakes.cli import answering
+from brakes.cli import main as brakes
 from tests.drawn_texts import drawn_texts, overlapping
 
 ROOT = Path(__file__).parents[2]
@@ -52,7 +51,10 @@ _NO_PICTURE = ("critical", "limits", "matrices", "terms")
 def draw(monkeypatch, tmp_path):
     """Run a command of a program; the pictures that it would write."""
     drawn: list[Figure] = []
-    monkeypatch.setattr(outputs, "save_figure", lambda picture, *_: drawn.append(picture.figure.figure))
+    monkeypatch.setattr(
+        "beamdyn.common.edge.command_options.save_figure",
+        lambda picture, *_: drawn.append(picture.figure.figure),
+    )
     monkeypatch.chdir(ROOT)
 
     def run(main, *words: str) -> list[Figure]:
@@ -81,9 +83,7 @@ def test_examples_in_the_help_of_commands(draw, words):
 
 @pytest.mark.parametrize(("command", "file"), BRAKES)
 def test_brakes(draw, command, file):
-    assert [
-        overlapping(figure) for figure in draw(answering.main, command, str(ROOT / "examples" / file))
-    ] == [[]]
+    assert [overlapping(figure) for figure in draw(brakes, command, str(ROOT / "examples" / file))] == [[]]
 
 
 @pytest.mark.slow

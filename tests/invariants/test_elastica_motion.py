@@ -11,8 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import beamdyn as bd
-from beamdyn.modes.modal.modal_basis import ModalBasis
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import ModalBasis, Model
 from beamdyn.transient.elastica_steps import propagate_elastica
 from beamdyn.transient.elastica_system import ElasticaSystem
 from benchmarks.cases.scenes import HARVESTER

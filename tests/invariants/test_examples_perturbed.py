@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from beamdyn.cli.commands import main as beamdyn
-from brakes.cli.answering import main as brakes
+from brakes.cli.commands import main as brakes
 
 EXAMPLES = Path("examples").resolve()
 # Numbers in quotes are quantities; bare ones with a decimal point are ratios; integers are counts.

@@ -12,7 +12,7 @@ import scipy.linalg
 import beamdyn as bd
 from beamdyn.common.numerics import gauss_points_on, gauss_weights_on
 from beamdyn.equations.assembly import assemble_equations
-from beamdyn.modes.modal.modal_basis import reduce_to_modes
+from beamdyn.modes.modal.model import reduce_to_modes
 from beamdyn.scene.numbers import number_at
 from beamdyn.steady.best_resistance import with_resistance
 from beamdyn.transient.system import ModalSystem

@@ -11,7 +11,7 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.model_error.additions import list_effects
+from beamdyn.modes.model_error.added_effects import list_effects
 from benchmarks.cases.reference.resolved import known_frequencies
 from benchmarks.stated_model_errors import (
     SEED,

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.modes.modal.modal_basis import ModalBasis, find_speed_range
+from beamdyn.modes.modal.model import ModalBasis, find_speed_range
 from benchmarks.cases.scenes import HARVESTER, SHORT_SPIN_UP
 from benchmarks.stated_transient_errors import find_time_error, random_wave_run
 

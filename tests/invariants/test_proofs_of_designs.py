@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.common.inputs.designs import VariedInput
+from beamdyn.common.inputs.described import VariedInput
 from beamdyn.common.results.statements import unannounced
 from beamdyn.scene.numbers import number_at
 from beamdyn.studies.designing.proofs import Proofs

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
 from beamdyn.scene.numbers import with_numbers
 
 SCENE = bd.load_scene(Path(__file__).parents[2] / "examples" / "bimorph.toml")

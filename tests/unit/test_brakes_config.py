@@ -16,10 +16,9 @@ from hypothesis import strategies as st
 from beamdyn.common.edge import input_sweep, varied_inputs
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import Output, chosen
-from beamdyn.common.edge.inputs import describe
-from beamdyn.common.edge.wording import in_degrees
+from beamdyn.common.edge.inputs import describe, in_degrees
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.designs import with_parts
+from beamdyn.common.inputs.described import with_parts
 from brakes import drum, forklift
 from brakes.answers.drum import BRAKE
 from brakes.answers.forklift import FORKLIFT as TYPE

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beamdyn.common.edge.config import MissingValue, path_of
+from beamdyn.common.edge.config import MissingValue
+from beamdyn.common.edge.inputs import path_of
 from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.inputs.array_checks import numbers, pair
 from beamdyn.common.inputs.array_checks import positive as positive_numbers

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from beamdyn.analyses.values import parse_speeds
 from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER
-from beamdyn.common.results.digits import supported, supported_or_range
+from beamdyn.common.words import supported, supported_or_range
 from tests.unit.toml_scenes import without_camber
 
 ROOT = Path(__file__).parents[2]

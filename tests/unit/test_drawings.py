@@ -16,10 +16,9 @@ import beamdyn as bd
 from beamdyn.analyses.results.of_modes import rotor_csv
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.drawing.label_places import LabelRequest, Obstacles, place_labels
-from beamdyn.common.drawing.layout import Fit, arrange, follow
+from beamdyn.common.drawing.layout import Fit, Paper, arrange, follow, lay_out
 from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, Label, Outline, Symbol
-from beamdyn.common.drawing.sheet import Paper, lay_out
 from beamdyn.common.drawing.strokes import INKS
 from beamdyn.common.drawing.svg import page_colours, svg_of
 from beamdyn.common.drawing.text_width import text_size, wrapped

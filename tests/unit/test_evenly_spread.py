@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from beamdyn.common.evenly_spread import evenly_spread
+from beamdyn.common.results.columns import evenly_spread
 
 
 @pytest.mark.parametrize("count, most", [(301, 11), (12, 11), (11, 11), (3, 11), (1, 11), (1000, 2)])

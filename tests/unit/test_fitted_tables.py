@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.console import table
 
 NUMBERS = [[f"{1000 * i + k}.{i}{k}" for k in range(9)] for i in range(4)]
 HEADS = ["beam.thickness [mm]", "speed [rad/s]", *(f"mode {k} [Hz]" for k in range(7))]
@@ -55,7 +55,7 @@ def test_words_are_wrapped_and_not_cut():
 def test_a_study_of_many_modes_at_eighty_columns(run, monkeypatch):
     from pathlib import Path
 
-    monkeypatch.setattr("beamdyn.common.edge.tables._PIPE_WIDTH", 80)
+    monkeypatch.setattr("beamdyn.common.edge.console._PIPE_WIDTH", 80)
     scene = Path(__file__).parents[2] / "examples" / "rolling_harvester.toml"
     _, out, _ = run("study", scene, "--vary", "speed=0,50 rad/s", "--modes", "8")
     assert "…" not in out and "mode 8 [Hz]" in out

@@ -11,7 +11,7 @@ from rich.console import Console
 
 import beamdyn as bd
 from beamdyn.common.edge.views import rows_of, tables_of
-from beamdyn.modes.kinds import kinds_of_modes
+from beamdyn.modes.modal.model import kinds_of_modes
 from benchmarks.cases.scenes import HARVESTER
 
 BEAM = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)

@@ -14,13 +14,13 @@ from rich.console import Console
 
 import beamdyn as bd
 from beamdyn.cli.commands import main
+from beamdyn.common.edge.console import set_apart, table
 from beamdyn.common.edge.rendering import html
-from beamdyn.common.edge.tables import set_apart, table
 from beamdyn.common.edge.views import rows_of, tables_of
-from beamdyn.common.results.digits import count_sure
+from beamdyn.common.words import count_sure
 from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.modes.model_error.added_effects import shift_eigenvalues
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, say_change
-from beamdyn.modes.model_error.reference_modes import shift_eigenvalues
 from tests.conftest import Finished
 
 STRIP = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3)

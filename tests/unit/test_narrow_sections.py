@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.common.results.digits import told_from
 from beamdyn.common.results.statements import MODEL_ERROR
+from beamdyn.common.words import told_from
 from benchmarks import solids
 
 CAMBER = bd.Physics(camber=True)

@@ -10,10 +10,10 @@ import pytest
 from numpy.polynomial import Polynomial
 
 import beamdyn as bd
-from beamdyn.modes.modal import over_speeds
+from beamdyn.modes.modal import solvers
 from beamdyn.modes.modal.eigenproblem import Eigen
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.over_speeds import solve_over_speeds
+from beamdyn.modes.modal.solvers import solve_over_speeds
 
 BEAM = bd.Beam.from_stiffness(1.0, 1.0, Polynomial([1.0, -0.5]), second_bending_stiffness=9.0, twist=1e-3)
 OUTWARD = bd.Scene(BEAM, bd.Mount(0.1, math.pi, math.pi / 2))
@@ -87,7 +87,7 @@ def test_few_solutions_where_loci_are_smooth(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_damped_equations_are_solved_speed_by_speed() -> None:
     scene = replace(OUTWARD, damping_ratio=0.01)
-    found, each = solve_both(scene, np.linspace(0, 2, over_speeds._FEW + 1))
+    found, each = solve_both(scene, np.linspace(0, 2, solvers._FEW + 1))
     np.testing.assert_array_equal(found.eigenvalue, each.eigenvalue)
 
 

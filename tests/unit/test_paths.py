@@ -7,7 +7,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.designs import part_at, with_parts
+from beamdyn.common.inputs.described import part_at, with_parts
 from beamdyn.scene.numbers import SPEED, number_at, paths_of, unit_of, with_numbers
 
 TABLES = {"pad": {"at": ["1 mm", "2 mm"]}, "left arm": {"springs": [{"k": 1.0}, {"k": 2.0}]}}

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 import beamdyn as bd
 from beamdyn.analyses import analyses
-from beamdyn.common.edge.varying import VaryOptions
+from beamdyn.common.edge.command_options import VaryOptions
 from beamdyn.common.plots.curves import mark_missing
 from beamdyn.common.plots.maps import MapAnswer, MapInput, levels_of, plot_maps
 from tests.drawn_texts import drawn_texts

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from beamdyn import cli as beams
-from beamdyn.common.edge import progress
+from beamdyn.common.edge import console
+from beamdyn.common.edge.console import at_work, quiet
 from beamdyn.common.edge.exit_codes import DONE
-from beamdyn.common.edge.progress import at_work, quiet
 from brakes import cli as brakes
 from tests.unit.toml_scenes import without_camber
 
@@ -48,7 +48,7 @@ def on_terminal(monkeypatch):
     monkeypatch.setenv("TERM", "xterm")
 
     def on_terminal(silence=0.001):
-        monkeypatch.setattr(progress, "SILENCE", silence)
+        monkeypatch.setattr(console, "SILENCE", silence)
         screen = Terminal()
         monkeypatch.setattr(sys, "stderr", screen)
         return screen
@@ -68,13 +68,13 @@ def wait_for(said, stream):
 def test_every_command_says_that_it_is_at_work(on_terminal, monkeypatch, finished, command):
     terminal = on_terminal()
     program, name, *options = command
-    hide = progress._ProgressLine.hide
+    hide = console._ProgressLine.hide
 
     def hide_when_shown(line):  # a quick command would end before a busy machine shows it
         wait_for(name, terminal)
         hide(line)
 
-    monkeypatch.setattr(progress._ProgressLine, "hide", hide_when_shown)
+    monkeypatch.setattr(console._ProgressLine, "hide", hide_when_shown)
     assert finished(program.main([name.split()[1], *options]), DONE).out and name in terminal.text
 
 
@@ -82,9 +82,9 @@ def test_every_command_says_that_it_is_at_work(on_terminal, monkeypatch, finishe
 def test_what_has_steps_counts_them(on_terminal, monkeypatch, command):
     on_terminal()
     counts = []
-    count = progress._ProgressLine.count
+    count = console._ProgressLine.count
     monkeypatch.setattr(
-        progress._ProgressLine, "count", lambda line, *steps: (counts.append(steps), count(line, *steps))
+        console._ProgressLine, "count", lambda line, *steps: (counts.append(steps), count(line, *steps))
     )
     program, *arguments = command
     assert program.main(arguments) == DONE
@@ -93,7 +93,7 @@ def test_what_has_steps_counts_them(on_terminal, monkeypatch, command):
 
 
 def test_nothing_is_said_where_standard_error_is_no_terminal(monkeypatch, capsys, tmp_path):
-    monkeypatch.setattr(progress, "SILENCE", 0.001)
+    monkeypatch.setattr(console, "SILENCE", 0.001)
     monkeypatch.setenv("FORCE_COLOR", "1")  # by which rich takes anything for a terminal
     assert beams.main(["modes", without_camber(TYRE, tmp_path)]) == DONE
     with at_work("designs") as count:
@@ -154,7 +154,7 @@ def test_a_line_within_another_takes_its_place(on_terminal):
     ],
 )
 def test_the_time_left_is_that_of_the_last_half_of_the_time(counts, left):
-    pace = progress.Pace()
+    pace = console.Pace()
     for at, done in counts:
         pace.note(at, done)
     now = counts[-1][0]
@@ -163,14 +163,14 @@ def test_the_time_left_is_that_of_the_last_half_of_the_time(counts, left):
 
 
 def test_no_time_is_left_to_say_before_a_step_has_ended():
-    pace = progress.Pace()
+    pace = console.Pace()
     assert pace.left(0.0, 100) is None
     pace.note(0.0, 0)
     assert pace.left(1.0, 100) is None
 
 
 def test_the_time_left_stands_on_the_line(on_terminal, monkeypatch):
-    monkeypatch.setattr(progress.Pace, "left", lambda pace, now, total: 3725.4)
+    monkeypatch.setattr(console.Pace, "left", lambda pace, now, total: 3725.4)
     terminal = on_terminal()
     with at_work("designs") as count:
         count(1, 2)

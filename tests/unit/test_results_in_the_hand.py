@@ -17,13 +17,12 @@ from matplotlib.figure import Figure
 
 import beamdyn as bd
 from beamdyn.cli import main
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.rendering import csv_text, html
-from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import View, rows_of, text_of, view_of
-from beamdyn.common.parallel.store import fingerprint
-from beamdyn.common.results.columns import Column, Columns
-from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.columns import Column, Columns, DisplayUnits
 from beamdyn.common.results.one_line import LONGEST, OneLine, error_at_most, number, spanned
+from beamdyn.common.results.snapshots import fingerprint
 from benchmarks.cases.scenes import HARVESTER, SHORT_SPIN_UP
 from tests.unit.results_of_all_kinds import EXAMPLES_OF_INPUTS, MAKERS, SPEEDS, made, result_classes
 

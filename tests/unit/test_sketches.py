@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from beamdyn.app.program import BEAMDYN
+from beamdyn.common.drawing.layout import lay_out
 from beamdyn.common.drawing.on_axes import figure_of
-from beamdyn.common.drawing.sheet import lay_out
 from beamdyn.common.drawing.sketch import Sketch, sketch_paper, symbols_in
 from beamdyn.common.drawing.text_width import symbol_html, typeset
 from beamdyn.common.screens.form_entries import label, label_html, table_of

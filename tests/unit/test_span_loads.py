@@ -14,7 +14,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.loads.load_path import largest_per_coordinate
 from beamdyn.loads.load_rows import span_rows
 from beamdyn.loads.stations import mode_error, sections_at, stations_at
-from beamdyn.modes.modal.modal_basis import ModalBasis
+from beamdyn.modes.modal.model import ModalBasis
 from benchmarks import loads as loads_measured
 
 LENGTH, WIDTH, THICK, E, RHO, G = 0.5, 0.02, 0.004, 200e9, 7800.0, 9.81

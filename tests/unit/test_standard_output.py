@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from beamdyn import cli as beams
-from beamdyn.common.edge.tables import Terminal, spell, spell_output, table
+from beamdyn.common.edge.console import Terminal, spell, spell_output, table
 from brakes import cli as brakes
 from tests.unit.toml_scenes import without_camber
 

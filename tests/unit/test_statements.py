@@ -8,7 +8,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.analyses.results.cautions import notes_of, warnings_of
 from beamdyn.common.edge.file_words import in_files
-from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.statements import (
     GROWING,
     LIMITS,

@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.common.parallel.store import Store, fingerprint
+from beamdyn.common.parallel.tasks import Store
 from beamdyn.common.results.result import DamagedRecord
+from beamdyn.common.results.snapshots import fingerprint
 
 
 @dataclass(frozen=True)
@@ -217,7 +218,7 @@ def test_the_key_of_a_value_stays_when_the_value_is_used():
 def test_keys_are_the_same_in_another_process():
     code = (
         "from tests.unit.test_store import Point, double; "
-        "from beamdyn.common.parallel.store import fingerprint; "
+        "from beamdyn.common.results.snapshots import fingerprint; "
         "print(fingerprint(Point(0.1, 2.0), double, {'a': [None, 'é']}))"
     )
     env = {**os.environ, "PYTHONHASHSEED": "7"}

@@ -10,7 +10,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.common.edge.views import rows_of
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
+from beamdyn.common.inputs.described import Designs, VariedInput, check_designs
 from beamdyn.scene.numbers import number_at, units, with_numbers
 from tests.unit.toml_scenes import STRIP_TOML
 

@@ -7,7 +7,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli import main
-from beamdyn.common.inputs.designs import MOST_DESIGNS
+from beamdyn.common.inputs.described import MOST_DESIGNS
 from tests.unit.toml_scenes import STRIP_TOML
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -9,7 +9,7 @@ import beamdyn as bd
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.file_words import word as in_terms
 from beamdyn.common.plots.axes_and_lines import note_below
-from beamdyn.common.results.display_units import SI_UNITS
+from beamdyn.common.results.columns import SI_UNITS
 from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import Result
 from beamdyn.common.results.statements import MODEL_ERROR, OUTSIDE, kind_of, of_kind, said_in

@@ -9,13 +9,12 @@ from rich.console import Group
 from rich.text import Text
 
 import beamdyn as bd
+from beamdyn.common.edge.console import table, table_of
 from beamdyn.common.edge.file_words import in_files
-from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, name_in_heads
-from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.results.pictures import figure_of
-from beamdyn.common.words import InputName
+from beamdyn.common.words import InputName, percent, supported
 from beamdyn.studies.beside_data.curve_comparison import say
 from beamdyn.studies.beside_data.single_numbers import say_value
 from beamdyn.studies.designing.target import say_number

@@ -9,11 +9,11 @@ from rich.console import Group
 from rich.text import Text
 
 import beamdyn as bd
-from beamdyn.common.edge.tables import table, table_of
+from beamdyn.common.edge.console import table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows
-from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import rounded_up
+from beamdyn.common.words import supported
 
 _MOST_PEAKS = 8  # largest number of peaks in a table
 _NO_WIDTH = "-"  # text of a table for a peak without a width

@@ -11,12 +11,11 @@ from rich.console import Group
 from rich.text import Text
 
 import beamdyn as bd
-from beamdyn.common.edge.tables import table_of
+from beamdyn.common.edge.console import table_of
 from beamdyn.common.edge.views import View
-from beamdyn.common.results.columns import Column, Columns
-from beamdyn.common.results.digits import supported
-from beamdyn.common.results.display_units import SI_UNITS
+from beamdyn.common.results.columns import SI_UNITS, Column, Columns
 from beamdyn.common.results.statements import said_in
+from beamdyn.common.words import supported
 from beamdyn.equations.effects import words_of_directions
 from beamdyn.loads.span_loads import REMEDIES
 from beamdyn.loads.stations import SHOWN, UNITS

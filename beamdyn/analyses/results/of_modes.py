@@ -11,15 +11,14 @@ from rich.console import Group
 from rich.text import Text
 
 import beamdyn as bd
+from beamdyn.common.edge.console import set_apart, table, table_of
 from beamdyn.common.edge.file_words import in_files
-from beamdyn.common.edge.tables import set_apart, table, table_of
 from beamdyn.common.edge.views import View
-from beamdyn.common.evenly_spread import evenly_spread
-from beamdyn.common.results.columns import Column, Columns, columns_of_rows
-from beamdyn.common.results.digits import supported, supported_or_range
+from beamdyn.common.results.columns import Column, Columns, columns_of_rows, evenly_spread
 from beamdyn.common.results.statements import OUTSIDE, of_kind
+from beamdyn.common.words import supported, supported_or_range
 from beamdyn.equations.effects import first_drawn, words_of_directions
-from beamdyn.modes.kinds import BENDING
+from beamdyn.modes.modal.model import BENDING
 from beamdyn.modes.model_error.left_out_effects import where_worst
 
 if TYPE_CHECKING:

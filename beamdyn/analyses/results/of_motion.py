@@ -13,12 +13,12 @@ from rich.text import Text
 
 import beamdyn as bd
 from beamdyn.analyses.results import of_modes
-from beamdyn.common.edge.tables import set_apart, table, table_of
+from beamdyn.common.edge.console import set_apart, table, table_of
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns
-from beamdyn.common.results.digits import supported
 from beamdyn.common.results.pictures import Figure, figure_of
 from beamdyn.common.results.statements import said_in
+from beamdyn.common.words import supported
 from beamdyn.equations.effects import modelled_directions, words_of_directions
 from beamdyn.scene.motion import RollingWheel
 

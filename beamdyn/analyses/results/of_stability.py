@@ -9,14 +9,12 @@ import numpy as np
 from rich.console import Group
 
 import beamdyn as bd
+from beamdyn.common.edge.console import table, table_of
 from beamdyn.common.edge.file_words import in_files
-from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
-from beamdyn.common.evenly_spread import evenly_spread
-from beamdyn.common.inputs.designs import VariedInput
-from beamdyn.common.results.columns import Column, Columns, column_named, name_in_heads
-from beamdyn.common.results.digits import supported_or_range
-from beamdyn.common.words import InputName
+from beamdyn.common.inputs.described import VariedInput
+from beamdyn.common.results.columns import Column, Columns, column_named, evenly_spread, name_in_heads
+from beamdyn.common.words import InputName, supported_or_range
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED
 
 _FEW_POINTS = 7  # number of points of each curve in a table

@@ -13,22 +13,21 @@ from rich.text import Text
 import beamdyn as bd
 from beamdyn.analyses.results.of_data import VIEWS as OF_DATA
 from beamdyn.analyses.results.of_stability import VIEWS as OF_STABILITY
+from beamdyn.common.edge.console import table, table_of
 from beamdyn.common.edge.file_words import in_files
-from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.edge.views import View
-from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.results.columns import (
     Column,
     Columns,
+    ShownUnit,
     attributes,
     column_named,
     columns_of_rows,
+    evenly_spread,
     name_in_heads,
 )
-from beamdyn.common.results.digits import supported
-from beamdyn.common.results.display_units import ShownUnit
 from beamdyn.common.results.pictures import Figure, figure_of
-from beamdyn.common.words import InputName
+from beamdyn.common.words import InputName, supported
 from beamdyn.equations.effects import first_drawn
 
 if TYPE_CHECKING:

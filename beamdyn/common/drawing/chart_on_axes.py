@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from textwrap import fill
 from typing import Any
 
-from beamdyn.common.drawing.chart import Chart
+from beamdyn.common.drawing.shapes import Chart
 from beamdyn.common.drawing.strokes import ink
 from beamdyn.common.results.pictures import COLOURS, Axes, Figure
 

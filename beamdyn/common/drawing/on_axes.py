@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamdyn.common.drawing import strokes
-from beamdyn.common.drawing.layout import Fit, Frame, Layout, arrange, heading
+from beamdyn.common.drawing.layout import Fit, Frame, Layout, Paper, Rows, arrange, heading, lay_out
 from beamdyn.common.drawing.shapes import Drawing
-from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
 from beamdyn.common.drawing.strokes import GROUND, HALO, Letters, Stroke, colour, letters_of, strokes_of
 from beamdyn.common.drawing.text_width import LINE_HEIGHT
 from beamdyn.common.results.pictures import Axes, Figure, new_figure

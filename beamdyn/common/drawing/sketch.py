@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from beamdyn.common.drawing.layout import Paper, Rows
 from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, arc
-from beamdyn.common.drawing.sheet import Paper, Rows
 from beamdyn.common.drawing.text_width import typeset
 
 Sketcher = Callable[[Mapping[str, str]], Rows]  # a function from the entries of a form to rows of drawings

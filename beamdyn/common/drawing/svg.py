@@ -10,8 +10,7 @@ from zlib import crc32
 import numpy as np
 
 from beamdyn.common.drawing import strokes
-from beamdyn.common.drawing.layout import Fit, Layout
-from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
+from beamdyn.common.drawing.layout import Fit, Layout, Paper, Rows, lay_out
 from beamdyn.common.drawing.text_width import FAMILY, SUBSCRIPT, line_width, symbol_width
 
 _DARK = "@media (prefers-color-scheme: dark)"

@@ -13,9 +13,8 @@ from typing import Any, Literal
 
 from cyclopts import App, CycloptsError
 
+from beamdyn.common.edge.console import Terminal, at_work, quiet, spell_output
 from beamdyn.common.edge.file_words import TYPED, check_names, in_files, say_mistake
-from beamdyn.common.edge.progress import at_work, quiet
-from beamdyn.common.edge.tables import Terminal, spell_output
 from beamdyn.common.results.statements import OutsideLinearTheory
 
 DONE, NO_ANSWER, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130

@@ -13,7 +13,7 @@ from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.inputs import Section
 from beamdyn.common.edge.varied_inputs import Axis, Coordinate, designs_of, unknown
 from beamdyn.common.inputs.checks import reason_of
-from beamdyn.common.inputs.designs import Designs, VariedInput, part_at, with_parts
+from beamdyn.common.inputs.described import Designs, VariedInput, part_at, with_parts
 from beamdyn.common.parallel.tasks import Task, TaskRunner
 from beamdyn.common.results.columns import Column, Columns, column_named
 from beamdyn.common.results.one_line import counted, warned

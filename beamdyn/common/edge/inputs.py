@@ -1,20 +1,26 @@
-"""Tables of inputs: each input is described once, for files, commands, forms and documentation."""
+"""Tables of inputs: each input is described once, for files, commands, forms and documentation.
+
+Messages of the core, which takes SI floats, are reworded for files: their keys, and degrees for radians.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import KW_ONLY, dataclass
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import lru_cache
 from importlib import import_module
 from typing import Any, ClassVar, Literal, get_args, get_origin
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
-from beamdyn.common.edge.units import InvalidInput, quantity, unit_as_written
-from beamdyn.common.inputs.checks import real
+from beamdyn.common.edge.units import InvalidInput, last_quantity, quantity, unit_as_written
+from beamdyn.common.inputs.checks import OUT_OF_RANGE, InvalidValue, real
 from beamdyn.common.inputs.described import Described
 
 
@@ -270,3 +276,130 @@ def parts_of(annotation: Any) -> Iterator[Any]:
     yield annotation
     for part in get_args(annotation):
         yield from parts_of(part)
+
+
+# Messages of the core in the words of files ----------------------------------------------------------
+
+_SUSPECT = 12.0  # number of decades from 1, above which a number may be mistyped
+_FAR = "far too large or too small beside the others: the results leave the range of numbers"
+_CHECK = "check its exponent and its unit"
+
+
+@contextmanager
+def of_file(keys: Mapping[str, str]) -> Iterator[None]:
+    """Reword `InvalidValue` errors in this context: keys of a file for arguments, and angles in degrees.
+
+    Parameters
+    ----------
+    keys : mapping
+        Keys by the names of the arguments that they stand for, e.g. ``{"lining[0]": "lining_start"}``.
+    """
+    try:
+        yield
+    except InvalidValue as error:
+        named = replace(
+            error, field=keys.get(error.field, error.field), other=keys.get(error.other, error.other)
+        )
+        raise (in_degrees(named) if error.unit == "rad" else named) from None
+
+
+@contextmanager
+def in_range(design: BaseModel) -> Iterator[None]:
+    """Raise a ValueError for an overflow in this context, of which a mistyped exponent is the likely cause.
+
+    Parameters
+    ----------
+    design : BaseModel
+        The design that is computed. The message names its number farthest from 1, if that is far enough.
+
+    Raises
+    ------
+    ValueError
+        In place of an overflow or a division by zero.
+    """
+    try:
+        with np.errstate(over="raise", divide="raise", invalid="raise"):
+            yield
+    except (OverflowError, FloatingPointError, ZeroDivisionError):
+        path, number = max(_numbers(dict(design)), key=lambda found: _decades(found[1]), default=("", 1.0))
+        if _decades(number) < _SUSPECT:
+            raise ValueError(OUT_OF_RANGE) from None
+        units = {entry.path: entry.quantity.unit for entry in describe(type(design))}
+        raise InvalidValue(path, number, _FAR, _CHECK, units.get(path, "")) from None
+
+
+def _numbers(given: object, path: str = "") -> Iterator[tuple[str, float]]:
+    """Yield the numbers of a design, each with its path, such as "pad[0]"."""
+    match given:
+        case float():
+            yield path, given
+        case np.ndarray():
+            yield from ((path, float(number)) for number in given.ravel())
+        case BaseModel() | dict():
+            for key, value in dict(given).items():
+                yield from _numbers(value, f"{path}.{key}".removeprefix("."))
+        case list() | tuple():
+            for i, value in enumerate(given):
+                yield from _numbers(value, f"{path}[{i}]")
+
+
+def _decades(number: float) -> float:
+    """Return how far a size is from 1, in decades; 0 for zero."""
+    return abs(math.log10(abs(number))) if number and math.isfinite(number) else 0.0
+
+
+def in_degrees(error: InvalidValue) -> InvalidValue:
+    """Convert the numbers of an error about an angle to degrees."""
+    return error.in_unit("deg", math.degrees)
+
+
+def in_millimetres(error: InvalidValue) -> InvalidValue:
+    """Convert the numbers of an error about a length below a metre to mm; others are unchanged."""
+    short = error.unit == "m" and isinstance(error.value, float) and abs(error.value) < 1
+    return error.in_unit("mm", lambda metres: 1e3 * metres) if short else error
+
+
+def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
+    """Convert an error's numbers to the unit at the end of a text, as in "+-2 g/cm3", if the unit fits."""
+    return error.in_unit(*unit_as_written(last_quantity(text), error.unit))
+
+
+# The input that an error is about --------------------------------------------------------------------
+
+
+def wholes_of(field: str) -> Iterator[str]:
+    """Yield a field and the wholes it is part of: "width.values[1]", "width.values" and "width"."""
+    yield field
+    if (cut := max(field.rfind("."), field.rfind("["))) > 0:
+        yield from wholes_of(field[:cut])
+
+
+def without_indices(field: str) -> str:
+    """Return a field without indices, as inputs are described: "point_mass.mass" for "point_mass[0].mass"."""
+    return re.sub(r"\[\d+\]", "", field)
+
+
+def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
+    """Return the path of the input that an error of the core is about; empty if there is no single one.
+
+    Parameters
+    ----------
+    error : Exception
+        The error; only an `InvalidValue` names its argument.
+    paths : iterable of str
+        Paths of inputs.
+    table : str
+        Path of the table in which the input is looked for.
+    """
+    field = error.field if isinstance(error, InvalidValue) else ""
+    paths = list(paths)
+    names = (*wholes_of(field), without_indices(field))
+    return next(filter(None, (_path_ending(name, paths, table) for name in names)), "")
+
+
+def _path_ending(field: str, paths: list[str], table: str) -> str:
+    """Return the only path within a table that ends with a field; empty if there are none or several."""
+    exact = f"{table}.{field}".lstrip(".")
+    ends = {path for path in paths if field and f".{path}".endswith(f".{field}")}
+    inside = {path for path in ends if path.startswith(table and f"{table}.")}
+    return exact if exact in inside else inside.pop() if len(inside) == 1 else ""

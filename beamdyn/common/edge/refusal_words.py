@@ -9,8 +9,8 @@ from cyclopts import CycloptsError
 from numpy.linalg import LinAlgError
 
 from beamdyn.common.edge.file_words import TYPED, say, word
+from beamdyn.common.edge.inputs import in_unit_of
 from beamdyn.common.edge.units import InvalidInput, last_quantity
-from beamdyn.common.edge.wording import in_unit_of
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, reason_of
 
 # Names that commands have for arguments of the core, apart from options of the same name.

@@ -8,14 +8,14 @@ import numpy as np
 from rich.console import Group
 from rich.text import Text
 
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.input_sweep import sweep_csv
-from beamdyn.common.edge.tables import table
 from beamdyn.common.edge.views import View
 from beamdyn.common.plots.curves import sweep_figure
 from beamdyn.common.results.columns import Column, Columns, column_named, name_in_heads
-from beamdyn.common.results.digits import percent, supported
 from beamdyn.common.spreading.spread_result import Spread, spread_figure
 from beamdyn.common.spreading.tolerances import Normal
+from beamdyn.common.words import percent, supported
 
 _DIGITS = 6  # largest number of digits of an answer
 # Characters: of a table's width, between columns, and of a pair of shares.

@@ -10,11 +10,11 @@ from typing import get_args, get_origin
 
 import numpy as np
 
+from beamdyn.common.edge.command_options import SPREAD
 from beamdyn.common.edge.inputs import Input, parts_of
 from beamdyn.common.edge.units import InvalidInput, in_plain_characters, odd_character, quantity
-from beamdyn.common.edge.varying import SPREAD
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.designs import Designs, VariedInput
+from beamdyn.common.inputs.described import Designs, VariedInput
 from beamdyn.common.spreading.tolerances import SpreadInput, parse_tolerance
 
 # Tolerances ----------------------------------------------------------------------------------------

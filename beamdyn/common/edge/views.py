@@ -14,12 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.console import Console, RenderableType
 
+from beamdyn.common.edge.console import table, table_of
 from beamdyn.common.edge.rendering import html, png
-from beamdyn.common.edge.tables import table, table_of
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.inputs.described import descriptions
-from beamdyn.common.results.columns import Columns
-from beamdyn.common.results.meanings import meanings
+from beamdyn.common.results.columns import Columns, meanings
 from beamdyn.common.results.one_line import brief, spanned
 from beamdyn.common.results.pictures import figure_of
 from beamdyn.common.results.result import Result, plain

@@ -1,16 +1,25 @@
-"""Descriptions of inputs as plain data, from which files, forms and help texts are made."""
+"""Inputs as plain data: their descriptions, and designs, which give values to several of them.
+
+Files, forms and help texts are made from the descriptions.  In a design each input is at its path in nested
+objects: mappings, sequences, pydantic models of files, and dataclasses; a path names a field of a dataclass
+by its key in files.
+"""
 
 from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Iterator
-from dataclasses import KW_ONLY, dataclass
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import KW_ONLY, dataclass, fields, is_dataclass, replace
 from functools import cache
 from types import UnionType
 from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
-from beamdyn.common.inputs.checks import real, refuse
+import numpy as np
+
+from beamdyn.common.inputs.checks import InvalidValue, one_of, real, refuse
+from beamdyn.common.words import InputName
 
 
 @dataclass(frozen=True)
@@ -146,3 +155,226 @@ def descriptions(made: Callable[..., Any]) -> dict[str, Described]:
     """Return the descriptions of the arguments of a dataclass or function, in order."""
     hints = described_hints(made)
     return {name: found for name, hint in hints.items() if (found := description(hint))}
+
+
+# Designs ---------------------------------------------------------------------------------------------
+
+_STEP = re.compile(r"\[(\d+)\]|((?:(?!\[\d+\])[^.])+)")
+_AXES = "xy"  # names of the coordinates of a point
+
+
+def part_at(whole: Any, path: str) -> Any:
+    """Return the part of an object at a path; None if there is nothing."""
+    for step in _steps(path):
+        whole = _part(whole, step)
+    return whole
+
+
+def with_parts(whole: Any, parts: Mapping[str, Any]) -> Any:
+    """Copy an object with parts replaced, by their paths; all at once, as they may depend on each other.
+
+    Dataclasses check the values; models of files do not.
+    """
+    tree = _Tree()
+    for path, value in parts.items():
+        *inner, last = _steps(path)
+        node = tree
+        for step in inner:
+            node = node.setdefault(step, _Tree())
+        node[last] = value
+    return _replaced(whole, tree)
+
+
+class _Tree(dict[Any, Any]):
+    """New values by the first step of their paths; those of longer paths are in trees within the tree."""
+
+
+def _steps(path: str) -> list[str | int]:
+    return [int(place) if place else name for place, name in _STEP.findall(path)]
+
+
+def _place(step: str | int) -> int:
+    return _AXES.index(step) if isinstance(step, str) else step
+
+
+def _part(whole: Any, step: str | int) -> Any:
+    if isinstance(whole, Mapping):
+        return whole.get(step)
+    if isinstance(whole, list | tuple):
+        return whole[_place(step)] if _place(step) < len(whole) else None
+    return getattr(whole, field_of(type(whole), str(step)), None)
+
+
+def _replaced(whole: Any, new: Any) -> Any:
+    if not isinstance(new, _Tree):
+        return new
+    if isinstance(whole, list | tuple):
+        places = {_place(step): part for step, part in new.items()}
+        return type(whole)(
+            _replaced(part, places[k]) if k in places else part for k, part in enumerate(whole)
+        )
+    made = {field_of(type(whole), step): _replaced(_part(whole, step), part) for step, part in new.items()}
+    if is_dataclass(whole) and not isinstance(whole, type):
+        return replace(whole, **made)
+    whole = {} if whole is None else whole
+    return (
+        {**whole, **made} if isinstance(whole, Mapping) else type(whole).model_construct(**dict(whole) | made)
+    )
+
+
+def field_of(made: type, key: str) -> str:
+    """Return the field of a dataclass with a key in files; for other classes the key itself."""
+    return _fields_by_key(made).get(key, key)
+
+
+@cache
+def _fields_by_key(made: type) -> dict[str, str]:
+    if not is_dataclass(made):
+        return {}
+    hints = get_type_hints(made, include_extras=True)
+    found = {each.name: description(hints[each.name]) for each in fields(made)}
+    return {(each and each.key) or name: name for name, each in found.items()}
+
+
+COMBINATIONS = ("product", "zip")
+MOST_DESIGNS = 1_000_000  # largest number of designs whose answers fit into memory
+
+
+@dataclass(frozen=True)
+class VariedInput:
+    """An input that is varied.
+
+    Parameters
+    ----------
+    name : str
+        Its path in files, such as "beam.thickness".
+    unit : str
+        Unit of the values.
+    values : ndarray, shape (n,)
+        Its values [unit].
+
+    Examples
+    --------
+    >>> strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    >>> varied = bd.study(bd.Scene(strip), {"beam.thickness": [0.0002, 0.0004]}, modes=1).inputs[0]
+    >>> varied.name, varied.unit
+    ('beam.thickness', 'm')
+    """
+
+    name: str
+    unit: str
+    values: np.ndarray
+
+    @property
+    def label(self) -> str:
+        """Name and unit, for tables."""
+        return f"{self.name} [{self.unit}]" if self.unit else self.name
+
+    @property
+    def in_words(self) -> str:
+        """Name as on forms, for pictures: "thickness" for "beam.thickness"."""
+        return InputName(self.name).on_form
+
+
+@dataclass(frozen=True)
+class Designs:
+    """N designs, as combinations of inputs; the last input of a product changes fastest.
+
+    Parameters
+    ----------
+    inputs : sequence of VariedInput
+        The inputs.
+    combine : {"product", "zip"}
+        Whether each value is combined with each of the other inputs, or the first values of all inputs make
+        a design, the second values another, and so on.
+    """
+
+    inputs: Sequence[VariedInput]
+    combine: str = "product"
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Shape of the answers: an axis for each input, or one for all that are taken together."""
+        lengths = tuple(len(each.values) for each in self.inputs)
+        return lengths[:1] if self.combine == "zip" else lengths
+
+    @property
+    def count(self) -> int:
+        """Number N of designs; 1 without inputs."""
+        return math.prod(self.shape)
+
+    def columns(self, rows: slice | np.ndarray = slice(None)) -> dict[str, np.ndarray]:
+        """Return the values (R,) of each input in R of the designs, by name."""
+        places = np.arange(*rows.indices(self.count)) if isinstance(rows, slice) else rows
+        if self.combine == "zip":
+            return {each.name: each.values[places] for each in self.inputs}
+        indices = np.unravel_index(places, self.shape) if self.inputs else ()
+        return {each.name: each.values[i] for each, i in zip(self.inputs, indices, strict=True)}
+
+    def at(self, *place: int) -> dict[str, float]:
+        """Return the values by name of the design at a place (i1, ..., id) of `shape`.
+
+        Raises
+        ------
+        ValueError
+            If there are not as many indices as axes, or one is out of range.
+        """
+        if len(place) != len(self.shape):
+            raise ValueError(f"place {place}: give {len(self.shape)} indices, one for each of {self.shape}")
+        if any(not -length <= i < length for i, length in zip(place, self.shape, strict=True)):
+            raise ValueError(f"place {place}: it is outside {self.shape}, where indices begin at 0")
+        places = place * len(self.inputs) if self.combine == "zip" else place
+        return {each.name: float(each.values[i]) for each, i in zip(self.inputs, places, strict=True)}
+
+    def chunks(self, size: int) -> list[slice]:
+        """Split the rows of designs into slices of at most a size."""
+        return [slice(k, min(k + size, self.count)) for k in range(0, self.count, size)]
+
+    def without(self, name: str) -> Designs:
+        """Return a copy without one of the inputs."""
+        return Designs([each for each in self.inputs if each.name != name], self.combine)
+
+    def extremes(self) -> Iterator[dict[str, float]]:
+        """Yield all combinations of the smallest and the largest value of each input."""
+        ends = [VariedInput(i.name, i.unit, np.unique([i.values.min(), i.values.max()])) for i in self.inputs]
+        yield from rows_of(Designs(ends).columns())
+
+
+def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
+    """Convert columns of values (R,), by name, to R designs, each with its values by name."""
+    return [
+        dict(zip(columns, row, strict=True))
+        for row in zip(*(c.tolist() for c in columns.values()), strict=True)
+    ]
+
+
+def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "vary") -> None:
+    """Refuse unknown combinations, repeated inputs, unequal lengths taken together, and too many designs.
+
+    Parameters
+    ----------
+    designs : Designs
+        The designs.
+    most : int
+        Largest number of designs.
+    option : str
+        Name of the inputs in the message.
+
+    Raises
+    ------
+    InvalidValue
+        With the reason.
+    """
+    one_of("combine", designs.combine, COMBINATIONS)
+    names = [each.name for each in designs.inputs]
+    for name in names:
+        if names.count(name) > 1:
+            raise InvalidValue(option, name, "the input is given twice", "give all its values at once")
+    lengths = [len(each.values) for each in designs.inputs]
+    if designs.combine == "zip" and len({*lengths}) > 1:
+        bound = f"the inputs have {' and '.join(map(str, lengths))} values"
+        raise InvalidValue("combine", "zip", bound, "give as many of each to take them together")
+    if designs.count > most:
+        counts = " x ".join(map(str, lengths)) if designs.combine == "product" else str(designs.count)
+        bound = f"at most {most} designs are solved"
+        raise InvalidValue(option, f"{counts} values", bound, "give fewer values")

@@ -1,8 +1,13 @@
-"""Tasks of a long computation: run in this process, in workers or by an executor, and kept in a store."""
+"""Tasks of a long computation: run in this process, in workers or by an executor, and kept in a store.
+
+A store is a folder of files, which are named by hashes of the requests.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import json
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
@@ -12,10 +17,91 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from beamdyn.common.inputs.checks import InvalidValue, count, function
-from beamdyn.common.parallel.store import Store, fingerprint
 from beamdyn.common.parallel.workers import Workers, one_blas_thread
-from beamdyn.common.results.result import DamagedRecord
-from beamdyn.common.results.snapshots import decode, encode
+from beamdyn.common.results.files import ASIDE, write_text
+from beamdyn.common.results.result import DamagedRecord, seal, unseal
+from beamdyn.common.results.snapshots import decode, encode, fingerprint
+
+_MARKER = "store.json"  # file that tells a store from a folder with other content
+_RECORD = re.compile(r"[0-9a-f]{32}\.json")  # name of the file of a record: see `fingerprint`
+_REMEDY = "name a folder that does not exist yet, or an earlier store"
+
+
+class Store:
+    """A folder of records; each is written in one step, sealed by a checksum, and never changed.
+
+    Opening it makes the folder, or checks that it is an earlier store and can be written.
+
+    Parameters
+    ----------
+    path : str or Path
+        The folder; its parents must exist.
+    kind : str
+        Kind of results: a store of another kind is refused.
+
+    Raises
+    ------
+    ValueError
+        If `path` is a file, holds anything else, or cannot be written.
+    """
+
+    def __init__(self, path: str | Path, kind: str) -> None:
+        self.path, self.kind = Path(path), kind
+        try:
+            if self.path.exists() and not self.path.is_dir():
+                raise ValueError(f"store = {str(self.path)!r} is a file; {_REMEDY}")
+            self.path.mkdir(exist_ok=True)
+            content = [p.name for p in self.path.iterdir() if not p.name.startswith(ASIDE)]
+            if content and self._marked(content) != self.kind:
+                raise ValueError(
+                    f"store = {str(self.path)!r} holds something else than a {self.kind} "
+                    f"({min(content)!r}, for instance); {_REMEDY}"
+                )
+            write_text(self.path / _MARKER, json.dumps({"kind": self.kind}))
+        except OSError as error:
+            reason = error.strerror or str(error)
+            raise ValueError(f"store = {str(path)!r}: it cannot be written ({reason}); {_REMEDY}") from None
+
+    def _marked(self, content: Sequence[str]) -> object:
+        """Return the kind of results that the folder's marker file names.
+
+        If that file is damaged, return this store's kind if all other files are records, else None.
+        """
+        try:
+            return json.loads((self.path / _MARKER).read_bytes())["kind"]
+        except (OSError, ValueError, LookupError, TypeError):
+            records = [name for name in content if name != _MARKER]
+            return self.kind if records and all(map(_RECORD.fullmatch, records)) else None
+
+    def file(self, key: str) -> Path:
+        """Return the path of the record with a key."""
+        return self.path / f"{key}.json"
+
+    def read(self, key: str) -> dict[str, Any] | None:
+        """Read the record with a key; None if there is none.
+
+        Raises
+        ------
+        DamagedRecord
+            If the record is not as it was written.
+        """
+        try:
+            text = self.file(key).read_bytes()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise DamagedRecord(f"it cannot be read ({error.strerror})") from None
+        record = unseal(text)
+        if record.pop("key", None) != key:
+            raise DamagedRecord("it is the record of another key: its file was renamed")
+        return record
+
+    def write(self, key: str, record: Mapping[str, Any]) -> None:
+        """Store a record of JSON's types under a key; floats keep all their digits."""
+        write_text(self.file(key), json.dumps(seal({**record, "key": key})))
+
+
+# Tasks -----------------------------------------------------------------------------------------------
 
 Progress = Callable[[int, int], object]
 Solve = Callable[[Any], Any]

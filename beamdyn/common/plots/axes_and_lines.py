@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, DASHES, Axes, Figure, add_legend, new_axes
 
 _LETTERS = 15.0  # number of letters of a note that fit into an inch

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.plots.axes_and_lines import draw_by_plane, set_up_axes, style_by_plane
-from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes
 
 _MOST_ABOVE = 2.0  # highest frequency shown, over that of the steepest line at the top speed

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.plots.axes_and_lines import line_style, position_label, set_up_axes
 from beamdyn.common.plots.maps import MapAnswer, MapInput, map_size, plot_maps
-from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
+from beamdyn.common.results.columns import SI_UNITS, DisplayUnits, evenly_spread
 from beamdyn.common.results.pictures import COLOURS, Axes, Figure, add_legend, new_figure
 
 _MOST_CURVES = 8

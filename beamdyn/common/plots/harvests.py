@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from beamdyn.common.plots.axes_and_lines import draw_lines, new_axes, panels, set_up_axes, speed_label
-from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 
 _KM_PER_HOUR = 3.6  # factor from m/s to km/h

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from beamdyn.common.plots import axes_and_lines
-from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
+from beamdyn.common.results.columns import SI_UNITS, DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 from beamdyn.common.results.pictures import save_figure as save_figure  # exported together with the plots
 

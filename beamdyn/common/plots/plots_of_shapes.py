@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beamdyn.common.plots import axes_and_lines
-from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
+from beamdyn.common.results.columns import SI_UNITS, DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 
 if TYPE_CHECKING:

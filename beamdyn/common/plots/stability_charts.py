@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from beamdyn.common.inputs.designs import VariedInput
+from beamdyn.common.inputs.described import VariedInput
 from beamdyn.common.plots.axes_and_lines import set_up_axes
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 

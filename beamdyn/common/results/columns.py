@@ -1,15 +1,169 @@
-"""Columns of results as data: name, unit and values, from which files, data frames and tables follow."""
+"""Columns of results as data, and the units in which they are shown; everything else is in SI.
+
+A column has a name, a unit and values, and perhaps a meaning: tables, files, data frames and pictures follow
+from it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from math import pi
 from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple, Self, get_args, get_type_hints
 
 import numpy as np
 
-from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.inputs.checks import InvalidValue, one_of
+from beamdyn.common.results.one_line import known_digits, spanned
+
+# By kind of quantity: how many of each unit make one of the SI unit, which comes first.
+_PER_SI = {
+    "speed": {"rad/s": 1.0, "rpm": 30 / pi, "deg/s": 180 / pi},
+    "length": {"m": 1.0, "mm": 1e3, "cm": 1e2, "um": 1e6, "in": 1 / 0.0254, "ft": 1 / 0.3048},
+}
+
+
+class ShownUnit(NamedTuple):
+    """A unit in which a quantity is shown, and its size.
+
+    Parameters
+    ----------
+    name : str
+        Name of the unit, such as "rpm".
+    per_si : float
+        Number of this unit in one SI unit.
+    """
+
+    name: str
+    per_si: float
+
+    def of(self, values: Any) -> Any:
+        """Convert values from SI to this unit."""
+        return values * self.per_si
+
+    def say(self, value: float, digits: int = 6) -> str:
+        """Format a value, given in SI, in this unit."""
+        return f"{known_digits(value * self.per_si):.{digits}g} {self.name}"
+
+
+@dataclass(frozen=True)
+class DisplayUnits:
+    """Units in which speeds and lengths are shown.
+
+    Parameters
+    ----------
+    speed : {"", "rad/s", "rpm", "deg/s"}
+        Unit of speeds of rotation; "": that which is usual in its place, rad/s.
+    length : {"", "m", "mm", "cm", "um", "in", "ft"}
+        Unit of lengths; "": that which is usual in its place, such as mm for deflections.
+
+    Raises
+    ------
+    ValueError
+        If a unit is not known.
+
+    Examples
+    --------
+    >>> scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), units=bd.DisplayUnits(speed="rpm"))
+    >>> scene.units.speed
+    'rpm'
+    """
+
+    speed: str = ""
+    length: str = ""
+
+    def __post_init__(self) -> None:
+        for kind, known in _PER_SI.items():
+            one_of(f"units.{kind}", getattr(self, kind), ("", *known))
+
+    @classmethod
+    def of(cls, given: DisplayUnits | Mapping[str, str] | None) -> DisplayUnits:
+        """Make display units from a mapping such as {"speed": "rpm"}.
+
+        Raise a ValueError for an unknown kind.
+        """
+        if isinstance(given, cls):
+            return given
+        kinds = [each.name for each in fields(cls)]
+        remedy = 'give a dictionary such as {"speed": "rpm", "length": "mm"}'
+        if given is not None and not isinstance(given, Mapping):
+            raise InvalidValue("units", given, "", remedy)
+        for kind in given or {}:
+            if kind not in kinds:
+                raise InvalidValue("units", kind, f"it is none of {', '.join(kinds)}", remedy)
+        return cls(**(given or {}))
+
+    def with_others(self, given: DisplayUnits | Mapping[str, str] | None) -> DisplayUnits:
+        """Return a copy with the given units in place of its own."""
+        new = DisplayUnits.of(given)
+        return DisplayUnits(new.speed or self.speed, new.length or self.length)
+
+    def speed_unit(self) -> ShownUnit:
+        """Return the unit of speeds; rad/s if none was given."""
+        return self._unit("speed", "rad/s")
+
+    def length_unit(self, usual: str = "mm") -> ShownUnit:
+        """Return the unit of lengths, or the one that is usual in a place if none was given."""
+        return self._unit("length", usual)
+
+    def _unit(self, kind: str, usual: str) -> ShownUnit:
+        name = getattr(self, kind) or usual
+        return ShownUnit(name, _PER_SI[kind][name])
+
+
+SI_UNITS = DisplayUnits()
+
+
+class InDisplayUnits:
+    """Base of classes that are shown in units: those of their scene, if they have one, or others."""
+
+    @property
+    def display_units(self) -> DisplayUnits:
+        """Units of tables, columns and pictures: those of the scene, unless `in_units` gave others."""
+        given = vars(self).get("_display_units")
+        return given or getattr(getattr(self, "scene", None), "units", SI_UNITS)
+
+    def say_speed(self, speeds: np.ndarray | float) -> str:
+        """Format a speed, or the range of several, in its display unit."""
+        unit = self.display_units.speed_unit()
+        return spanned(np.multiply(speeds, unit.per_si), unit.name)
+
+    def say_length(self, lengths: np.ndarray | float) -> str:
+        """Format a length, or the range of several, in its display unit."""
+        unit = self.display_units.length_unit()
+        return spanned(np.multiply(lengths, unit.per_si), unit.name)
+
+    def in_units(self, speed: str = "", length: str = "") -> Self:
+        """Return a copy with tables, columns and pictures in other units; its numbers stay SI.
+
+        Parameters
+        ----------
+        speed : {"rad/s", "rpm", "deg/s"}, optional
+            Unit of speeds of rotation.
+        length : {"m", "mm", "cm", "um", "in", "ft"}, optional
+            Unit of lengths.
+
+        Raises
+        ------
+        ValueError
+            If a unit is not known.
+        """
+        shown = object.__new__(type(self))
+        vars(shown).update(vars(self))
+        units = self.display_units.with_others({"speed": speed, "length": length})
+        object.__setattr__(shown, "_display_units", units)
+        return shown
+
+
+def known_unit(kind: str, name: str) -> str:
+    """Return the name of a unit in which a kind of quantity can be shown; "" if it is none."""
+    name = name.replace(" ", "")
+    return name if name in _PER_SI[kind] else ""
+
+
+# Columns ---------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -144,3 +298,38 @@ def name_in_heads(name: str, signs: str = ".") -> str:
     """Return a name as a part of a head: all but letters, digits and given signs become "_"."""
     kept = (c if (c.isascii() and c.isalnum()) or c in signs else " " for c in name)
     return "_".join("".join(kept).split())
+
+
+# Meanings of single numbers --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """Meaning of a number of a result, for ``Annotated[float, Meaning("m", "stopping distance")]``.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit; "" for a plain number.
+    words : str
+        Meaning for people: a phrase without a full stop.
+    shown : str
+        Unit in which people see it, if that is not the SI unit, such as "mm".
+    """
+
+    unit: str
+    words: str
+    shown: str = ""
+
+
+@cache
+def meanings(kind: type) -> dict[str, Meaning]:
+    """Return the meanings of the fields of a result's class that have one, in order."""
+    hints = get_type_hints(kind, include_extras=True).items()
+    stated = ((name, part) for name, hint in hints for part in get_args(hint) if isinstance(part, Meaning))
+    return dict(stated)
+
+
+def evenly_spread(count: int, most: int) -> np.ndarray:
+    """Select at most `most` of `count` indices, evenly spread, with the first and the last; ascending."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))

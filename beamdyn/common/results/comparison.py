@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from beamdyn.common.results.digits import supported
+from beamdyn.common.words import supported
 
 
 class Verdict:

@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from beamdyn._version import __version__
-from beamdyn.common.results.display_units import DisplayUnits, InDisplayUnits
+from beamdyn.common.results.columns import DisplayUnits, InDisplayUnits
 from beamdyn.common.results.files import as_path, check_writable, write_text
 from beamdyn.common.results.one_line import OneLine, brief, shortened, warned
 from beamdyn.common.results.pictures import labelled
-from beamdyn.common.results.read_only import ReadOnlyArrays, make_read_only
 from beamdyn.common.results.shown_by import MEDIA
-from beamdyn.common.results.snapshots import decode, encode, nullified, plain
+from beamdyn.common.results.snapshots import ReadOnlyArrays, decode, encode, make_read_only, nullified, plain
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -1,5 +1,6 @@
-"""Objects as values of JSON's types: for reading, and to make them again, equal to the bit.
+"""Dataclasses of this package as data: with arrays that cannot be written, and as values of JSON's types.
 
+Values of JSON's types serve for reading, and to make objects again, equal to the bit.
 Numbers, strings, statements, arrays, containers, dataclasses and named tuples of this package are data.
 Anything else (a function, an object of another package's class) is left out; in the object that is made
 again, a `LeftOut` takes its place.
@@ -9,15 +10,68 @@ from __future__ import annotations
 
 import base64
 import dataclasses
+import hashlib
+import pickle
 from collections.abc import Iterator
 from importlib import import_module
 from itertools import chain
 from pathlib import Path
+from types import CodeType, FunctionType
 from typing import Any
 
 import numpy as np
 
 from beamdyn.common.words import Words
+
+
+class FieldsOnly:
+    """Base of dataclasses that are pickled by their fields, without cached properties."""
+
+    def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
+        fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]  (subclasses are dataclasses)
+        return type(self), tuple(getattr(self, f.name) for f in fields)
+
+
+def make_read_only(value: Any) -> Any:
+    """Return a read-only view of an array, or of the arrays in a container; other values as they are.
+
+    In a dataclass, the arrays in the public fields are replaced by such views.
+    """
+    if isinstance(value, np.ndarray):
+        view = value.view()
+        view.flags.writeable = False
+        return view
+    if type(value) is tuple and any(map(_may_hold_arrays, value)):
+        return tuple(map(make_read_only, value))
+    if type(value) is dict:
+        return {key: make_read_only(item) for key, item in value.items()}
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        for each in (field for field in dataclasses.fields(value) if field.repr):
+            held = getattr(value, each.name)
+            # The arrays of a result within another one cannot be written already.
+            if not isinstance(held, ReadOnlyArrays) and (viewed := make_read_only(held)) is not held:
+                object.__setattr__(value, each.name, viewed)
+    return value
+
+
+def _may_hold_arrays(value: Any) -> bool:
+    return isinstance(value, np.ndarray | tuple | dict) or dataclasses.is_dataclass(value)
+
+
+class ReadOnlyArrays:
+    """Base of frozen dataclasses whose public fields hold arrays that cannot be written.
+
+    The fields are read-only views, so that arrays which others hold, too, stay as they are.
+    """
+
+    __post_init__ = make_read_only
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        make_read_only(self)
+
+
+# Values of JSON's types ------------------------------------------------------------------------------
 
 
 def plain(value: Any) -> Any:
@@ -49,7 +103,9 @@ def nullified(value: Any) -> Any:
 
 _ADDED = "added"
 ADDED_LATER = {_ADDED: True}  # metadata of a field that earlier files lack, for which its default holds
-_PACKAGES = ("beamdyn", "brakes")  # packages whose classes may be named in a file
+# Packages whose classes may be named in a file; they have fields that equality leaves out and that change no
+# result.
+_PACKAGES = ("beamdyn", "brakes")
 
 
 class LeftOut:
@@ -202,3 +258,80 @@ def _modules_that_define(kind: str, package: str) -> Iterator[str]:
     for file in sorted(folder.rglob("*.py")):
         if f"\nclass {kind}(" in (text := file.read_text(encoding="utf-8")) or f"\nclass {kind}:" in text:
             yield ".".join(file.relative_to(folder.parent).with_suffix("").parts)
+
+
+# Hashes of data --------------------------------------------------------------------------------------
+
+
+def fingerprint(*values: object) -> str:
+    """Compute a hash of values, the same in every process, and different if a single bit differs.
+
+    Parameters
+    ----------
+    *values : object
+        Numbers, strings, arrays, containers and dataclasses of them count by content, functions by name and
+        code, anything else by its pickle.  In this package's dataclasses, fields that equality leaves out,
+        such as a label, do not count; what a function calls and reads counts by its name alone.
+
+    Returns
+    -------
+    str
+        32 hexadecimal digits.
+
+    Raises
+    ------
+    ValueError
+        If a value cannot be pickled.
+    """
+    digest = hashlib.sha256()
+    for piece in _pieces(values):
+        digest.update(len(piece).to_bytes(8, "big") + piece)
+    return digest.hexdigest()[:32]
+
+
+def _pieces(value: Any) -> Iterator[bytes]:
+    """Yield a value as bytes, which are different for different values."""
+    value = value.item() if isinstance(value, np.generic) else value
+    yield f"{type(value).__module__}.{type(value).__qualname__}".encode()
+    if isinstance(value, float):
+        yield value.hex().encode()
+    elif value is None or isinstance(value, int | str | bytes):
+        yield repr(value).encode()
+    elif isinstance(value, np.ndarray) and value.dtype != object:
+        yield f"{value.dtype.str} {value.shape}".encode()
+        yield value.tobytes()
+    elif isinstance(value, FunctionType):
+        yield f"{value.__module__}.{value.__qualname__}".encode()
+        yield from _code(value.__code__)
+        yield from _pieces((value.__defaults__, value.__kwdefaults__))
+    else:
+        parts = _parts(value)
+        yield str(len(parts)).encode()
+        for part in parts:
+            yield from _pieces(part)
+
+
+def _parts(value: Any) -> list[Any]:
+    """Return the items of a container; for anything else its pickle."""
+    if isinstance(value, list | tuple):
+        return list(value)
+    if isinstance(value, dict):
+        return [*value, *value.values()]
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        ours = type(value).__module__.partition(".")[0] in _PACKAGES
+        return [getattr(value, f.name) for f in dataclasses.fields(value) if f.compare or not ours]
+    try:
+        return [pickle.dumps(value, protocol=4)]
+    except Exception as error:  # the kind of exception depends on the object
+        raise ValueError(f"{value!r} cannot be stored: it cannot be pickled ({error})") from None
+
+
+def _code(code: CodeType) -> Iterator[bytes]:
+    """Yield the code of a function as bytes, independent of its place in the file."""
+    yield code.co_code
+    yield repr(code.co_names).encode()
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _code(constant)
+        else:
+            yield repr(sorted(map(repr, constant)) if isinstance(constant, frozenset) else constant).encode()

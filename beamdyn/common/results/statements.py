@@ -230,7 +230,8 @@ def _announcing(analysis: Callable[Arguments, Answer], remedy: str) -> Callable[
     def announcing(*given: Arguments.args, **named: Arguments.kwargs) -> Answer:
         with unannounced():
             result = analysis(*given, **named)
-        announce(getattr(result, "warnings", ()), remedy)
+        if sentences := getattr(result, "warnings", ()):
+            announce(sentences, remedy)
         return result
 
     return announcing

@@ -11,7 +11,7 @@ from zlib import crc32
 
 from nicegui import ui
 
-from beamdyn.common.drawing.chart import Chart
+from beamdyn.common.drawing.shapes import Chart
 from beamdyn.common.screens.chart_options import marks_of, options_of
 from beamdyn.common.screens.page_writer import PageWriter
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve
+from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartCurve
 from beamdyn.common.drawing.strokes import INKS
 
 _DIGITS = 5  # digits of numbers on the page; for a place on an axis, digits of its share of the length

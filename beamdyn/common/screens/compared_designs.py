@@ -8,9 +8,8 @@ from dataclasses import replace
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve
-from beamdyn.common.drawing.shapes import Disc, Drawing, Outline
-from beamdyn.common.drawing.sheet import Rows
+from beamdyn.common.drawing.layout import Rows
+from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartCurve, Disc, Drawing, Outline
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words, label
 from beamdyn.common.screens.open_document import differing

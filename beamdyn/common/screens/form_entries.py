@@ -13,9 +13,9 @@ from types import MappingProxyType
 from typing import Any, get_args, get_origin
 
 from beamdyn.common.drawing.text_width import symbol_html
-from beamdyn.common.edge.config import ConfigError, path_of, said_of
+from beamdyn.common.edge.config import ConfigError, said_of
 from beamdyn.common.edge.file_words import say
-from beamdyn.common.edge.inputs import Input, Lines, Quantity, parts_of
+from beamdyn.common.edge.inputs import Input, Lines, Quantity, parts_of, path_of
 from beamdyn.common.edge.units import show
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.common.words import name_in_words

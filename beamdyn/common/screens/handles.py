@@ -12,8 +12,7 @@ from zlib import crc32
 
 import numpy as np
 
-from beamdyn.common.drawing.layout import Layout
-from beamdyn.common.drawing.sheet import WIDTH, Paper, Rows, lay_out
+from beamdyn.common.drawing.layout import WIDTH, Layout, Paper, Rows, lay_out
 from beamdyn.common.drawing.svg import as_file, element
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.units import quantity

@@ -12,11 +12,11 @@ from functools import partial
 from html import escape
 from typing import TYPE_CHECKING, Any
 
+from beamdyn.common.edge.console import FittedTable
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.html_report import further, report_page
 from beamdyn.common.edge.input_sweep import InputSweep
 from beamdyn.common.edge.rendering import csv_text, drawing, html, in_haste, picture, png
-from beamdyn.common.edge.tables import FittedTable
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.results.one_line import few_digits
 from beamdyn.common.screens import form_entries

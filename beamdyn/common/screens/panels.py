@@ -8,7 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
-from beamdyn.common.drawing.sheet import lay_out
+from beamdyn.common.drawing.layout import lay_out
 from beamdyn.common.drawing.sketch import Sketcher, sketch_paper
 from beamdyn.common.drawing.svg import element
 from beamdyn.common.edge.rendering import picture

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from beamdyn.common.drawing.chart import Chart
+from beamdyn.common.drawing.layout import Paper, Rows, lay_out
 from beamdyn.common.drawing.on_axes import figure_of
-from beamdyn.common.drawing.sheet import Paper, Rows, lay_out
+from beamdyn.common.drawing.shapes import Chart
 from beamdyn.common.drawing.sketch import Sketcher
 from beamdyn.common.drawing.svg import element
 from beamdyn.common.edge.config import ConfigError, parse

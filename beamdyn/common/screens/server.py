@@ -24,7 +24,7 @@ from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from beamdyn.common.edge.progress import quiet
+from beamdyn.common.edge.console import quiet
 from beamdyn.common.screens import HOME
 from beamdyn.common.screens.page import add_style_and_scripts, open_page
 from beamdyn.common.screens.processes import Processes, RunsTasks, Share

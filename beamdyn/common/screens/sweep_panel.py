@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from nicegui import ui
 
-from beamdyn.common.drawing.chart import Chart, ChartAxis, ChartCurve, ChartPoints
+from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartCurve, ChartPoints
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.input_sweep import InputSweep, sweep_csv
 from beamdyn.common.edge.inputs import Input

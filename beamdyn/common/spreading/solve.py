@@ -11,7 +11,6 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Statement, after
 from beamdyn.common.spreading.first_order import KnownDerivatives, first_order_of, slopes_from
@@ -19,6 +18,7 @@ from beamdyn.common.spreading.spread_result import Spread
 from beamdyn.common.spreading.statistics import Scatter, SpreadDesigns, indices_of, scatter_of
 from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import BOTH, WorstCases, trends_of, worst_cases
+from beamdyn.common.words import percent
 
 _FEW = 3  # largest number of reasons for missing answers that a warning lists
 

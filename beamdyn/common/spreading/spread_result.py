@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.results.digits import supported
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import COLOURS, Axes, Figure, new_axes, new_figure
 from beamdyn.common.results.result import Provenance, Result
@@ -16,6 +15,7 @@ from beamdyn.common.spreading.first_order import FirstOrderRange
 from beamdyn.common.spreading.statistics import Scatter, SobolIndices
 from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import WorstCases
+from beamdyn.common.words import supported
 
 _DIGITS, _MOST_DIGITS = 4, 10  # digits in the headline, at least and at most
 _APART = 3.0  # number of standard errors by which two indices are told apart

@@ -39,7 +39,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.numerics import gauss_rule
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space.finite_rotations import UNIT, cross, integrate_curvature, turn
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, MassesInSpace, StationForces
 from beamdyn.equations.discretization import ArcQuadrature, Cells

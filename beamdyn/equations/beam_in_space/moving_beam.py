@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space.bent_beam import BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import cross, turn
 from beamdyn.equations.beam_in_space.tip_forces import TipForces

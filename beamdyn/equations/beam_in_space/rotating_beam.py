@@ -16,7 +16,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.assembly import damping_terms
 from beamdyn.equations.beam_in_space import bent_beam
 from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
@@ -26,7 +26,7 @@ from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses,
 from beamdyn.equations.beam_in_space.tip_forces import TipForces, forces_at_tip
 from beamdyn.equations.discretization import CLAMPED, FIXED, ArcQuadrature, Discretization, RootConditions
 from beamdyn.equations.equations_of_motion import Equations, Shape, SteadyPencil
-from beamdyn.equations.fields.bending_and_shear import Bending, SecondBending, SecondShear, Shear
+from beamdyn.equations.fields.bending_shear_stretch import Bending, SecondBending, SecondShear, Shear
 from beamdyn.equations.fields.field import Deflection, Load, Term
 from beamdyn.equations.ritz import Ritz
 from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space.finite_rotations import cross, skew, turn, turn_tensors
 from beamdyn.equations.discretization import ArcQuadrature
 

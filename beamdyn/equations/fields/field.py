@@ -162,7 +162,8 @@ class Field(ABC):
     3. `assemble` takes functions that satisfy the conditions at the root from the discretization, by
        ``spaces.functions(conditions)``, and returns the terms, the loads and, for a field that deflects
        the beam transversely, the `Deflection`; for one that deforms its sections, the functions over them
-       (`sections`), by which shapes are drawn as surfaces.  `beamdyn.modes.kinds` has a word for its modes.
+       (`sections`), by which shapes are drawn as surfaces.  `kinds_of_modes` in `beamdyn.modes.modal.model`
+       has a word for its modes.
     4. A term whose coefficient varies in time names a quantity of `RootMotion`; all analyses treat
        every quantity.  Its own stiffness, under the quantity "unity", is positive definite; only that of a
        field that `turns_at_root` may lack stiffness against its first coordinate.

@@ -33,15 +33,16 @@ from beamdyn.equations import explanations as why
 from beamdyn.equations.discretization import RootConditions, Space, Spaces
 from beamdyn.equations.explanations import Explanation
 from beamdyn.equations.fields.field import Deflection, Field, FieldEquations, Load, Term
-from beamdyn.equations.mass import axial_tension, first_moment_by_mass, load_by_mass, product_at_lumps
+from beamdyn.equations.mass import axial_tension, loads_by_mass, product_at_lumps
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import Mount, aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.profile import ONE, Profile
 from beamdyn.scene.scene import Scene
-from beamdyn.scene.sections import centrifugal_inertia, section_tensor, tilting_inertia
+from beamdyn.scene.sections import TipInertia, section_tensor, tip_inertia
 
 _NO_BODY, _NOTHING = TipMass(0.0), ONE.scaled(0.0)
+_NO_INERTIA = tip_inertia(_NO_BODY, 0.0)
 _EULER = "Euler coupling of planes"
 _QUARTER_TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])
 _ROOT_ACCELERATIONS: tuple[Quantity, Quantity] = "root_transverse", "root_across"
@@ -64,7 +65,9 @@ class Trial:
     beam : Beam
         The beam, with the modelled properties.
     tip : TipMass
-        Rigid body at the tip.
+        Rigid body at the tip, of mass 0 if there is none.
+    inertia : TipInertia
+        Inertia of the body against tilts.
     conditions : RootConditions
         Conditions at the root.
     space : Space
@@ -80,6 +83,7 @@ class Trial:
     spaces: Spaces
     beam: Beam
     tip: TipMass
+    inertia: TipInertia
     conditions: RootConditions
     space: Space
     rotation: np.ndarray
@@ -89,21 +93,25 @@ class Trial:
     def of(cls, field: TransverseField, scene: Scene, spaces: Spaces) -> Trial:
         """Build the trial functions of a field over function spaces."""
         beam, conditions = scene.modelled_beam, field.conditions(scene.mount)
-        tip, space = (beam.tip or _NO_BODY).about(beam.tip_tension_offset), spaces.functions(conditions)
+        tip, inertia, space = _NO_BODY, _NO_INERTIA, spaces.functions(conditions)
+        if beam.tip is not None:
+            tip = beam.tip.about(beam.tip_tension_offset)
+            inertia = tip_inertia(tip, beam.tip_twist)
         slope = space.end(1) / beam.length
         rotation = slope if field.rotates else np.zeros_like(slope)
         centre = space.end(0) + tip.offset * rotation
-        return cls(field, scene, spaces, beam, tip, conditions, space, rotation, centre)
+        return cls(field, scene, spaces, beam, tip, inertia, conditions, space, rotation, centre)
 
     def loads(self) -> tuple[Deflection, list[Load]]:
         """Build the deflection with its loads under unit accelerations, and the loads of the equations."""
         beam, tip, space, i, name = self.beam, self.tip, self.space, self.field.direction, self.field.name
         (d, n), (cosine, sine) = plane_components(self.scene), exact_cos_sin(self.scene.mount.precone)
         sections = section_tensor(beam, "rotary_inertia") if self.field.rotates else {}
-        P = load_by_mass(beam, space) + tip.mass * self.centre
-        moment = first_moment_by_mass(beam, space) + tip.mass * (beam.length + tip.offset) * self.centre
+        P, moment = loads_by_mass(beam, space)
+        P = P + tip.mass * self.centre
+        moment = moment + tip.mass * (beam.length + tip.offset) * self.centre
         tilting = []  # angular accelerations tilt sections and tip body towards either direction
-        for k, inertia in enumerate(tilting_inertia(tip, beam.tip_twist)[i]):
+        for k, inertia in enumerate(self.inertia.tilting[i]):
             load = inertia * self.rotation
             tilting.append(load + space.load(sections[i, k], 1) if (i, k) in sections else load)
         Q, Q_across = moment + tilting[i], tilting[1 - i]
@@ -111,7 +119,7 @@ class Trial:
         if Q_across.any():
             loads.append(Load("angular acceleration", name, Q_across, "acceleration", cosine * d[1 - i]))
         if sine:
-            pressed = (centrifugal_inertia(tip, beam.tip_twist)[i] @ np.array(n)) * self.rotation
+            pressed = (self.inertia.centrifugal[i] @ np.array(n)) * self.rotation
             for (p, q), inertia in sections.items():
                 if p == i:
                     pressed = pressed - n[q] * space.load(inertia, 1)
@@ -177,8 +185,9 @@ class Pair:
     def translation(self) -> np.ndarray:
         """Mass matrix of sections, point masses and tip body moving with their centres of gravity [kg]."""
         rows, columns = self.rows, self.columns
-        lumps = product_at_lumps(rows.beam, rows.space, columns.space)
-        by_mass = self.integrate(rows.beam.mass_per_length, 0) + lumps
+        by_mass = self.integrate(rows.beam.mass_per_length, 0)
+        if rows.beam.point_masses:
+            by_mass = by_mass + product_at_lumps(rows.beam, rows.space, columns.space)
         return by_mass + rows.tip.mass * np.outer(rows.centre, columns.centre)
 
 
@@ -271,14 +280,14 @@ def _terms(pair: Pair) -> Iterator[Term]:
     rows, columns, (i, j) = pair.rows, pair.columns, pair.directions
     scene, beam, tip, sections = rows.scene, rows.beam, rows.tip, section_tensor(rows.beam, "rotary_inertia")
     cosine, sine = exact_cos_sin(scene.mount.precone)
-    tilted = tilting_inertia(tip, beam.tip_twist)[i, j] * pair.tilts
+    tilted = rows.inertia.tilting[i, j] * pair.tilts
     yield pair.term("mass", pair.translation + tilted if i == j else tilted, order=2)
     if pair.rotate and (i, j) in sections:
         yield pair.term("rotary inertia of sections", pair.integrate(sections[i, j], 1), order=2)
     yield from columns.field.own_stiffness(pair)
     if i == j:
-        xi, springs = beam.springs(i)
-        if springs.size:
+        if beam.point_springs:
+            xi, springs = beam.springs(i)
             held = (rows.space.evaluate(xi) * springs) @ columns.space.evaluate(xi).T
             yield pair.term("point springs", held)
         # Tension acts on the slope of the whole deflection (Engesser).
@@ -299,10 +308,7 @@ def _spin(pair: Pair, cosine: float, sine: float) -> Iterator[Term]:
         yield pair.term("spin softening", pair.translation, "speed_squared", -softening)
     if not pair.rotate:
         return
-    body, sections = (
-        centrifugal_inertia(pair.rows.tip, beam.tip_twist),
-        section_tensor(beam, "rotary_inertia"),
-    )
+    body, sections = pair.rows.inertia.centrifugal, section_tensor(beam, "rotary_inertia")
     B = np.zeros((2, 2))  # coefficients of B_pq in the matrix of C^2 u3' (B u')_3 - S^2 u'^T B u'
     for q in range(2):
         B[q, j] += cosine**2 * n[i] * n[q] / 2
@@ -345,7 +351,7 @@ def _euler_of_turned(pair: Pair, sine: float) -> Iterator[Term]:
     The matrix is the symmetric part of B T, with the inertia B and a quarter turn T about the beam.
     """
     (i, j), beam, tip, T = pair.directions, pair.rows.beam, pair.rows.tip, _QUARTER_TURN
-    turned = centrifugal_inertia(tip, beam.tip_twist) @ T
+    turned = pair.rows.inertia.centrifugal @ T
     yield pair.term(_EULER, (turned + turned.T)[i, j] / 2 * pair.tilts, "acceleration", -sine)
     polar = ONE.scaled(tip.axial_inertia)
     for (p, q), rotary in section_tensor(beam, "rotary_inertia").items():

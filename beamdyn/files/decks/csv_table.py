@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from beamdyn.common.edge.csv_columns import CsvTable
-from beamdyn.common.edge.data_text import DataText
+from beamdyn.common.edge.data_text import CsvTable, DataText
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.scenes import RADIUS, read_station_file

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from rich.console import Group, RenderableType
 
-from beamdyn.common.edge.tables import table
+from beamdyn.common.edge.console import table
 from beamdyn.common.edge.views import View
 
 if TYPE_CHECKING:

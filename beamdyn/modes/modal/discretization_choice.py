@@ -20,7 +20,6 @@ from beamdyn.equations.ritz import MOST_FUNCTIONS, Ritz
 from beamdyn.modes.modal.error_estimate import EstimatedModes, solve_with_error
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.beam import Beam
-from beamdyn.scene.mount import Mount
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor
 
@@ -186,9 +185,11 @@ def affordable_target(scene: Scene, discretization: DiscretizationChoice, target
     """Limit the target of the error to what elements, plates and beams in space can reach at fair cost."""
     if not isinstance(discretization, str):
         return target
-    of_space = SEGMENTED_SPACE_TARGET if _count_segments(scene) > _FEW_SEGMENTS else SPACE_TARGET
-    least = FEM_TARGET * (discretization == "fem"), PLATE_TARGET * scene.models_width
-    return max(target, *least, of_space * scene.bends_in_space)
+    if scene.bends_in_space:
+        target = max(
+            target, SEGMENTED_SPACE_TARGET if _count_segments(scene) > _FEW_SEGMENTS else SPACE_TARGET
+        )
+    return max(target, FEM_TARGET * (discretization == "fem"), PLATE_TARGET * scene.models_width)
 
 
 def within_reach(discretization: Discretization, target: float) -> float:
@@ -224,14 +225,10 @@ def list_models(
         most = _most_that_fit(discretization, modes, segments)
         bound = f"{discretization} gives at most {most} modes with an estimate of their error"
         raise InvalidValue("modes", modes, bound, "ask for fewer")
-    model = Model(scene, discretization)
-    return _refinements(model) if named else iter([model])
-
-
-def _refinements(model: Model | None) -> Iterator[Model]:
+    model: Model | None = Model(scene, discretization)
     while model is not None:
         yield model
-        model = refine_model(model)
+        model = refine_model(model) if named else None
 
 
 def refine_model(model: Model) -> Model | None:
@@ -306,7 +303,7 @@ def _most_that_fit(discretization: Discretization, modes: int, segments: int) ->
 
 def _fits(discretization: Discretization, modes: int, segments: int) -> bool:
     """Whether a discretization has functions enough for `modes` modes on a number of segments."""
-    on_each = isinstance(discretization, Ritz) and discretization.on_each_segment
+    on_each = segments > 1 and isinstance(discretization, Ritz) and discretization.on_each_segment
     return discretization.fits(-(-modes // segments) if on_each else modes)
 
 
@@ -332,25 +329,17 @@ def split_layers(scene: Scene, speed: float, target: float) -> Scene:
     """
     if not speed:
         return scene
-    lengths = (_LENGTHS - math.log(target) / 2) / speed
-    root, tip = (lengths * unit for unit in _lengths_at_unit_speed(scene.modelled_beam, scene.mount))
+    beam, decay_lengths = scene.modelled_beam, (_LENGTHS - math.log(target) / 2) / speed
+    tension = steady_tension(beam, scene.mount)[[0, -1]].tolist()
+    # Decay lengths are (EI/N)^(1/2) with the tension N; inf without tension.
+    root, tip = (
+        decay_lengths * (math.sqrt(EI / N) / beam.length) if N > 0 else math.inf
+        for EI, N in zip(_stiffness_of_ends(beam), tension, strict=True)
+    )
     places = [max(root, _SHORTEST)] if root < _SHORT_AT_ROOT else []
     if scene.beam.tip is not None and tip < _SHORT_AT_TIP:
         places.append(1 - max(tip, _SHORTEST))
     return _split(scene, places) if places else scene
-
-
-def _lengths_at_unit_speed(beam: Beam, mount: Mount) -> tuple[float, float]:
-    """Compute decay lengths of boundary layers over the length at root and tip, at 1 rad/s.
-
-    They are (EI/N)^(1/2) with the tension N; inf without tension.
-    """
-    tension = steady_tension(beam, mount)[[0, -1]].tolist()
-    root, tip = (
-        math.sqrt(EI / N) if N > 0 else math.inf
-        for EI, N in zip(_stiffness_of_ends(beam), tension, strict=True)
-    )
-    return root / beam.length, tip / beam.length
 
 
 @lru_cache(maxsize=64)
@@ -363,7 +352,7 @@ def _stiffness_of_ends(beam: Beam) -> list[float]:
 def split_tip(scene: Scene) -> Scene:
     """Add breakpoints that resolve a boundary layer at the tip at any speed, if tension makes one."""
     beam = scene.beam
-    has_layer = beam.tip is not None and _lengths_at_unit_speed(beam, scene.mount)[1] < np.inf
+    has_layer = beam.tip is not None and steady_tension(beam, scene.mount)[-1] > 0
     return _split(scene, _TOWARD_TIP) if has_layer else scene
 
 

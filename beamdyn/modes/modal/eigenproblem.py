@@ -91,11 +91,6 @@ class Eigensolver(ABC):
         )
         return of_stiffness, of_mass
 
-    def quotient_at_rest(self, v: np.ndarray) -> np.ndarray:
-        """Compute the Rayleigh quotients (S,) of vectors (S, n) at rest [rad2/s2]."""
-        stiffness, mass = self.energies_at_rest(v)
-        return stiffness / mass
-
     @cached_property
     @abstractmethod
     def lowest_at_rest(self) -> float:
@@ -173,7 +168,7 @@ class Solver(Eigensolver):
     @cached_property
     def lowest_at_rest(self) -> float:
         """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
-        return float(1 / _largest_values(transformed(self._at_rest, self.pencil.M), 1)[0])
+        return float(1 / np.linalg.eigvalsh(transformed(self._at_rest, self.pencil.M), UPLO="U")[-1])
 
     @property
     def softening(self) -> float:
@@ -229,8 +224,10 @@ class Solver(Eigensolver):
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
         """Compute the eigenvalues at each speed, without vectors where conservative equations allow it."""
         if (L := self.factor(speeds)) is not None:
-            mu = above_rounding(_largest_values(transformed(L, self.pencil.M), count))
-            return 1j / np.sqrt(mu)[None]
+            mu, _, failed = dsyevd(transformed(L, self.pencil.M), compute_v=0)
+            if failed:
+                raise np.linalg.LinAlgError
+            return 1j / np.sqrt(above_rounding(mu[: -count - 1 : -1]))[None]
         growth, _, mass = self._diagonal
         stiffness = 1 + speeds[:, None] ** 2 * growth
         if not self.pencil.conservative or stiffness.min() < LEAST_STIFFNESS or self.pencil.shift:
@@ -371,14 +368,6 @@ def transformed(L: np.ndarray, A: np.ndarray) -> np.ndarray:
 
 def _symmetric(A: np.ndarray) -> np.ndarray:
     return (A + A.T) / 2
-
-
-def _largest_values(A: np.ndarray, count: int) -> np.ndarray:
-    """Compute the largest eigenvalues (k,), descending, of a symmetric matrix."""
-    values, _, failed = dsyevd(A, compute_v=0)
-    if failed:
-        raise np.linalg.LinAlgError
-    return values[: -count - 1 : -1]
 
 
 def rounding_of_factored(

@@ -12,8 +12,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.over_speeds import eigenvalues_over_speeds, solve_over_speeds
-from beamdyn.modes.modal.uncoupled import solver_of
+from beamdyn.modes.modal.solvers import eigenvalues_over_speeds, solve_over_speeds, solver_of
 from beamdyn.scene.scene import Scene
 
 UNRESOLVED = 0.3  # relative error above which the comparison of two models gives no estimate
@@ -127,7 +126,8 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     free = 0.0 in mount.root_stiffnesses[: scene.physics.planes]
     neutral = (s == 0) & (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
     resolved |= neutral
-    resolved &= ~_may_be_passed(squared, distance, resolved)
+    if not resolved.all():
+        resolved &= ~_may_be_passed(squared, distance, resolved)
     resolved &= model.exceeds_coarser
     stated = np.where(resolved, np.where(neutral, 0.0, error), np.inf)
     lacking = np.full((len(speeds), modes - compared), np.inf)
@@ -169,8 +169,8 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
 def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray) -> np.ndarray:
     """Estimate the relative truncation error (S, k) of squared eigenvalues from a smaller basis."""
     # The first mode's Rayleigh quotient at rest bounds the lowest square there from above.
-    quotient = model.solver.quotient_at_rest(fine.vector[:, :, 0])
-    are_above = np.abs(squared).min() >= _ABOVE * (quotient.min() + model.equations.shift)
+    stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
+    are_above = np.abs(squared).min() >= _ABOVE * ((stiffness / mass).min() + model.equations.shift)
     lowest = np.asarray(0.0 if are_above else model.solver.lowest_at_rest)
     is_slender = model.scene.is_slender_beam_in_one_plane
     margin = SLOW_BASES.factor if is_slender or model.lacks_one else BASES_OF_FIELDS.factor
@@ -261,7 +261,8 @@ def error_of_assumed_modes(
             _ritz_error(distance, squared, lowest_at_rest, margin, parts) + ROUNDING_OF_TWO.factor * rounding
         )
     resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)
-    resolved &= ~_may_be_passed(squared, distance, resolved)
+    if not resolved.all():
+        resolved &= ~_may_be_passed(squared, distance, resolved)
     return np.where(resolved, error, np.inf)
 
 

@@ -1,32 +1,41 @@
-"""A scene with its discretization, equations and eigensolver, and its static response to steady rotation."""
+"""A scene with its discretization, equations and eigensolver, and its static response to steady rotation.
+
+A modal basis has the lowest modes of the beam at rest, or at the slowest and fastest speed of a motion.
+The papers use modes at rest, which converge slowly under rotation.  Modes at the slowest and the fastest
+speed together reproduce the frequencies at both, and nearly those between.
+
+Modes are of a kind (bending, torsion, camber) by the kinetic energy of each.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.inputs.checks import count
+from beamdyn.common.results.result import Result
+from beamdyn.common.results.snapshots import FieldsOnly
+from beamdyn.common.results.statements import OUTSIDE, Statement
 from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.discretization import Discretization
-from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
+from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modes.modal.eigenproblem import Eigensolver
-from beamdyn.modes.modal.modal_basis import ModalBasis, reduce_to_modes
-from beamdyn.modes.modal.uncoupled import solver_of
+from beamdyn.modes.modal.eigenproblem import Eigensolver, Solver
+from beamdyn.modes.modal.solvers import solver_of
+from beamdyn.scene.motion import Motion
+from beamdyn.scene.mount import RIGHT_ANGLE
 from beamdyn.scene.scene import Scene, check_axis
+from beamdyn.scene.validity import list_speeds, warn_of_static_deflection, warn_of_strain
 
 if TYPE_CHECKING:
     from beamdyn.equations.beam_in_space.rotating_beam import RotatingBeam
     from beamdyn.modes.modal.equilibrium import DeflectedSolver
-from collections.abc import Iterator
-
-from beamdyn.common.results.statements import OUTSIDE, Statement
-from beamdyn.equations.mass import PLACES, steady_tension
-from beamdyn.scene.mount import RIGHT_ANGLE
-from beamdyn.scene.validity import list_speeds, warn_of_static_deflection, warn_of_strain
 
 
 @dataclass(frozen=True)
@@ -58,7 +67,8 @@ class Model(FieldsOnly):
     @cached_property
     def _of_fields(self) -> Equations:
         """Equations of motion built from the fields of the straight beam."""
-        check_axis(self.scene.beam, self.scene.physics)  # a curved axis needs other equations
+        if self.scene.chooses_physics:  # other scenes have been checked: a curved axis needs other equations
+            check_axis(self.scene.beam, self.scene.physics)
         beam = self.scene.modelled_beam
         scene = replace(self.scene, beam=beam) if self.scene.bends_in_space else self.scene
         return assemble_over(scene, self.discretization.spaces(beam))
@@ -202,7 +212,7 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
     deflection = tips[:, 0] if tips.shape[1] == 1 else np.linalg.norm(tips, axis=1)
     if beam.axial_stiffness is None:
         return deflection, np.full(len(speeds), np.nan)
-    strain = steady_tension(beam, model.scene.mount) / beam.axial_stiffness(PLACES)
+    strain = steady_tension(beam, model.scene.mount) / sampled_axial_stiffness(beam)
     return deflection, np.abs(strain).max() * speeds**2
 
 
@@ -237,3 +247,179 @@ def bends(model: Model) -> bool:
     load = np.abs(equations.steady().f2[equations.places(equations.deflecting)]).max(initial=0.0)
     along = max(np.abs(equations.P(d)).max() for d in range(scene.physics.planes))
     return bool(load > RIGHT_ANGLE * along * (scene.mount.radius + scene.beam.length))
+
+
+# Modal bases -----------------------------------------------------------------------------------------
+
+FEWEST_MODES = 2  # number of modes of the first basis where no number is given
+SPEED_SAMPLES = 2001  # number of times at which a motion's slowest and fastest speed are sought
+_MOST_MODES = 60  # largest number of modes: with more, the fastest modes need too small steps
+_MASSLESS = 1e-14  # ratio of a mass pivot to the largest that is 0 within rounding
+_DEPENDENT = 1e-10  # relative singular value below which shapes are linearly dependent
+
+
+@dataclass(frozen=True)
+class ModalBasis:
+    """Modes that span the coordinates of a reduced model.
+
+    Parameters
+    ----------
+    modes : int or None
+        Number of modes at each speed of each set of coupled fields; None for all modes of the discretization.
+    speeds : tuple of float
+        Speeds of the modes [rad/s].
+    """
+
+    modes: int | None
+    speeds: tuple[float, ...] = (0.0,)
+
+    def __str__(self) -> str:
+        if self.modes is None:
+            return "all modes"
+        if self.is_at_rest:
+            return f"{self.modes} modes"
+        return f"{self.modes} modes at {' and at '.join(f'{v:.4g}' for v in self.speeds)} rad/s"
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether all modes of the basis are modes at rest."""
+        return self.speeds == (0.0,)
+
+    def refined(self) -> ModalBasis | None:
+        """Enlarge the basis by half as many modes, at least two; None if that exceeds the limit."""
+        assert self.modes is not None
+        modes = self.modes + max(2, self.modes // 2)
+        return replace(self, modes=modes) if modes <= _MOST_MODES else None
+
+    def with_one_more(self) -> ModalBasis | None:
+        """Enlarge the basis by one mode; None if that exceeds the limit."""
+        assert self.modes is not None
+        return replace(self, modes=self.modes + 1) if self.modes < _MOST_MODES else None
+
+
+def given_basis(modes: int | str) -> ModalBasis | None:
+    """Build a basis of a number of modes at rest; None for "auto", which leaves it to the tolerance."""
+    auto = isinstance(modes, str) and modes == "auto"
+    return None if auto else ModalBasis(count("modes", modes, remedy='or "auto"'))
+
+
+def find_speed_range(motion: Motion, t_end: float) -> tuple[float, ...]:
+    """Find the smallest and largest |speed| [rad/s] until `t_end` [s]; one value if it is constant."""
+    speed = np.abs(motion.at(np.linspace(0, t_end, SPEED_SAMPLES)).speed)
+    return tuple(np.unique([speed.min(), speed.max()]).tolist())
+
+
+def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
+    """Transform the equations to modal coordinates of unit mass, signed for a positive tip deflection."""
+    pencil, count = equations.steady(), basis.modes or equations.size
+    bases = {}
+    for names in equations.coupled:
+        places = equations.places(names)
+        shapes = span_modes(pencil.part(places).undamped(), count, basis.speeds)
+        tips = equations.tips[:, places] @ shapes
+        larger = np.take_along_axis(tips, np.abs(tips).argmax(axis=0)[None], axis=0)[0]
+        bases[names] = shapes * np.where(larger < 0, -1.0, 1.0)
+    reduced = equations.reduced(bases)
+    return reduced if equations.circuit is None else _with_residual(equations, reduced, basis.speeds[-1])
+
+
+def _with_residual(equations: Equations, reduced: Equations, speed: float) -> Equations:
+    """Add the residual flexibility of the modes left out, at a speed [rad/s], to the capacitance."""
+    circuit, kept = equations.circuit, reduced.circuit
+    assert circuit is not None and kept is not None
+    stiffness = [p.K0 + speed**2 * p.K2 for p in (each.steady() for each in (equations, reduced))]
+    by_modes = np.linalg.solve(stiffness[1], kept.coupling)
+    bent = np.linalg.solve(stiffness[0], circuit.coupling)
+    bent = {
+        name: bent[equations.blocks[name]] - shape.matrix @ by_modes[reduced.blocks[shape.block]]
+        for name, shape in reduced.shapes.items()
+    }
+    more = sum(circuit.coupling[equations.blocks[name]] @ g for name, g in bent.items())
+    capacitance = circuit.capacitance + float(more)
+    return replace(reduced, circuit=replace(kept, capacitance=capacitance, bent=bent))
+
+
+def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.ndarray:
+    """Compute mass-normalised shapes that span the lowest conservative modes at given speeds.
+
+    Parameters
+    ----------
+    pencil : SteadyPencil
+        Conservative equations of size n.
+    modes : int
+        Number of modes at the last speed; at each other speed 2 + modes // 2, because higher modes
+        hardly change with speed.
+    speeds : sequence of float
+        Speeds [rad/s].
+
+    Returns
+    -------
+    ndarray, shape (n, m)
+        Shapes in columns, with unit mass and a diagonal stiffness at rest; m is smaller than the total
+        number of modes if those of different speeds are linearly dependent.
+    """
+    vectors = Solver(pencil).solve(np.asarray(speeds, dtype=float), min(modes, len(pencil.M))).vector
+    if tuple(speeds) == (0.0,):
+        return vectors[0]
+    all_shapes = np.concatenate([*vectors[:-1, :, : 2 + modes // 2], vectors[-1]], axis=1)
+    independent = _orthonormal(pencil.M, all_shapes)
+    return independent @ np.linalg.eigh(independent.T @ pencil.K0 @ independent)[1]
+
+
+def _orthonormal(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
+    """Combine shapes in columns to linearly independent ones, orthonormal in the mass."""
+    with suppress(np.linalg.LinAlgError):
+        L = np.linalg.cholesky(M)
+        pivots = np.diag(L) ** 2
+        if pivots.min() >= _MASSLESS * pivots.max():
+            directions, size, _ = np.linalg.svd(L.T @ shapes, full_matrices=False)
+            return np.linalg.solve(L.T, directions[:, size > _DEPENDENT * size[0]])
+    # The mass is singular, as that of bending and shear without rotary inertia: it does not tell how much of
+    # a deflection is shear, only combinations of the given shapes do.
+    values, vectors = np.linalg.eigh(M)
+    root = np.sqrt(np.maximum(values, 0))[:, None] * vectors.T
+    _, size, weights = np.linalg.svd(root @ shapes, full_matrices=False)
+    known = size > _DEPENDENT * size[0]
+    combined = shapes @ (weights[known].T / size[known])
+    L = np.linalg.cholesky(combined.T @ M @ combined)  # removes the rounding of nearly dependent shapes
+    return np.linalg.solve(L, combined.T).T
+
+
+# Kinds of modes --------------------------------------------------------------------------------------
+
+BENDING, TORSION, CAMBER = "bending", "torsion", "camber"
+_TIE = 1e-9  # relative difference of kinetic energies below which the first kind is chosen
+
+
+def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | None:
+    """Name the kind (S, k) of each mode, of vectors (S, n, k), by the largest part of its kinetic energy.
+
+    Bending in both directions, torsion and camber are compared, and ties within 1e-9 go to the first; the
+    energy of stretch is not compared.  None where a model has neither torsion nor camber.
+    """
+    own = [name for name in (TORSION, CAMBER) if name in equations.blocks]
+    if not own:
+        return None
+    energy = np.real(vectors.conj() * equations.momentum(vectors))
+    fields = [equations.deflecting, *([name] for name in own)]
+    of_each = np.stack([energy[:, equations.places(names)].sum(axis=1) for names in fields])
+    return np.array([BENDING, *own])[(of_each >= (1 - _TIE) * of_each.max(axis=0)).argmax(axis=0)]
+
+
+class TellsKinds(Result):
+    """Base class of results of modes that tells the kind of each mode; see `Result`.
+
+    A subclass has the field `kinds`, which is None where all modes are bending modes.
+    """
+
+    frequency: np.ndarray
+    kinds: np.ndarray | None
+
+    @property
+    def kind(self) -> np.ndarray:
+        """Kind of each mode by its largest part of kinetic energy: "bending", "torsion" or "camber"."""
+        return np.full(self.frequency.shape, BENDING) if self.kinds is None else self.kinds
+
+    def to_dict(self) -> dict[str, Any]:
+        """Convert the result to numbers, lists and strings, with the kinds of modes where they differ."""
+        return super().to_dict() | ({} if self.kinds is None else {"kind": self.kinds.tolist()})

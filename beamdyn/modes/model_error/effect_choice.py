@@ -24,7 +24,7 @@ from beamdyn.equations.effects import EXCLUSIVE, LARGE_DEFLECTION, NAMED, add_ef
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, solve_to_tolerance
 from beamdyn.modes.modal.error_estimate import EstimatedModes
 from beamdyn.modes.modal.model import bends, static_load
-from beamdyn.modes.model_error.additions import list_effects
+from beamdyn.modes.model_error.added_effects import list_effects
 from beamdyn.modes.model_error.left_out_changes import (
     EXCLUDED,
     left_out_of_modes,

@@ -2,11 +2,16 @@
 
 In frequencies and critical speeds most effects are estimated from the reference modes.  Large deflection, and
 changes of all other answers, are found by solving again.
+
+Modes of kinds that a model lacks are counted as the body has them below the highest listed mode.
+A beam that bends in one plane, and neither twists nor cambers nor stretches, has no modes of the other
+direction, of torsion, of camber and of stretch.  They are found where the beam has the data; those of the
+other direction with shear and the rotary inertia of sections, as far as there are data of these.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from typing import NamedTuple, TypeAlias
@@ -16,13 +21,27 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.common.numerics import assign
 from beamdyn.common.words import Setting, Words
-from beamdyn.equations.effects import LARGE_DEFLECTION, list_left_out
+from beamdyn.equations.assembly import assemble_over
+from beamdyn.equations.discretization import Spaces
+from beamdyn.equations.effects import (
+    CAMBER,
+    LARGE_DEFLECTION,
+    ROTARY_INERTIA,
+    SECOND_PLANE,
+    SHEAR,
+    STRETCH,
+    TORSION,
+    Effect,
+    add_effects,
+    list_left_out,
+    words_of_directions,
+)
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.modes.kinds import BENDING, kinds_of_modes
-from beamdyn.modes.modal.model import Model, bends
-from beamdyn.modes.model_error import reference_modes
-from beamdyn.modes.model_error.additions import Addition, list_effects
-from beamdyn.modes.model_error.left_out_effects import LeftOutEffects
+from beamdyn.modes.modal.model import BENDING, Model, bends, kinds_of_modes
+from beamdyn.modes.modal.solvers import solver_of_pencil
+from beamdyn.modes.model_error import added_effects
+from beamdyn.modes.model_error.added_effects import Addition, add_effect, can_add, clamp_spaces, list_effects
+from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, UnlistedMode
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
@@ -75,7 +94,7 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
     modes = eigenvalue.shape[1]
     if model.scene.tip_load.acts:
         return nothing_known(model.scene, LOADED, eigenvalue.shape)
-    base = reference_modes.BaseEquations.of(without_large_deflection(model), modes)
+    base = added_effects.BaseEquations.of(without_large_deflection(model), modes)
     references, reversals = [base.modes(*at) for at in zip(speeds.tolist(), eigenvalue, strict=True)], {}
 
     def change(added: Addition) -> np.ndarray:
@@ -120,10 +139,10 @@ def _shifted(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -
     """Estimate with an effect the eigenvalues s (m,) of modes v (n, m) that vibrate or diverge without it."""
     known = vibrate(s) | _diverge(s)
     shifted = np.full(len(s), np.nan, dtype=complex)
-    shifted[known] = reference_modes.shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
+    shifted[known] = added_effects.shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
     lost = known & np.isnan(shifted)
     if lost.any():  # a step of inverse iteration may lead to a neighbouring mode
-        shifted[lost] = reference_modes.match_modes(equations, speed, v[:, lost], _AMONG * len(s))
+        shifted[lost] = added_effects.match_modes(equations, speed, v[:, lost], _AMONG * len(s))
     return np.where(np.imag(shifted) < 0, shifted.conj(), shifted)  # the listed one of a conjugate pair
 
 
@@ -172,7 +191,7 @@ def _bent_change_at(
     if not speed:
         return np.zeros(len(eigenvalue)), ""
     count, speeds = (
-        min(len(eigenvalue) + reference_modes.EXTRA_MODES, straight.solver.size),
+        min(len(eigenvalue) + added_effects.EXTRA_MODES, straight.solver.size),
         np.array([speed]),
     )
     without = straight.solver.solve(speeds, count).eigenvalue[0]
@@ -212,15 +231,15 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
     LeftOutEffects
         Relative changes, of shape ().
     """
-    base = reference_modes.BaseEquations.of(without_large_deflection(model), 1)
+    base = added_effects.BaseEquations.of(without_large_deflection(model), 1)
 
     def change(added: Addition) -> np.ndarray:
         near = base.suited_to(added.scene, 1)
         pencil, equations = near.equations.steady(), near.extend(added.scene)
-        v = reference_modes.buckling_mode(pencil, critical)
+        v = added_effects.buckling_mode(pencil, critical)
         # Both critical speeds are those in the function spaces that suit the effect.
-        known = reference_modes.shift_critical_speed(pencil, critical, v)
-        shifted = reference_modes.shift_critical_speed(equations.steady(), known, near.embed(equations, v))
+        known = added_effects.shift_critical_speed(pencil, critical, v)
+        shifted = added_effects.shift_critical_speed(equations.steady(), known, near.embed(equations, v))
         return np.array(shifted / known - 1)
 
     bent, reason = None, ""
@@ -349,3 +368,93 @@ def _bent_values(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedVal
         return SolvedValues(unknown, _REFUSED.get(error.field, str(error)))
     without = without if straight.physics == scene.physics else solve(straight, "")
     return _relative_change(without, within)
+
+
+# Modes of kinds that a model lacks -------------------------------------------------------------------
+
+# Effects that add modes, and beginnings of the names of fields in which these modes move most.
+_ADDED = {SECOND_PLANE: "second", TORSION: "torsion", CAMBER: "camber", STRETCH: "stretch"}
+_REFINING = (SHEAR, ROTARY_INERTIA)
+# Factor of the highest listed frequency up to which further modes are named: their frequencies are known to 3
+# %.
+_MARGIN = 1.03
+_EXTRA = 2  # modes computed beyond the number listed
+
+
+def left_out_with_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> LeftOutEffects:
+    """List the changes of frequencies by effects left out at some speeds, and modes that a model lacks.
+
+    The parameters are those of `left_out_of_modes`.
+    """
+    found = left_out_of_modes(model, speeds, eigenvalue)
+    return replace(found, unlisted=tuple(find_unlisted(model, speeds, eigenvalue)))
+
+
+def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> Iterator[UnlistedMode]:
+    """Yield the modes that a model lacks below the highest that it lists at some speed.
+
+    A margin of 3 % above the highest allows for the accuracy of these modes.  The eigenvalues (S, m)
+    are those listed at the speeds (S,) [rad/s].
+    """
+    highest = _MARGIN * np.abs(eigenvalue).max(axis=1, initial=0.0)
+    scene = without_large_deflection(model).scene
+    for effect, fields in _ADDED.items():
+        if effect.is_in(scene) or (added := _add(scene, effect)) is None:
+            continue
+        extended, count = added.scene, eigenvalue.shape[1] + _EXTRA
+        if effect is SECOND_PLANE:
+            extended = _refined(extended)
+        spaces = _spaces(extended, model, count)
+        own = _own_frequencies(assemble_over(extended, spaces), fields, speeds, count)
+        for k, omega in enumerate(np.where(own <= highest[:, None], own, np.nan).T):
+            if np.isfinite(omega).any():
+                kind, frequency = _kind(effect, extended), omega / (2 * np.pi)
+                yield UnlistedMode(kind, k + 1, effect.name, frequency, added.assumed)
+
+
+def _add(scene: Scene, effect: Effect) -> Addition | None:
+    """Add an effect to a scene, and torsion together with camber; None if the effect cannot be added."""
+    try:
+        added = add_effect(scene, TORSION if effect is CAMBER and not TORSION.is_in(scene) else effect)
+        extended = add_effects(added.scene, [effect])
+    except InvalidValue:
+        return None
+    return replace(added, effect=effect, scene=extended)
+
+
+def _refined(scene: Scene) -> Scene:
+    """Return the scene with shear and rotary inertia, as far as its beam has the data."""
+    for effect in _REFINING:
+        if not effect.is_in(scene) and can_add(scene, effect):
+            scene = add_effect(scene, effect).scene
+    return scene
+
+
+def _spaces(scene: Scene, model: Model, modes: int) -> Spaces:
+    """Build function spaces for modes of a scene with an effect that a model lacks."""
+    if scene.models_width:
+        return clamp_spaces(scene, modes)
+    return model.discretization.spaces(scene.beam)
+
+
+def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, count: int) -> np.ndarray:
+    """Compute angular frequencies (S, k), ascending, of modes that move most in fields of given names.
+
+    Gyroscopic coupling with other fields is left out, as it changes these modes little.
+    """
+    own = {name for name in equations.blocks if name.startswith(fields)}
+    names = [name for together in equations.coupled if own.intersection(together) for name in together]
+    pencil, count = equations.steady().part(equations.places(names)), 2 * count
+    solver = solver_of_pencil(pencil)
+    found = solver.solve(speeds, min(count, solver.size))
+    sizes = [equations.blocks[name].stop - equations.blocks[name].start for name in names]
+    is_own = np.repeat([name in own for name in names], sizes)
+    energy = np.real(found.vector.conj() * (pencil.M @ found.vector))
+    moves_own = energy[:, is_own].sum(axis=1) > energy[:, ~is_own].sum(axis=1)
+    omega = np.imag(found.eigenvalue)
+    return np.sort(np.where(moves_own & (omega > 0), omega, np.inf), axis=1)
+
+
+def _kind(effect: Effect, scene: Scene) -> str:
+    """Name the kind of the modes that an effect adds."""
+    return words_of_directions(scene)[1] if effect is SECOND_PLANE else effect.switch

@@ -11,11 +11,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from beamdyn.common.inputs.checks import set_fields
-from beamdyn.common.results.digits import percent
 from beamdyn.common.results.result import plain
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import MODEL_ERROR, Speeds, Statement, joined
-from beamdyn.common.words import Words
+from beamdyn.common.words import Words, percent
 from beamdyn.scene.physics import OfChosenPhysics
 from beamdyn.scene.validity import list_speeds
 

@@ -21,10 +21,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from beamdyn.common.results.digits import percent, told_from
 from beamdyn.common.results.statements import MODEL_ERROR, Statement
-from beamdyn.common.words import Words
-from beamdyn.modes.model_error.additions import ASSUMED_POISSONS_RATIO
+from beamdyn.common.words import Words, percent, told_from
+from beamdyn.modes.model_error.added_effects import ASSUMED_POISSONS_RATIO
 from beamdyn.scene.scene import Scene
 
 _CAMBER_DECLINES = 1.0  # Searle's parameter from which camber is suppressed

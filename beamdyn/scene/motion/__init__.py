@@ -6,8 +6,7 @@ is accurate to 1.5e-8 rad.  At a jump, the values of a motion are those after th
 """
 
 from beamdyn.scene.motion.base import Line, Motion, MotionSample, check_consistent, check_picklable
-from beamdyn.scene.motion.pulsating import PulsatingRotation, ShakenCarrier
-from beamdyn.scene.motion.records import SampledTranslation
+from beamdyn.scene.motion.oscillating import PulsatingRotation, SampledTranslation, ShakenCarrier
 from beamdyn.scene.motion.rolling import RoadWave, RollingWheel, UserMotion
 from beamdyn.scene.motion.rotations import Rotation, RotationFunction, SampledRotation, SpinUp, SteadyRotation
 

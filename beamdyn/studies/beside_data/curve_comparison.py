@@ -9,12 +9,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from beamdyn.common.plots.axes_and_lines import panels, set_up_axes
-from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.pictures import COLOURS, Axes, new_axes
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import Speeds
-from beamdyn.common.words import Words, amount
+from beamdyn.common.words import Words, amount, percent
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.frequency_comparison import AGREES, LEFT_OUT, NOTHING, OUTSIDE, outside
 

@@ -20,8 +20,7 @@ from beamdyn.common.results.statements import unannounced
 from beamdyn.common.spreading.statistics import seeded
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.discretization import Discretization
-from beamdyn.modes.kinds import kinds_of_modes
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import Model, kinds_of_modes
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.numbers import with_numbers

@@ -9,14 +9,13 @@ from typing import Any, ClassVar
 import numpy as np
 
 from beamdyn.common.plots.plots import mark_points, plot_locus
-from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import Speeds, joined, unannounced
-from beamdyn.common.words import InputName, Setting, Words
-from beamdyn.modes.kinds import TORSION
+from beamdyn.common.words import InputName, Setting, Words, percent
 from beamdyn.modes.locus import frequency_locus
+from beamdyn.modes.modal.model import TORSION
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.single_numbers import OneNumberFit, say_value
 

@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import NoModelAnswer
-from beamdyn.common.results.digits import percent
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.results.statements import joined
-from beamdyn.common.words import InputName, Words
+from beamdyn.common.words import InputName, Words, percent
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.frequency_comparison import NOTHING, FrequencyComparison

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from beamdyn.common.numerics import assign
-from beamdyn.modes.kinds import BENDING, TORSION
+from beamdyn.modes.modal.model import BENDING, TORSION
 
 # Distance, in half gaps between modes, beyond which a value stays without a mode; a mode may be off by more
 # than half a gap.

@@ -8,9 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.results.digits import percent
-from beamdyn.common.results.display_units import SI_UNITS, DisplayUnits
-from beamdyn.common.words import Named, amount
+from beamdyn.common.results.columns import SI_UNITS, DisplayUnits
+from beamdyn.common.words import Named, amount, percent
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.numbers import SCALE
 from beamdyn.scene.scene import Scene

@@ -7,8 +7,8 @@ from math import inf, pi
 
 import numpy as np
 
-from beamdyn.common.results.digits import percent
 from beamdyn.common.results.statements import INPUT, Statement
+from beamdyn.common.words import percent
 from beamdyn.studies.beside_data.pairing import NO_MODE, pair
 
 _UNITS: Mapping[str, tuple[float, str]] = {  # factor from the unit to hertz, and the words for the unit

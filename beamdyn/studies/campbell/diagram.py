@@ -12,16 +12,16 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, ascending, count, flag, kind, one_of, positive, real
 from beamdyn.common.plots.campbell import Curves, plot_campbell
-from beamdyn.common.results.display_units import DisplayUnits
+from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import after
 from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
-from beamdyn.modes.kinds import BENDING
 from beamdyn.modes.locus import Locus, frequency_locus
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.modes.modal.model import BENDING
 from beamdyn.modes.model_error.left_out_changes import nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line

@@ -11,7 +11,7 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, as_floats, count
-from beamdyn.common.inputs.designs import Designs, VariedInput
+from beamdyn.common.inputs.described import Designs, VariedInput
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import announced

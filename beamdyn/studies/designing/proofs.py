@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.common.inputs.designs import Designs
+from beamdyn.common.inputs.described import Designs
 from beamdyn.common.results.statements import joined
 from beamdyn.common.words import Words
 from beamdyn.scene.numbers import with_numbers

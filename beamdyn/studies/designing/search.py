@@ -18,7 +18,7 @@ from scipy.optimize import minimize, toms748
 from scipy.stats.qmc import LatinHypercube
 
 from beamdyn.common.inputs.checks import NoModelAnswer
-from beamdyn.common.inputs.designs import VariedInput
+from beamdyn.common.inputs.described import VariedInput
 from beamdyn.common.results.statements import unannounced
 from beamdyn.common.spreading.statistics import seeded
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import toms748
 
-from beamdyn.common.inputs.designs import VariedInput
+from beamdyn.common.inputs.described import VariedInput
 from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, Multipliers, multipliers_of
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, count
-from beamdyn.common.inputs.designs import Designs, VariedInput
-from beamdyn.common.results.read_only import FieldsOnly
+from beamdyn.common.inputs.described import Designs, VariedInput
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.effects import LARGE_DEFLECTION
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model
-from beamdyn.modes.modal.modal_basis import find_speed_range
-from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.model import Model, find_speed_range
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.numbers import SPEED, with_numbers
 from beamdyn.scene.scene import Scene, check_scene

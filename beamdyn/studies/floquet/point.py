@@ -19,7 +19,7 @@ from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.modal_basis import ModalBasis
+from beamdyn.modes.modal.model import ModalBasis
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out

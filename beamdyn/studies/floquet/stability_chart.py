@@ -18,16 +18,16 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from beamdyn.common.evenly_spread import evenly_spread
 from beamdyn.common.inputs.checks import InvalidValue, ascending
-from beamdyn.common.inputs.designs import Designs, VariedInput, check_designs
+from beamdyn.common.inputs.described import Designs, VariedInput, check_designs
 from beamdyn.common.parallel.tasks import Task, TaskRunner
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.stability_charts import plot_stability_chart
+from beamdyn.common.results.columns import evenly_spread
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.pictures import Axes
-from beamdyn.common.results.read_only import FieldsOnly
 from beamdyn.common.results.result import Provenance
+from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam, joined
 from beamdyn.common.words import InputName, Words
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice

@@ -13,7 +13,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.numerics import assign
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.results.digits import percent
+from beamdyn.common.words import percent
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.effects import LARGE_DEFLECTION, STRETCH
 from beamdyn.equations.fem import Fem
@@ -22,7 +22,7 @@ from beamdyn.modes.bounds import frequency_bounds
 from beamdyn.modes.locus import frequency_locus
 from beamdyn.modes.modal.error_estimate import EstimatedModes, solve_with_error
 from beamdyn.modes.modal.model import Model, bends
-from beamdyn.modes.model_error.additions import list_effects
+from beamdyn.modes.model_error.added_effects import list_effects
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.tradeoffs.measurements import Diagram, Family, TimedCase, measure_families, number_of

@@ -12,7 +12,7 @@ import numpy as np
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modes.modal.discretization_choice import choose_model
-from beamdyn.modes.modal.modal_basis import ModalBasis, find_speed_range
+from beamdyn.modes.modal.model import ModalBasis, find_speed_range
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.response import SteadyResponse, steady_response
 from beamdyn.studies.tradeoffs.measurements import (
