@@ -38,7 +38,9 @@ from beamdyn.steady.response import ResponseRequest, steady_response
 from beamdyn.steady.road_harvest import SEVERAL, RoadHarvest, check_road, harvest_on_road
 from beamdyn.steady.vibration import combine_pairs, solve_parts, vibration_of
 
-_DISTANCE = 2.0  # stated error over the difference from a run with more modes, as of the tip deflection
+# Ratio of the error to the largest difference from responses with more modes, and number of these: voltages of
+# electrodes that end within the span converge irregularly, so that some agree by chance.
+_DISTANCE, _LARGER = 2.0, 3
 _RESONANT = 3  # number of modes whose resonances are listed
 _COMPARED = "with more modes, and without the harmonics of the last interaction"
 _POWER = "mean power [W]"
@@ -272,8 +274,8 @@ def _powers(
     if road is not None:
         check_road(scene, road)
     response = steady_response(scene, speeds, modes, None, tolerance, discretization)
-    own, finer = HarvestedPowers.of(response.request), response.request.refined()
-    larger = [HarvestedPowers.of(request) for request in (finer, finer and finer.refined()) if request]
+    own = HarvestedPowers.of(response.request)
+    larger = [HarvestedPowers.of(request) for request in _refinements(response.request)]
     relative, of_strain = np.full((2, len(response.speeds)), np.inf)
     if larger:
         relative = _DISTANCE * np.max([own.apart(each) for each in larger], axis=0)
@@ -301,6 +303,14 @@ def _powers(
         scene=response.scene,
         **values,
     )
+
+
+def _refinements(request: ResponseRequest) -> Iterator[ResponseRequest]:
+    """Yield requests with half as many more modes each, as far as there are larger models."""
+    for _ in range(_LARGER):
+        if (finer := request.refined()) is None:
+            return
+        yield (request := finer)
 
 
 def electrodes_of(scene: Scene) -> Electrodes:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 import beamdyn as bd
 from beamdyn.analyses import analyses
 from beamdyn.cli import commands
+from beamdyn.common.plots.curves import plot_work_precision
 from brakes.cli import main as brakes
 from tests.drawn_texts import drawn_texts, overlapping
 
@@ -74,6 +75,15 @@ def examples_of_commands():
             if words[0] not in _NO_PICTURE:
                 slow = words[0] in _LONG or "--spread" in words or "critical_speed" in words
                 yield pytest.param(words, marks=_SLOW * slow, id=" ".join(words[:4]))
+
+
+@pytest.mark.parametrize("last", np.geomspace(3e-4, 3e-2, 15))
+def test_labels_of_times_on_any_machine(last):
+    """Over less than two decades ticks between the powers have labels, also where the picture is narrow."""
+    figure = Figure(figsize=(5.0, 4.8))
+    points = np.array([[2.1e-4, 1.0], [last, 1e-12]])
+    plot_work_precision({"Ritz": points}, points, ax=figure.add_subplot())
+    assert overlapping(figure) == []
 
 
 @pytest.mark.parametrize("words", [*examples_of_commands()])

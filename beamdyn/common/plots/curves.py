@@ -312,6 +312,9 @@ def plot_exceedance(ranges: np.ndarray, counts: np.ndarray, quantity: str, ax: A
 # Errors over time ------------------------------------------------------------------------------------
 
 
+_CROWDED = 3.0  # ratio of the ends of a logarithmic axis above which labels of all minor ticks may overlap
+
+
 def plot_work_precision(
     families: Mapping[str, np.ndarray], front: np.ndarray, title: str = "", ax: Axes | None = None
 ) -> Axes:
@@ -335,11 +338,20 @@ def plot_work_precision(
     """
     from matplotlib.ticker import LogFormatterSciNotation
 
+    class FewLabels(LogFormatterSciNotation):
+        """Labels of minor ticks: over more than half a decade only of 2 and 6 times a power of ten."""
+
+        def __call__(self, x: float, pos: int | None = None) -> str:
+            assert self.axis is not None
+            low, high = self.axis.get_view_interval()
+            crowded = high > _CROWDED * low and f"{x:.0e}"[0] not in "26"
+            return "" if crowded else super().__call__(x, pos)
+
     ax = set_up_axes(ax, "time [s]", "relative error")
     ax.set(xscale="log", yscale="log")
     ax.set_title(title, fontsize=11)
     ax.tick_params(which="minor", labelsize=8)
-    ax.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(1.15, 0.3)))
+    ax.xaxis.set_minor_formatter(FewLabels(minor_thresholds=(1.15, 0.3)))
     ax.plot(*_clip(front).T, color="0.85", linewidth=9, solid_capstyle="round", label="Pareto front")
     for i, (name, points) in enumerate(families.items()):
         marker = _MARKERS[i % len(_MARKERS)]
