@@ -3,7 +3,7 @@
 Run: python -m benchmarks.energy_in_space [--periods 10].  A twisted and swept beam with torsion, at an
 oblique angle, starts fast, undamped; the energy of the rotating frame is constant.  Its largest change is
 over the energy at the start.  Two modes, whose mass depends on where the beam is, suffice to show a drift;
-10 000 periods take half an hour of processor time a speed (--speed measures one alone).
+10 000 periods take a quarter of an hour of processor time a speed (--speed measures one alone).
 """
 
 from __future__ import annotations

@@ -38,8 +38,8 @@ from beamdyn.steady.response import ResponseRequest, steady_response
 from beamdyn.steady.road_harvest import SEVERAL, RoadHarvest, check_road, harvest_on_road
 from beamdyn.steady.vibration import combine_pairs, solve_parts, vibration_of
 
-# Ratio of the error to the largest difference from responses with more modes, and number of these: voltages of
-# electrodes that end within the span converge irregularly, so that some agree by chance.
+# Ratio of the error to the largest difference from responses with more modes, and number of these: voltages
+# of electrodes that end within the span converge irregularly, so that some agree by chance.
 _DISTANCE, _LARGER = 2.0, 3
 _RESONANT = 3  # number of modes whose resonances are listed
 _COMPARED = "with more modes, and without the harmonics of the last interaction"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -283,7 +284,7 @@ def test_the_stated_error_of_the_power_covers_that_of_three_modes(seed):
     length, thickness = rng.uniform([0.03, 2e-4], [0.1, 6e-4])
     body = bd.TipMass(10 ** rng.uniform(-4, -2.5))
     strip = bd.Beam.rectangular(length, b, thickness, E, rho, poissons_ratio=0.3, tip=body)
-    example = bd.load_scene("examples/bimorph.toml")
+    example = bd.load_scene(Path(__file__).parents[2] / "examples" / "bimorph.toml")
     layers = replace(example.beam.electrodes.harvester, resistance=10 ** rng.uniform(3, 7))
     mount = bd.Mount(*rng.uniform([0.1, 0.0], [0.5, 3.0]))
     given = replace(example, beam=layers.on(strip), mount=mount)

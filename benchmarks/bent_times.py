@@ -1,0 +1,81 @@
+"""What an equilibrium with three modes about it costs, in one plane and in space.
+
+Run: python -m benchmarks.bent_times [--before FOLDER]    (seconds)
+
+A strip at 45 deg to the radius is bent by its rotation; each call has another radius, and its frequencies are
+to be right to 1e-6.  Times are medians of processor time, in processes of their own, in turns.  They are over
+those of one plane, or with `--before` over those of one plane by an older version, of which the folder is a
+checkout, such as of the parent of the commit that brought the beam in space:
+git worktree add FOLDER 9143167f^.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from statistics import median
+
+from benchmarks.rows import Row, show
+
+_CALLS, _TURNS = 15, 3
+_PLANE = "large_deflection=True"
+_SPACE = f"{_PLANE}, planes=2"
+_ALL = f"{_SPACE}, torsion=True, stretch=True, shear=True, rotary_inertia=True"
+_CASES = {
+    "in one plane": (_PLANE, "1.2"),
+    "in space: two curvatures": (_SPACE, "3"),
+    "... and torsion": (f"{_SPACE}, torsion=True", "3"),
+    "... and stretch, shear, rotary inertia": (_ALL, "3"),
+}
+_SCRIPT = """
+import warnings
+from statistics import median
+from time import process_time
+import beamdyn as bd
+warnings.simplefilter("ignore")
+physics, times = bd.Physics({physics}), []
+strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0{further})
+for i in range({calls}):
+    scene = bd.Scene(strip, bd.Mount(0.215 + 1e-4 * i, 0.785), physics=physics)
+    start = process_time()
+    bd.natural_modes(scene, 60.0, 3, tolerance=1e-6)
+    times.append(process_time() - start)
+print(median(times))
+"""
+
+
+def measure(folder: Path, physics: str, further: str = ", poissons_ratio=0.3") -> float:
+    """Measure the median processor time [s] of calls by the version in a folder."""
+    script = _SCRIPT.format(physics=physics, further=further, calls=_CALLS)
+    set_to = os.environ | {"OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(folder)}
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=folder, env=set_to, check=True, capture_output=True, text=True
+    )
+    return float(done.stdout)
+
+
+def compare(before: Path | None) -> Iterator[Row]:
+    """Yield the time of each case over that of the planar call, the median of some turns."""
+    here = Path(__file__).parents[1]
+    turns = []
+    for _ in range(_TURNS):
+        planar = measure(here, _PLANE) if before is None else measure(before, _PLANE, "")
+        turns.append([measure(here, physics) / planar for physics, _ in _CASES.values()])
+    over = "one plane" if before is None else "one plane, by the older version"
+    for (name, (_, bound)), ratios in zip(_CASES.items(), zip(*turns, strict=True), strict=True):
+        yield f"{name}: time over that of {over}", f"{median(ratios):.2f}", bound if before else ""
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--before", type=Path, help="folder with a checkout of an older version")
+    before = parser.parse_args().before
+    show("equilibrium and three modes, 1e-6", lambda: compare(before and before.resolve()))
+
+
+if __name__ == "__main__":
+    main()
