@@ -20,6 +20,7 @@ from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis, p
 from beamdyn.common.inputs.checks import check_used
 from beamdyn.common.inputs.described import MOST_DESIGNS, check_designs
 from beamdyn.common.results.columns import ShownUnit
+from beamdyn.common.words import at_any
 from beamdyn.files.scene_inputs import SceneInput
 from beamdyn.scene.numbers import SCALE, SPEED, paths_of, unit_of
 from beamdyn.studies.answers import NO_ANSWERS
@@ -171,7 +172,7 @@ def _study(scene: bd.Scene, axes: Sequence[Axis], varying: VaryOptions, how: dic
     none = ""
     if not result.answered.any():
         states = ", ".join(np.unique(result.status[np.isin(result.status, NO_ANSWERS)]).tolist())
-        none = f"at none of {result.designs.count} designs is there an answer: {states}"
+        none = f"there is no answer {at_any(result.designs.count, 'design')}: {states}"
     return Answer(result, none, tolerance=how["tolerance"])
 
 

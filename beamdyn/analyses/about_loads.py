@@ -32,6 +32,7 @@ from beamdyn.analyses.values import parse_quantity, parse_speeds, parse_window
 from beamdyn.common.edge.command_options import write_table
 from beamdyn.common.inputs import checks
 from beamdyn.common.results.files import write_text
+from beamdyn.common.words import at_any
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -201,7 +202,7 @@ def loads(
     ends = {} if span is None else dict(zip(("start", "end"), span, strict=True))
     draw = partial(result.plot, quantity=quantity or result.drawn_quantity, **ends)
     known = np.isfinite(result.moment).any()
-    none = "" if known else f"at none of {len(result.cases)} speeds is there a steady response"
+    none = "" if known else f"there is no steady response {at_any(len(result.cases), 'speed')}"
     return Answer(result, none, None, tables, draw)
 
 

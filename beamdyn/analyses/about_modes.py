@@ -18,6 +18,7 @@ from beamdyn.common.edge.command_options import NO_ANSWER_FILES, NO_FILES, Answe
 from beamdyn.common.plots.plots import mark_critical
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.statements import GROWING, OUTSIDE, of_kind
+from beamdyn.common.words import at_any
 
 # Equilibria ------------------------------------------------------------------------------------------
 
@@ -118,7 +119,7 @@ def locus(
     """
     result = bd.frequency_locus(scene, speeds, modes, discretization, tolerance)
     unstable = np.isin(result.status, _GROWING).any(axis=1)
-    never = f"at none of {len(result.speeds)} speeds is the beam stable" if unstable.all() else ""
+    never = f"the beam is not stable {at_any(len(result.speeds), 'speed')}" if unstable.all() else ""
     return Answer(result, never, warnings_of(result, tolerance), draw=partial(_draw_locus, result))
 
 

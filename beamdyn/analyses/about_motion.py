@@ -21,6 +21,7 @@ from beamdyn.common.edge.console import at_work
 from beamdyn.common.edge.exit_codes import Interrupted
 from beamdyn.common.plots.export import animate
 from beamdyn.common.results.columns import evenly_spread
+from beamdyn.common.words import at_any
 from beamdyn.steady.best_resistance import ROUGH, sought
 
 if TYPE_CHECKING:
@@ -79,7 +80,7 @@ def steady(
         Largest error by the harmonics left out, relative to the sum of all lines.
     """
     result = bd.steady_response(scene, speeds, modes, tolerance=tolerance, discretization=discretization)
-    none = f"at none of {len(speeds)} speeds is there a steady response: {result.status[0]}"
+    none = f"there is no steady response {at_any(len(speeds), 'speed')}: {result.status[0]}"
     return Answer(result, "" if result.stable.any() else none)
 
 
@@ -129,7 +130,7 @@ def harvest(
         Largest error by the harmonics left out, relative to the sum of all lines.
     """
     result = bd.harvest(scene, speeds, modes, tolerance, discretization, _roughness(road, highest))
-    none = f"at none of {len(speeds)} speeds is there a steady response: {result.status[0]}"
+    none = f"there is no steady response {at_any(len(speeds), 'speed')}: {result.status[0]}"
     return Answer(result, "" if (result.status == "stable").any() else none)
 
 

@@ -212,6 +212,11 @@ def percent(value: float, sign: str = "") -> str:
     return f"{100 * value:{sign}.0f} %" if "e+" in digits else f"{digits} %"
 
 
+def at_any(count: int, noun: str) -> str:
+    """Say where something is not, of what is asked for one by one: "at any of 3 speeds", "at this speed"."""
+    return f"at this {noun}" if count == 1 else f"at any of {count} {noun}s"
+
+
 def count_sure(text: str, error: float) -> int:
     """Count the characters of a number's text up to the last digit that its error supports.
 
@@ -229,7 +234,7 @@ def count_sure(text: str, error: float) -> int:
     """
     mantissa, _, exponent = text.partition("e")
     digits = mantissa.lstrip("-").replace(".", "", 1)
-    if not digits.isdigit() or error == 0:
+    if "±" in text or not digits.isdigit() or error == 0:
         return len(text)
     point = mantissa.find(".") if "." in mantissa else len(mantissa)
     scale = int(exponent or 0)

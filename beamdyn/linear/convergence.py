@@ -10,6 +10,7 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import LINEAR_MESHES, LINEAR_MODES, refine
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
+from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.effects import LARGE_DEFLECTION
@@ -303,9 +304,10 @@ def _with_error(
         truncation, compared = np.asarray(np.inf), [*compared, "no larger model"]
     elif larger is not None:
         finer = evaluate(larger) if finer is None else finer
-        more = "all functions" if larger.modes is None else f"{larger.modes} modes"
+        more = "all functions" if larger.modes is None else counted(larger.modes, "mode")
         truncation, compared = LINEAR_MODES.factor * np.abs(finer - value), [*compared, more]
-    kept = ("all functions",) if model.modes is None else (f"{model.modes} modes at ", Speeds(model.speed))
+    modes = model.modes
+    kept = ("all functions",) if modes is None else (counted(modes, "mode"), " at ", Speeds(model.speed))
     method = Words(f"{model.discretization}, ", *kept)
     largest = float(np.max(truncation))
     return Refined(model, larger, value, error + truncation, largest, error, method, ", ".join(compared))

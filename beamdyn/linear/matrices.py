@@ -213,7 +213,7 @@ def matrices(
     given = list_inputs(inputs, scene)
     model = model_at_speed(with_forces(scene, given), speed, modes, discretization, tolerance)
     equations, pencil = model.equations, model.pencil
-    kept = "all functions" if modes is None else f"{modes} modes at {speed:.6g} rad/s"
+    kept = "all functions" if modes is None else f"{counted(modes, 'mode')} at {speed:.6g} rad/s"
     axial = equations.matrices[0].get("root_axial", np.zeros_like(pencil.M))
     coordinates = (*_name_coordinates(model),)
     return Matrices(

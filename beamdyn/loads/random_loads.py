@@ -314,6 +314,6 @@ def _warn_of_few_modes(moment: np.ndarray, error: np.ndarray, model: ModelAtSpee
     if model.modes is not None and error.max() > _UNSURE * moment.max() > 0:
         share = percent(float(error.max() / moment.max()))
         yield (
-            f"{model.modes} modes are too few: the estimated error of the bending moment is {share} of the "
-            'largest; give more modes, or "auto"'
+            f"with {counted(model.modes, 'mode')} the estimated error of the bending moment is {share} of "
+            'the largest; give more modes, or "auto"'
         )

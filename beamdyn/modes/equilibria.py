@@ -42,6 +42,7 @@ _FINE = 0.05  # arc length of a step, small enough for smooth curves in a pictur
 _MOST_POINTS = 2000  # largest number of points of a branch
 _STEEPEST = 2 * np.pi  # slope angle up to which a branch is followed [rad]
 _UNSTABLE = "the straight beam, of which effects are judged, is unstable"
+_JUST_BELOW = 1 - 1e-9  # last speed of the stable straight beam that is listed, over the critical speed
 _ROUNDING = 1e-13  # error of a position over the length
 
 
@@ -353,8 +354,9 @@ def equilibrium_branches(
     if load.bends:
         branches = [_collect("straight", load, continuation.start_curve(load, rest, 0.0, 1.0), top)]
     else:
-        speeds = np.linspace(0, top, 101)
-        stable = np.array([np.linalg.eigvalsh(load.at(rest, v**2).change)[0] >= 0 for v in speeds])
+        last_stable = _JUST_BELOW * solver.critical_speed
+        speeds = np.union1d(np.linspace(0, top, 101), [last_stable] if last_stable < top else [])
+        stable = speeds < solver.critical_speed  # the stiffness is linear in the squared speed
         tips = np.tile(_in_space(load.elastica.beam.at(rest).tip, scene.mount), (len(speeds), 1))
         branches = [EquilibriumBranch("straight", speeds, tips, stable, np.empty(0))]
     try:  # follows the other branch from the top speed through its turning points

@@ -81,8 +81,9 @@ class SweepRequest(FieldsOnly):
             return str(self.basis)
         fewest = min((modes for _, modes in self.modes_at), default=self.basis.modes)
         modes = f"{self.basis.modes}" if fewest == self.basis.modes else f"{fewest} to {self.basis.modes}"
+        noun = "mode" if modes == "1" else "modes"
         speeds = " to ".join(f"{speed:.4g}" for speed in self.basis.speeds)
-        return f"{modes} modes at the slowest and at the fastest speed of each case ({speeds} rad/s)"
+        return f"{modes} {noun} at the slowest and at the fastest speed of each case ({speeds} rad/s)"
 
     @cached_property
     def _shared_equations(self) -> Equations:

@@ -116,7 +116,7 @@ class Shoe:
         end = np.pi + np.minimum(self.phase, pin)
         bound = "past {limit} the lining leaves the drum"
         late = np.asarray(a2) > end + _ROUNDING
-        refuse(late, "lining[1]", a2, "rad", bound, "end it before; give {unit}", limit=end)
+        refuse(late, "lining[1]", a2, "rad", bound, "end it before; angles are in {unit}", limit=end)
 
     @property
     def pin_angle(self) -> Numbers:

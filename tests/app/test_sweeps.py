@@ -125,7 +125,7 @@ def test_values_without_an_answer_are_gaps_with_a_sentence():
 
 
 def test_no_answer_anywhere_is_refused():
-    with pytest.raises(NoAnswer, match=r"at none of 3 values is there an answer; run\.travel = 15 mm"):
+    with pytest.raises(NoAnswer, match=r"there is no answer at any of 3 values; run\.travel = 15 mm"):
         swept(MECHANISM, MECHANISM_SCREEN, "run.travel=15:20:3 mm", "work")
 
 
@@ -133,7 +133,7 @@ def test_what_statics_does_not_determine_is_no_answer():
     pins = (
         OpenDocument(MECHANISM).entries["pin"].replace("]", ',\n { name = "extra", body = "arm", at = "E" }]')
     )
-    with pytest.raises(NoAnswer, match="at none of 2 values"):
+    with pytest.raises(NoAnswer, match="at any of 2 values"):
         swept(
             MECHANISM,
             MECHANISM_SCREEN,
@@ -322,7 +322,7 @@ def test_two_sweeps_of_a_caliper_have_a_row_a_case(tmp_path, capsys):
         (["--what", "finger_travel"], BAD_INPUT, "--what goes with --vary"),
         (["--vary", "clearanc=1:2:3 mm"], BAD_INPUT, "did you mean clearance"),
         (["--vary", "finger=1:2:3 N", "--vary", "run.finger=1:2:3 N"], BAD_INPUT, "given twice"),
-        (["--vary", "travel=40:60:3 mm"], NO_ANSWER, "at none of 3 values"),
+        (["--vary", "travel=40:60:3 mm"], NO_ANSWER, "at any of 3 values"),
     ],
 )
 def test_command_says_what_is_wrong_with_a_sweep(options, code, sentence, finished):

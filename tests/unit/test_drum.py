@@ -39,7 +39,7 @@ def test_lengths_are_positive(name, value):
         ({"lining": (1.9, 0.5)}, ["lining[1] = 0.5", "empty"]),
         ({"lining": (0.1, 1.9)}, ["lining[0] = 0.1", "overlaps the pin", "0.179853"]),
         ({"lining": (30, 110)}, ["lining[1] = 110", "leaves the drum", "rad"]),
-        ({"lining": (0.5, 3.4)}, ["lining[1] = 3.4", "leaves the drum"]),
+        ({"lining": (0.5, 3.4)}, ["lining[1] = 3.4", "leaves the drum; end it before; angles are in rad"]),
         (
             {"lining": (-0.1, 1.0), "pivot": (-0.05, -0.11), "pressure_zero": "axis"},
             ["lining[0]", "negative"],

@@ -73,6 +73,26 @@ def test_branches_of_the_inward_harvester_meet_at_the_critical_speed() -> None:
     assert bent.tip[:, 1].min() < -0.02 < 0.02 < bent.tip[:, 1].max()  # to both sides
 
 
+def test_the_straight_branch_is_stable_up_to_the_critical_speed() -> None:
+    found = bd.equilibrium_branches(harvester(0.0), 200.0)
+    straight = found.branches[0]
+    assert straight.speeds[straight.stable].max() == pytest.approx(found.critical_speed, rel=1e-8)
+
+
+def test_what_a_swept_blade_leaves_out_is_not_known_where_the_straight_one_does_not_deflect() -> None:
+    scene = bd.load_scene(Path(__file__).parents[2] / "examples" / "swept_blade.toml")
+    found = bd.equilibrium(scene, 30.0)
+    assert "does not deflect" in found.left_out_effects.not_known["stretch"] and math.isnan(found.model_error)
+
+
+def test_the_slope_at_the_tip_is_printed_with_the_digits_that_are_sure(finished: Finished) -> None:
+    example = Path(__file__).parents[2] / "examples" / "harvester_45deg.toml"
+    command = ["equilibrium", str(example), "--speed", "100 rad/s", "--discretization", "fem"]
+    printed = finished(main(command), DONE).out.partition("slope at the tip [deg]")[2].split()[0]
+    exact = math.degrees(bd.equilibrium(bd.load_scene(example), 100.0).tip_angle)
+    assert abs(float(printed) - exact) <= 0.5 * 10.0 ** -len(printed.partition(".")[2])
+
+
 def test_branches_end_at_the_top_speed() -> None:
     for branch in bd.equilibrium_branches(harvester(5.0), 200.0).branches:
         assert branch.speeds.max() == pytest.approx(200.0, rel=1e-12)  # rounding of a square root

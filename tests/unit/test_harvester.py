@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -273,6 +274,13 @@ def test_the_time_stated_counts_resonances_and_resistances_tried(monkeypatch):
     assert bd.best_resistance(SCENE, 50.0, modes=1).provenance.wall_time == 11.0
 
 
+def test_the_best_resistance_is_printed_with_the_digits_that_more_modes_keep(capsys):
+    assert main(["best-resistance", str(EXAMPLE), "--speed", "55 rad/s", "--modes", "1"]) == 0
+    printed = capsys.readouterr().out.partition("Harvested with ")[2].split()[0]
+    last = 10.0 ** int(Decimal(printed).as_tuple().exponent)
+    assert abs(float(printed) - bd.best_resistance(SCENE, 55.0, modes=5).resistance) <= last
+
+
 def test_the_best_resistance_counts_the_power_of_a_random_road(capsys):
     road = bd.RoadRoughness("A", highest=10.0)
     best = bd.best_resistance(SCENE, 50.0, modes=1, road=road)
@@ -284,4 +292,6 @@ def test_the_best_resistance_counts_the_power_of_a_random_road(capsys):
     given = ["best-resistance", str(EXAMPLE), "--speed", "50 rad/s", "--modes", "1", "--highest", "10 1/m"]
     assert main(given) == 2 and "give --road" in capsys.readouterr().err
     assert main([*given, "--road", "A"]) == 0
-    assert "On a random road, class A, up to 10 1/m" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "On a random road, class A, up to 10 1/m" in printed
+    assert " 1 mode," in " ".join(printed.split()) and "Resonances" not in printed  # at one speed

@@ -64,6 +64,15 @@ def test_nothing_is_left_out_of_what_is_modelled() -> None:
     assert modes.left_out_effects.unlisted == ()
 
 
+@pytest.mark.parametrize("load", [bd.TipLoad(), bd.TipLoad((0.0, 0.0, 1.0))])
+def test_torsion_of_a_bent_twisted_strip_is_modelled(load: bd.TipLoad) -> None:
+    """That of the straight strip, on which effects are judged, is not."""
+    physics = bd.Physics(2, torsion=True, large_deflection=True)
+    beam = bd.Beam.rectangular(0.5, 0.06, 0.03, 200e9, 7850.0, poissons_ratio=0.3, twist=0.2)
+    scene = bd.Scene(beam, OUTWARD, physics=physics, tip_load=load)
+    assert bd.natural_modes(scene, 10.0, 1, tolerance=1e-3).left_out_effects.not_modelled == NEVER
+
+
 def test_what_the_beam_lacks_is_named() -> None:
     beam = bd.Beam.from_stiffness(1.0, 1.0, 10.0)
     effects = bd.natural_modes(bd.Scene(beam, OUTWARD), 1.0).left_out_effects
@@ -324,6 +333,7 @@ def test_changes_in_percent(change: float, words: str) -> None:
         ("55.62", 500.0, ""),
         ("-", math.nan, "-"),
         ("0 ± 3", 1.0, "0 ± 3"),
+        ("5e+02 ± 2e+02", 200.0, "5e+02 ± 2e+02"),
     ],
 )
 def test_digits_beyond_an_error(text: str, error: float, sure: str) -> None:

@@ -105,7 +105,7 @@ def test_no_model_error_is_stated_of_no_answer(tmp_path, capsys):
     vary = ["--vary", "speed=300,400 rad/s", "--what", "amplitude"]
     _, out, err = run(vary, tmp_path, capsys, TOML + MOTION)
     assert "not computed: no design has an answer" in out and "of 0 designs" not in out
-    assert "at none of 2 designs is there an answer: past the critical speed" in err
+    assert "there is no answer at any of 2 designs: past the critical speed" in err
 
 
 def test_a_store_without_a_name_is_refused(tmp_path, capsys, monkeypatch):

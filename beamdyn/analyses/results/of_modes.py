@@ -304,7 +304,8 @@ def equilibrium_table(result: bd.Equilibrium) -> Group:
         (f"tip along {axis}", supported(unit.of(x), unit.of(result.error)), f"{x / length:.4f}")
         for axis, x in zip(_AXES, result.tip.tolist(), strict=True)
     ]
-    rows.append(("slope at the tip [deg]", supported(float(np.degrees(result.tip_angle)), 1e-9), ""))
+    slope, error = np.degrees([result.tip_angle, result.error / length]).tolist()
+    rows.append(("slope at the tip [deg]", supported(slope, error), ""))
     rows.append(("stable", "yes" if result.stable else f"no: grows at {result.growth_rate:.4g} 1/s", ""))
     speed = result.display_units.speed_unit().say(result.speed, 10)
     title = f"Equilibrium at {speed} ({result.branch} branch), by {result.provenance.method}"

@@ -200,13 +200,21 @@ def _model_error_of(result: bd.SteadyResponse | bd.Sweep) -> np.ndarray:
     return found
 
 
+# Relative error of a best resistance, over that of its power (1 was measured), and by the search.
+_LIKE_POWER, _OF_SEARCH = 2.0, 1e-6
+
+
 def harvest_columns(result: bd.Harvest) -> Columns:
     """Make columns of power, efficiency, voltage, current and strain over speed, with their errors."""
     of_power = result.error * np.abs(result.power)
     limit, electrodes = result.strain_limit, result.scene.beam.electrodes
     resistance = math.nan if electrodes is None else electrodes.resistance
-    resonant = ", ".join(result.say_speed(v) for v in result.resonances.tolist())
-    bears = "" if math.isinf(limit) else f" The layers bear a strain of {limit:g}."
+    ohm = f"{resistance:.6g}"
+    if isinstance(result, bd.BestResistance):
+        ohm = supported(resistance, (_LIKE_POWER * result.total_error[0] + _OF_SEARCH) * resistance, 6)
+    resonant = ", ".join(result.say_speed(v) for v in result.resonances.tolist()) or "none"
+    between = f"Resonances: {resonant} in this range." if len(result.speeds) > 1 else ""
+    bears = "" if math.isinf(limit) else f"The layers bear a strain of {limit:g}."
     return Columns(
         Column("speed", result.speeds, "rad/s", form=".8g"),
         Column("power", result.power, "W", error=of_power),
@@ -220,8 +228,8 @@ def harvest_columns(result: bd.Harvest) -> Columns:
         Column("relative_error", result.error, words=None),
         *_velocity(result),
         Column("status", result.status),
-        title=f"Harvested with {resistance:.6g} ohm, by harmonic balance with {result.provenance.method}",
-        note=f"Resonances: {resonant or 'none'} in this range.{bears}",
+        title=f"Harvested with {ohm} ohm, by harmonic balance with {result.provenance.method}",
+        note=f"{between} {bears}".strip(),
     )
 
 

@@ -18,6 +18,7 @@ from beamdyn.common.parallel.tasks import Task, TaskRunner
 from beamdyn.common.results.columns import Column, Columns, column_named
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.result import Result
+from beamdyn.common.words import at_any
 
 MOST_ONE_BY_ONE = 2000  # largest number of designs that are solved one by one, which takes minutes
 _CHUNK = 16  # number of designs in a task
@@ -172,7 +173,7 @@ def swept(
         at = (f"{each.name} = {where[each.name]:.6g} {each.unit}".strip() for each in designs.inputs)
         reason = f"{', '.join(at)}: {refused[first]}"
         if count == designs.count:
-            raise NoAnswer(f"at none of {count} values is there an answer; {reason}")
+            raise NoAnswer(f"there is no answer {at_any(count, 'value')}; {reason}")
         said = [f"at {count} of {designs.count} values there is no answer; {reason}"]
     of_all = (np.broadcast_to(values, (designs.count,)).reshape(designs.shape) for values in found)
     return InputSweep(

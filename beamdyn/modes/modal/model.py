@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import count
+from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.result import Result
 from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.results.statements import OUTSIDE, Statement
@@ -277,8 +278,8 @@ class ModalBasis:
         if self.modes is None:
             return "all modes"
         if self.is_at_rest:
-            return f"{self.modes} modes"
-        return f"{self.modes} modes at {' and at '.join(f'{v:.4g}' for v in self.speeds)} rad/s"
+            return counted(self.modes, "mode")
+        return f"{counted(self.modes, 'mode')} at {' and at '.join(f'{v:.4g}' for v in self.speeds)} rad/s"
 
     @property
     def is_at_rest(self) -> bool:

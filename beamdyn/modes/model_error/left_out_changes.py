@@ -62,6 +62,7 @@ _NOT_FOUND = "the equilibrium was not found"
 _LOST = "it turns a mode into others"
 _UNSTABLE = "it is judged on the straight beam, which is unstable"
 _STRAIGHT = "as of the straight beam"
+_STILL = "it is judged on the straight beam, which does not deflect"
 LOADED = "it is judged on the straight beam, which has no load at its tip"
 _AMONG = 4  # number of modes with the effect, for each mode without it, among which its partner is sought
 _REAL = 1e-8  # growth rate relative to the frequency, that is rounding
@@ -251,7 +252,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
 
 def nothing_known(scene: Scene, reason: str = "", shape: tuple[int, ...] = ()) -> LeftOutEffects:
     """Return the effects that a scene leaves out, with unknown changes of values of a shape, and why."""
-    additions, not_known, not_modelled = list_effects(_straightened(scene))
+    additions, not_known, not_modelled = _list_effects(scene, _straightened(scene))
     names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION.name]
     unchanged = {name: np.full(shape, np.nan) for name in (*names, *(added.name for added in additions))}
     not_known = dict.fromkeys(unchanged if reason else (), reason) | not_known
@@ -269,6 +270,16 @@ def _straightened(scene: Scene) -> Scene:
     return scene.straightened
 
 
+def _list_effects(scene: Scene, straight: Scene) -> tuple[list[Addition], dict[str, str], tuple[str, ...]]:
+    """List the effects that a scene leaves out, as `list_effects` does those of its straight beam.
+
+    What the straight beam cannot have, but the scene has (torsion of a twisted strip), is not left out.
+    """
+    additions, not_known, not_modelled = list_effects(straight)
+    left_out = {effect.name for effect in list_left_out(scene)}
+    return additions, not_known, tuple(name for name in not_modelled if name in left_out)
+
+
 def _reasons(scene: Scene) -> dict[str, str]:
     """Say for each effect left out what the model assumes in its place, and how to include it."""
     return {effect.name: effect.reason for effect in list_left_out(scene)}
@@ -283,7 +294,7 @@ def _gather(
     shape: tuple[int, ...] = (),
 ) -> LeftOutEffects:
     """Gather the changes of values by all effects left out: by `change` of each, and by large deflection."""
-    additions, not_known, not_modelled = list_effects(straight)
+    additions, not_known, not_modelled = _list_effects(scene, straight)
     changes = {} if bent is None else {LARGE_DEFLECTION.name: bent}
     not_known |= {LARGE_DEFLECTION.name: reason} if reason else {}
     changes |= {added.name: change(added) for added in additions}
@@ -328,8 +339,10 @@ def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
     base = _straightened(scene)
     if scene.tip_load.acts:
         return nothing_known(scene, LOADED, np.shape(solve(base, "").values))
-    additions, not_known, not_modelled = list_effects(base)
     without, found, notes = solve(base, ""), {}, {}
+    if base.beam is not scene.beam and not without.values.any():
+        return nothing_known(scene, _STILL, np.shape(without.values))
+    additions, not_known, not_modelled = _list_effects(scene, base)
     if not scene.physics.large_deflection:
         found[LARGE_DEFLECTION.name] = _bent_values(base, without, solve)
     for added in additions:
