@@ -282,7 +282,7 @@ _OF_MATRICES = ("shear", "stretch", "torsion", "large_deflection")  # effects th
 
 def _check_matrices(beam: Beam, physics: Physics) -> None:
     """Refuse section matrices that couple all strains, in equations that lack some of the strains."""
-    if beam.matrices is None or isinstance(physics, AutomaticPhysics):
+    if beam.matrices is None:
         return
     lacking = [name for name in _OF_MATRICES if not getattr(physics, name)]
     if physics.planes == 1 or lacking:

@@ -6,9 +6,8 @@ modes that the larger model has in each stretch of the run: the slow ones as osc
 follows the stiffness, y = Im(exp(i theta) (a + int exp(-i theta) R / sqrt(w) dt)) / sqrt(w) with theta' = w
 (Liouville and Green); those too fast for the samples of the run follow the residual quasi-statically, and
 vibrate freely after its jumps.  So no step has to be solved again.  As the stiffness of a stretch departs
-from
-its mean, the modes are coupled: each feels a force by the motion of the others, which the pass before has
-found.
+from its mean, the modes are coupled: each feels a force by the motion of the others, which the pass before
+has found.
 
 References
 ----------

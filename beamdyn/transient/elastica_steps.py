@@ -67,7 +67,8 @@ def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float)
     if system.motion.steady_start > 0 or v.any():
         return None
     still = np.zeros((_TIMES_COMPARED, system.size))
-    carrier = system.carrier(system.root(np.linspace(0, t_end, len(still))))
+    times = t_end * np.sqrt(np.linspace(0, 1, len(still)))  # unevenly spaced: no period has them in phase
+    carrier = system.carrier(system.root(times))
     force = system.residual(carrier, q, still, still)
     stiffness, size = np.abs(system.elastica.beam.stiffness), np.abs(q[0])
     # Equilibria are known to rounding of their coordinates, which in a stiff mode is a large force.
@@ -83,7 +84,7 @@ def attempt_elastica(
     """Integrate twice with equal steps in each segment, with 8 and 10 stages.
 
     Steps that were not solved are shortened, finally until they resolve the vibration of all coordinates.
-    The earlier attempt `before` is not used: an attempt takes nothing over from it.
+    The last argument, an earlier attempt, is not used: an attempt takes nothing over from it.
     """
     pieces = smooth_piece_ends(system.motion, t_end)
     edges = pieces if len(pieces) > _MANY else split_at_breakpoints(system.motion, t_end)

@@ -388,8 +388,7 @@ def _bent_values(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedVal
 # Effects that add modes, and beginnings of the names of fields in which these modes move most.
 _ADDED = {SECOND_PLANE: "second", TORSION: "torsion", CAMBER: "camber", STRETCH: "stretch"}
 _REFINING = (SHEAR, ROTARY_INERTIA)
-# Factor of the highest listed frequency up to which further modes are named: their frequencies are known to 3
-# %.
+# Factor of the highest listed frequency up to which further modes are named, as these are known to 3 %.
 _MARGIN = 1.03
 _EXTRA = 2  # modes computed beyond the number listed
 
