@@ -354,8 +354,7 @@ def equilibrium_branches(
     if load.bends:
         branches = [_collect("straight", load, continuation.start_curve(load, rest, 0.0, 1.0), top)]
     else:
-        last_stable = _JUST_BELOW * solver.critical_speed
-        speeds = np.union1d(np.linspace(0, top, 101), [last_stable] if last_stable < top else [])
+        speeds = np.union1d(np.linspace(0, top, 101), min(top, _JUST_BELOW * solver.critical_speed))
         stable = speeds < solver.critical_speed  # the stiffness is linear in the squared speed
         tips = np.tile(_in_space(load.elastica.beam.at(rest).tip, scene.mount), (len(speeds), 1))
         branches = [EquilibriumBranch("straight", speeds, tips, stable, np.empty(0))]
