@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
@@ -40,10 +41,14 @@ class FoundSpeed:
 def models_of_critical_speed(
     scene: Scene, discretization: DiscretizationChoice, target: float, cheapest: bool
 ) -> Iterator[Model]:
-    """List the models in which a critical speed is sought; see `list_models`."""
+    """List the models in which a critical speed is sought; see `list_models`, of which the first is made now.
+
+    So a beam with too many segments is refused, even if no model needs to be solved.
+    """
     named = isinstance(discretization, str)
     modes, split = (_SIZED_FOR, split_tip(scene)) if named else (1, scene)
-    return list_models(split, discretization, modes, target, cheapest, split is not scene)
+    models = list_models(split, discretization, modes, target, cheapest, split is not scene)
+    return chain([next(models)], models)
 
 
 def search_critical_speed(models: Iterator[Model], target: float) -> FoundSpeed:
