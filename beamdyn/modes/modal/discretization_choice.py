@@ -263,8 +263,7 @@ def _first_ritz(
         digits = -np.log10(max(target, MOMENTS_TARGET))
         return Ritz(max(modes, int(least + modes + per_digit * digits)), "moments")
     fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
-    further = 2 if scene.bends_in_space else 4  # strains converge faster than deflections
-    total = int(np.ceil(further + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
+    total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
     return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))
 
 
