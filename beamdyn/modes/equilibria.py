@@ -385,11 +385,13 @@ def _collect(name: str, load: Loading, start: continuation.Point, top: float) ->
             points.append(point)
             if np.abs(point.q @ load.angles).max() > _STEEPEST or len(points) > _MOST_POINTS:
                 break
+    # At a turning point the stiffness is singular: it ends the part before it, and is as stable as that.
+    judged = [b if b.p_rate else a for a, b in zip([start, *points], points, strict=False)]
     tips = load.elastica.beam.at(np.array([point.q for point in points])).tip
     return EquilibriumBranch(
         name,
         np.sqrt([max(point.p, 0.0) for point in points]),
         _in_space(tips, load.elastica.linear.mount),
-        np.array([continuation.count_negative(load, point.q, point.p) == 0 for point in points]),
+        np.array([continuation.count_negative(load, point.q, point.p) == 0 for point in judged]),
         np.sqrt([point.p for point in points if not point.p_rate]),
     )

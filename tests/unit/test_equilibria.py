@@ -73,6 +73,12 @@ def test_branches_of_the_inward_harvester_meet_at_the_critical_speed() -> None:
     assert bent.tip[:, 1].min() < -0.02 < 0.02 < bent.tip[:, 1].max()  # to both sides
 
 
+def test_a_turning_point_is_as_stable_as_what_it_ends() -> None:
+    """The stiffness is singular there: rounding would decide."""
+    bent = bd.equilibrium_branches(harvester(0.0), 200.0).branches[1]
+    assert bent.turning_speeds.size and bent.stable.all()
+
+
 def test_the_straight_branch_is_stable_up_to_the_critical_speed() -> None:
     found = bd.equilibrium_branches(harvester(0.0), 200.0)
     straight = found.branches[0]

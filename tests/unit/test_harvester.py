@@ -281,6 +281,14 @@ def test_the_best_resistance_is_printed_with_the_digits_that_more_modes_keep(cap
     assert abs(float(printed) - bd.best_resistance(SCENE, 55.0, modes=5).resistance) <= last
 
 
+def test_summary_and_picture_give_the_best_resistance_the_digits_of_the_table():
+    best = bd.best_resistance(SCENE, 55.0, modes=1)
+    digits = best.say_resistance()
+    assert abs(float(digits.removesuffix(" ohm")) - best.resistance) <= 2 * best.resistance_error
+    assert f"best resistance {digits} at" in str(best)
+    assert f"best, {digits}" in best.plot().get_legend_handles_labels()[1]
+
+
 def test_the_best_resistance_counts_the_power_of_a_random_road(capsys):
     road = bd.RoadRoughness("A", highest=10.0)
     best = bd.best_resistance(SCENE, 50.0, modes=1, road=road)

@@ -200,18 +200,12 @@ def _model_error_of(result: bd.SteadyResponse | bd.Sweep) -> np.ndarray:
     return found
 
 
-# Relative error of a best resistance, over that of its power (1 was measured), and by the search.
-_LIKE_POWER, _OF_SEARCH = 2.0, 1e-6
-
-
 def harvest_columns(result: bd.Harvest) -> Columns:
     """Make columns of power, efficiency, voltage, current and strain over speed, with their errors."""
     of_power = result.error * np.abs(result.power)
     limit, electrodes = result.strain_limit, result.scene.beam.electrodes
     resistance = math.nan if electrodes is None else electrodes.resistance
-    ohm = f"{resistance:.6g}"
-    if isinstance(result, bd.BestResistance):
-        ohm = supported(resistance, (_LIKE_POWER * result.total_error[0] + _OF_SEARCH) * resistance, 6)
+    load = result.say_resistance() if isinstance(result, bd.BestResistance) else f"{resistance:.6g} ohm"
     resonant = ", ".join(result.say_speed(v) for v in result.resonances.tolist()) or "none"
     between = f"Resonances: {resonant} in this range." if len(result.speeds) > 1 else ""
     bears = "" if math.isinf(limit) else f"The layers bear a strain of {limit:g}."
@@ -228,7 +222,7 @@ def harvest_columns(result: bd.Harvest) -> Columns:
         Column("relative_error", result.error, words=None),
         *_velocity(result),
         Column("status", result.status),
-        title=f"Harvested with {ohm} ohm, by harmonic balance with {result.provenance.method}",
+        title=f"Harvested with {load}, by harmonic balance with {result.provenance.method}",
         note=f"{between} {bears}".strip(),
     )
 

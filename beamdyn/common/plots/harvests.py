@@ -117,11 +117,13 @@ def plot_harvest(
     return add_legend(ax)
 
 
-def plot_resistances(resistances: np.ndarray, power: np.ndarray, best: float, ax: Axes | None = None) -> Axes:
-    """Draw power [W] over resistances [ohm], both logarithmic, and mark the best."""
+def plot_resistances(
+    resistances: np.ndarray, power: np.ndarray, best: float, label: str, ax: Axes | None = None
+) -> Axes:
+    """Draw power [W] over resistances [ohm], both logarithmic, and mark the best with a label."""
     ax = set_up_axes(ax, "load resistance [ohm]", "mean power [W]")
     ax.plot(resistances, power, color=COLOURS[0], linewidth=1.8, marker=".", label="tried")
-    ax.plot(best, power.max(), "o", color=COLOURS[1], label=f"best, {best:.4g} ohm")
+    ax.plot(best, power.max(), "o", color=COLOURS[1], label=label)
     ax.set_xscale("log")
     ax.set_yscale("log")
     return add_legend(ax)
