@@ -160,11 +160,12 @@ class Form:
         unit = f" [{drag.unit}]" if drag.unit else ""
         made.props(f'dense aria-label="{form_entries.label(entry)}{unit}"').classes("q-px-md")
 
-        def come() -> None:  # to what has been written into the field; a slider that is held is there already
+        def follow_field() -> None:
+            """Move the slider to the value written into the field; one that is held is there already."""
             if (at := place()) is not None:
                 (made.set_value(at) if self._held else made.put(at, self._writer))
 
-        field.on_value_change(come)
+        field.on_value_change(follow_field)
 
     def _select(self, entry: Input, text: str) -> Any:
         options = {option: option.replace("_", " ") for option in form_entries.options_of(entry)}
@@ -206,8 +207,10 @@ class Form:
         self.typed[entry.path] = typed
         read, field = self._read(entry.path), self.fields[entry.path]
         self._units[entry.path] = form_entries.unit_of(read.text, entry) or self._units[entry.path]
-        _say(field, "hint", read.remark or form_entries.help_of(entry))
-        _say(field, "suffix", self._units[entry.path] if form_entries.is_bare(field.value or "") else "")
+        _set_property(field, "hint", read.remark or form_entries.help_of(entry))
+        _set_property(
+            field, "suffix", self._units[entry.path] if form_entries.is_bare(field.value or "") else ""
+        )
         self._changed(entry.path, read.text)
 
     def _read(self, path: str) -> form_entries.Reading:
@@ -272,7 +275,7 @@ class Form:
             self._rest[path].open()
 
 
-def _say(field: Any, name: str, words: str) -> None:
-    """Change a property of a field, if it differs: the page would be rendered for an equal one as well."""
+def _set_property(field: Any, name: str, words: str) -> None:
+    """Set a property of a field, if it differs: the page would be rendered for an equal one as well."""
     if field.props.get(name, "") != words:
         field.props[name] = words
