@@ -346,9 +346,7 @@ def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> E
             )
         if (found := _interpolate(solver, known, speeds, power)) is not None:
             return found
-    parts = [_solve_ascending(solver, part, solve) for part in np.array_split(speeds, 2)]
-    joined = zip(*((p.eigenvalue, p.vector, p.rounding) for p in parts), strict=True)
-    return Eigen(*map(np.concatenate, joined))
+    return Eigen.joined(_solve_ascending(solver, part, solve) for part in np.array_split(speeds, 2))
 
 
 def _nodes(intervals: int) -> np.ndarray:
