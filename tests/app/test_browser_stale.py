@@ -102,3 +102,29 @@ def test_a_hinge_turns_over_at_any_speed(opened):
     expect(shown(page, "give the hinge a spring, or a beam that points outward")).to_be_visible()
     expect(page.locator(".headline:visible div", has_text="critical speed")).to_contain_text("0 rad/s")
     expect(page.locator(".q-field--error:visible")).to_have_count(0)
+
+
+# Types into a field as a person does, and goes to another screen as soon as the page says that it computes.
+LEAVE = """([path, text, other]) => {
+  const seen = (wanted) => [...document.querySelectorAll(wanted)].filter((it) => it.offsetParent);
+  const [typed] = seen(`[data-path="${path}"]`), [status] = seen("[role=status].status");
+  new MutationObserver((_, observer) => {
+    if (status.innerText.includes("Up to date.")) return;
+    observer.disconnect();
+    [...document.querySelectorAll("[role=tab]")].find((tab) => tab.innerText === other).click();
+  }).observe(status, {characterData: true, childList: true, subtree: true});
+  typed.focus();
+  typed.select();
+  document.execCommand("insertText", false, text);
+}"""
+
+
+def test_screen_left_while_it_computes_is_up_to_date_on_return(opened):
+    page = opened("beamdyn")
+    expect(shown(page, "Up to date.")).to_be_visible()
+    page.evaluate(LEAVE, ["beam.length", "51 mm", "Steady response"])
+    expect(page.get_by_role("tab", name="Steady response")).to_have_attribute("aria-selected", "true")
+    expect(shown(page, "Up to date.")).to_be_visible()
+    go(page, "Frequencies")
+    expect(field(page, "length, L")).to_have_value("51 mm")
+    expect(shown(page, "Up to date.")).to_be_visible()

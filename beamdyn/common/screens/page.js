@@ -51,13 +51,16 @@ window.putDesign = (name, design) => {
 // typed, and it is reported when the page becomes narrow or wide.
 window.narrowPage = matchMedia("(max-width: 600px)"); // below it drawings have narrow paper, as in page.css
 const TOLD = 50; // time after which a field has told what is typed [ms]
+const marked = new Set(); // screens, of which those of hidden tabs are kept apart from the document
 let strokes = 0;
 const askAfter = (delay) => {
   const stroke = ++strokes;
   setTimeout(() => stroke === strokes && emitEvent("typed", stroke), delay);
 };
 window.heard = (stroke) => {
-  if (stroke === strokes) for (const it of document.querySelectorAll(".typed")) it.classList.remove("typed");
+  if (stroke !== strokes) return;
+  for (const screen of marked) screen.classList.remove("typed");
+  marked.clear();
 };
 const askNow = (event) => { if (event.target.closest?.(".typed [data-path]")) askAfter(0); };
 document.addEventListener("focusout", askNow);
@@ -68,7 +71,9 @@ document.addEventListener("input", (event) => {
   const typed = kept(sessionStorage, "typed");
   (typed[screen.dataset.document] ??= {})[field.dataset.path] = event.target.value;
   keep(sessionStorage, "typed", typed);
-  field.closest(".screen").classList.add("typed");
+  const marks = field.closest(".screen");
+  marks.classList.add("typed");
+  marked.add(marks);
   if (field.closest(".lists")) ++strokes;
   else askAfter(TOLD);
 });
@@ -107,9 +112,13 @@ const become = (shown, wanted) => {
   fill(shown, wanted);
 };
 const parsed = document.createElement("template");
+const ofHiddenTab = (id) => { // kept apart from the document; Vue would not repeat a change that it missed
+  const made = getElement(id), shown = made?.$el ?? made;
+  return shown instanceof Element ? shown : null;
+};
 window.writeChanges = (changes) => {
   for (const [id, changed] of Object.entries(changes)) {
-    const shown = getHtmlElement(id);
+    const shown = getHtmlElement(id) ?? ofHiddenTab(id);
     if (shown === null) continue;
     for (const [name, value] of Object.entries(changed)) {
       if (name === "innerHTML") {
