@@ -1,1 +1,1 @@
-"""Accuracy of answers: refinement to a tolerance, and margins of stated errors."""
+"""Accuracy of results: refinement until a tolerance is met, and safety factors of estimated errors."""

@@ -1,8 +1,8 @@
-"""The loop that refines an answer to its tolerance, and the table of margins by which errors are stated.
+"""Refinement of a result until it meets its tolerance, and the table of safety factors of error estimates.
 
-Two answers of different sizes, such as by a basis and a smaller one, differ by about the larger error.
-A stated error is a margin times such a distance.  Each margin is given here, with the reason for its size and
-the benchmark that measures whether the errors that are stated with it cover the true ones.
+Two results from models of different size, such as a basis and a smaller basis, differ by about the larger
+error.  A stated error is a margin times this difference.  Each margin is defined here, with the reason for
+its size and the benchmark that measures whether the stated errors exceed the true errors.
 """
 
 from __future__ import annotations
@@ -14,16 +14,16 @@ import numpy as np
 
 
 class ErrorMargin(NamedTuple):
-    """A factor between a distance of two answers, or a tolerance, and the error that is stated.
+    """Safety factor between the difference of two results, or a tolerance, and the stated error.
 
     Parameters
     ----------
     factor : float
         Ratio of the error to the distance.
     distance : str
-        Names of the answers that are compared.
+        Results that are compared, in words.
     reason : str
-        Why the factor is as large as it is.
+        Reason for the size of the factor.
     evidence : str
         Name of the benchmark that measures whether the factor suffices.
     """
@@ -49,7 +49,7 @@ BASES_OF_FIELDS = ErrorMargin(
 ROUNDING_OF_TWO = ErrorMargin(
     1.5,
     "rounding errors of one of two models that are compared",
-    "where both have the same matrices, they have the same errors, which do not show",
+    "models with equal matrices have equal errors, which a comparison does not show",
     "stated_frequency_errors",
 )
 BASES_OF_PLATES = ErrorMargin(
@@ -61,7 +61,7 @@ BASES_OF_PLATES = ErrorMargin(
 LINEAR_MESHES = ErrorMargin(
     2.0,
     "responses and poles of two discretizations",
-    "they converge as fast as the frequencies, of which peaks magnify the errors",
+    "they converge as fast as the frequencies, but peaks magnify errors of frequency",
     "responses",
 )
 LINEAR_MODES = ErrorMargin(
@@ -73,7 +73,7 @@ LINEAR_MODES = ErrorMargin(
 BASES_OF_STATIC_LOADS = ErrorMargin(
     1.5,
     "loads along the span of two discretizations",
-    "loads in equilibrium converge regularly, at stations unlike at others",
+    "loads in equilibrium converge regularly, but differently at each station",
     "stated_load_errors",
 )
 MODES_OF_MOMENTS = ErrorMargin(
@@ -96,18 +96,18 @@ STEPS = ErrorMargin(
 )
 EFFECTS = ErrorMargin(
     0.5,
-    "tolerance of a physics that is chosen, over the sizes of what it leaves out",
+    "tolerance of an automatic choice of physics, over the sizes of neglected effects",
     "the size of an effect may be estimated too low by a factor of two",
     "automatic_physics",
 )
 
 THREE_DISCRETIZATIONS = ErrorMargin(
     4.0,
-    "poles, limits of the setting angle and coefficients of amplitude, as far as they still change",
-    "the rate of convergence, by which they do, varies from one discretization to the next",
+    "changes of poles, limits of the setting angle and coefficients of amplitude",
+    "the rate of convergence varies from one discretization to the next",
     "stated_answer_errors",
 )
-# Least share of the distance before the last that counts, as the last may be small by chance.
+# Smallest fraction of the previous difference that is used, as the last difference may be small by chance.
 _LEAST_SHARE = 0.0015
 
 
@@ -117,27 +117,27 @@ def error_of_finest(
     before: np.ndarray | float,
     rounding: np.ndarray | float = 0.0,
 ) -> np.ndarray:
-    """Estimate the error of the finest of three answers from the distances between them.
+    """Estimate the error of the finest of three results from the differences between them.
 
-    Where every distance is the one before times a ratio r < 1, all those that remain add up to r / (1 - r) of
-    the last.
+    If each difference is r < 1 times the previous one, the sum of all further differences is r / (1 - r)
+    times the last.
 
     Parameters
     ----------
     margin : ErrorMargin
-        The margin of the error.
+        Safety factor of the error.
     distance : ndarray or float
-        Distance of the finest answer from the second.
+        Difference of the finest result from the second.
     before : ndarray or float
-        Distance of the second from the coarsest; not finite if it is not known.
+        Difference of the second result from the coarsest; not finite if it is not known.
     rounding : ndarray or float
-        Distance up to which two answers may differ by rounding, to which no ratio applies.
+        Difference of two results that rounding may cause; the ratio r does not apply to it.
 
     Returns
     -------
     ndarray
-        Estimated error: the margin times the sum of the distances that remain, which is at most the last
-        distance and at least 0.0015 of the distance before.
+        Estimated error: the margin times the sum of all further differences, which is limited to at most the
+        last difference and at least 0.0015 of the previous one.
 
     Examples
     --------
@@ -158,21 +158,21 @@ Answer = TypeVar("Answer")
 def refine(
     first: Answer, finer: Callable[[Answer], Answer | None], meets: Callable[[Answer], bool]
 ) -> Answer:
-    """Refine an answer until it meets its tolerance, or until nothing finer is available or worth its time.
+    """Refine a result until it meets its tolerance, or until no finer one is available or worth the time.
 
     Parameters
     ----------
     first : Answer
-        The answer of the smallest size.
+        Result of the smallest model.
     finer : callable
-        Function from an answer to the one of the next larger size; None to keep the given one.
+        Function from a result to that of the next larger model, or to None in order to keep the given one.
     meets : callable
-        Function that tells whether an answer is accurate enough.
+        Function that returns whether a result is accurate enough.
 
     Returns
     -------
     Answer
-        The first that is accurate enough, or the last.
+        The first result that is accurate enough, or the last one.
 
     Examples
     --------

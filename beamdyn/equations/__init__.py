@@ -1,1 +1,1 @@
-"""Equations of motion of a scene: discretizations, operators of the fields, and the list of terms."""
+"""Equations of motion of a scene: discretizations, terms of each displacement field, and their list."""

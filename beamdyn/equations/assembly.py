@@ -1,4 +1,4 @@
-"""Assembly of the equations of motion of a scene, field by field, with its damping."""
+"""Assembly of a scene's equations of motion from the displacement fields, with damping."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from beamdyn.scene.scene import Scene
 
 
 def assemble_equations(scene: Scene, discretization: Discretization) -> Equations:
-    """Assemble the equations of motion of a scene in a discretization: see `assemble_over`."""
+    """Assemble the equations of motion of a scene in a discretization, as `assemble_over` does."""
     return assemble_over(scene, discretization.spaces(scene.modelled_beam))
 
 
 def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
-    """Assemble the equations of motion of a scene over function spaces, field by field.
+    """Assemble the equations of motion of a scene from its displacement fields, over function spaces.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
 
 
 def _with_electrodes(equations: Equations, beam: Beam) -> Equations:
-    """Add the stiffness of open electrodes, or store the circuit of electrodes with a load resistance."""
+    """Add the stiffness of open electrodes, or attach the circuit of electrodes with a load resistance."""
     electrodes, theta = beam.electrodes, np.zeros(equations.size)
     assert electrodes is not None
     if not electrodes.resistance:
@@ -80,7 +80,7 @@ def _with_electrodes(equations: Equations, beam: Beam) -> Equations:
 
 
 def damping_terms(equations: Equations, scene: Scene) -> Iterator[Term]:
-    """Yield the terms of all damping of a scene: modal, Rayleigh's, and of a damper at the tip."""
+    """Yield the damping terms of a scene: modal damping, Rayleigh damping, and a damper at the tip."""
     names, damping = {field.name: field.damping_name for field in FIELDS}, scene.damping
     if scene.damping_ratio or any(damping.ratios):
         for part, C in _damping_of_modes(equations, scene):
@@ -93,7 +93,7 @@ def damping_terms(equations: Equations, scene: Scene) -> Iterator[Term]:
         if term.quantity == "unity" and factors.get(term.order):
             name, factor = names[term.rows], factors[term.order] * term.factor
             yield replace(term, name=name, order=1, factor=factor)
-    if damping.tip_damper:  # the tip damper acts against the whole deflection in each direction
+    if damping.tip_damper:  # the damper's force depends on the total tip velocity in each direction
         tips = {name: (d.direction, d.space.end(0)) for name, d in equations.deflections.items()}
         for row, (direction, tip) in tips.items():
             for column, (other, tip_of_other) in tips.items():
@@ -103,10 +103,10 @@ def damping_terms(equations: Equations, scene: Scene) -> Iterator[Term]:
 
 
 def _damping_of_modes(equations: Equations, scene: Scene) -> Iterator[tuple[tuple[str, ...], np.ndarray]]:
-    """Yield each set of coupled blocks with the damping matrix of its modes at rest.
+    """Yield each set of coupled coordinate blocks, with the damping matrix of its modes at rest.
 
-    If all modes have one ratio, the matrix is that of the ratio 1, which the caller scales.  Ratios mode by
-    mode follow the order of the frequencies of all sets together.
+    If all modes have the same damping ratio, the matrix is that of the ratio 1, and the caller scales it.
+    Ratios given mode by mode are assigned in the order of the frequencies of all sets together.
     """
     pencil, sets = equations.steady(), equations.coupled
     parts = [pencil.part(equations.places(names)) for names in sets]
@@ -124,7 +124,7 @@ def _damping_of_modes(equations: Equations, scene: Scene) -> Iterator[tuple[tupl
 
 
 def _modal_damping(part: SteadyPencil, ratios: np.ndarray | None = None) -> np.ndarray:
-    """Compute the damping matrix [kg/s] that gives modes at rest the damping ratio 1, or given ones (n,).
+    """Compute the damping matrix [kg/s] that gives modes at rest the damping ratio 1, or ratios (n,).
 
     C = 2 L (B - shift B^2)^(1/2) L^T with K + shift M = L L^T and B = L^-1 M L^-T; the shift [1/s2] makes
     a singular stiffness positive definite.
@@ -134,11 +134,11 @@ def _modal_damping(part: SteadyPencil, ratios: np.ndarray | None = None) -> np.n
     compliance = solve_lower(L, solve_lower(L, M).T)
     mu, U = np.linalg.eigh((compliance + compliance.T) / 2)
     unshifted: np.ndarray | float = 1.0
-    if shift:  # 1 - shift mu, as v^T K v, which keeps its digits on soft springs; 0 within rounding
+    if shift:  # v^T K v is 1 - shift mu without cancellation on soft springs; 0 within rounding
         v = solve_lower_transposed(L, U)
         quotient = np.einsum("nk,nk->k", v, K @ v)
         lost = BACKWARD * np.einsum("nk,nk->k", np.abs(v), np.abs(K) @ np.abs(v))
         unshifted = np.where(quotient > lost, quotient, 0.0)
-    of_modes = 1.0 if ratios is None else ratios[::-1]  # mu ascends as frequencies descend
+    of_modes = 1.0 if ratios is None else ratios[::-1]  # mu ascends while frequencies descend
     root = (U * (of_modes * np.sqrt(np.maximum(mu * unshifted, 0)))) @ U.T
     return 2 * L @ root @ L.T

@@ -1,19 +1,19 @@
-"""The electric circuit of a harvester in the equations of motion: electrodes, capacitance and resistance.
+"""Electric circuit of a piezoelectric harvester in the equations of motion: capacitance and resistance.
 
-With the voltage v and the coordinates q, and theta the moment of the electrodes by a unit voltage times the
-change of slope between their ends per coordinate,
+Let v be the voltage, q the coordinates, and theta the bending moment by a unit voltage times the change of
+slope between the electrodes' ends per unit coordinate:
 
     M q'' + C q' + K q = f + theta v,    Cp v' + v/R + theta^T q' = 0.
 
-Open, R = inf, the charge stays: v = -theta^T q / Cp, a stiffness theta theta^T / Cp.  Short-circuited,
-v = 0.  Else the circuit has a coordinate of its own, in one of two forms:
+For an open circuit, R = inf, the charge is constant: v = -theta^T q / Cp, which adds the stiffness theta
+theta^T / Cp.  For a short circuit, v = 0.  Otherwise the circuit has a coordinate, in one of two forms:
 
 - the **flux** mu, v = mu'/sqrt(Cp): mass 1, damping 1/(R Cp), gyroscopic coupling theta/sqrt(Cp), no
-  stiffness; all matrices as in mechanics, for motion in time and harmonic balance;
+  stiffness; all matrices keep their mechanical properties, for transients and harmonic balance;
 - the **charge** Q that has flown, v = -(Q + theta^T q)/Cp: resistance R, stiffness 1/Cp, no mass; the
   stiffness stays positive definite, for linear models.
 
-Modes that are left out follow a voltage without delay, by their residual flexibility g = K^-1 theta beyond
+Neglected modes respond quasi-statically to a voltage, by their residual flexibility g = K^-1 theta beyond
 the modes (Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4): the capacitance of
 the reduced model is Cp + theta^T g.
 """
@@ -30,14 +30,14 @@ from beamdyn.common.numerics import gauss_rule
 from beamdyn.equations.fields.field import Deflection, SectionFunctions, Term
 from beamdyn.scene.beam import Beam
 
-BENDS = "bending"  # the field whose slope the electrodes feel
+BENDS = "bending"  # the displacement field whose slope couples to the electrodes
 BLOCK = "circuit"  # name of the block of the circuit's coordinate
-_POINTS = 40  # number of points between breakpoints, at which the curvature across is integrated
+_POINTS = 40  # number of points between breakpoints at which the curvature across the width is integrated
 
 
 @dataclass(frozen=True)
 class Circuit:
-    """Electrodes with a load resistance, coupled to equations of n coordinates.
+    """Electrodes with a load resistance, coupled to equations of motion with n coordinates.
 
     Parameters
     ----------
@@ -48,7 +48,8 @@ class Circuit:
     resistance : float
         Load resistance R [ohm].
     bent : dict of str to ndarray
-        Residual flexibility g of each field: deflection by a unit voltage beyond that of the coordinates.
+        Residual flexibility g of each field: static deflection by a unit voltage of modes not in the
+        coordinates.
     """
 
     coupling: np.ndarray
@@ -59,14 +60,14 @@ class Circuit:
 
 @dataclass(frozen=True)
 class Voltage:
-    """The voltage [V] or other output: a row (n,) times coordinates (order 0) or rates (order 1)."""
+    """Voltage [V] or other output: coefficients (n,) times coordinates (order 0) or rates (order 1)."""
 
     order: int
     row: np.ndarray
 
 
 def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
-    """Compute the strain of the layer's outer face at xi (k,) per function of bending: shape (n, k)."""
+    """Compute the strain of the layer's outer face at xi = x/L (k,) per bending function: shape (n, k)."""
     assert beam.electrodes is not None, "electrodes stand on a layer"
     return beam.electrodes.fibre / beam.length**2 * deflection.space.evaluate(xi, 2)
 
@@ -74,10 +75,10 @@ def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
 def coupling_of(
     beam: Beam, deflections: Mapping[str, Deflection], sections: Iterable[tuple[str, SectionFunctions]]
 ) -> dict[str, np.ndarray]:
-    """Return theta of each field: the work of the moment by a unit voltage, per function of the field.
+    """Compute theta of each field: the work of the moment by a unit voltage, per function of the field.
 
-    In bending, the moment works on the slopes at the ends of the electrodes.  Where sections camber, it also
-    works on the mean curvature across the width.
+    In bending, the moment does work on the slopes at the ends of the electrodes.  If sections can camber, it
+    also does work on the mean curvature across the width.
     """
     electrodes, L = beam.electrodes, beam.length
     assert electrodes is not None, "electrodes couple"
@@ -97,7 +98,7 @@ def coupling_of(
 
 
 def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:
-    """Build the terms of the circuit's flux, and the voltage, for a coupling vector of each block."""
+    """Build the terms of the circuit's flux, and the voltage, from coupling vectors theta of blocks."""
     root = np.sqrt(circuit.capacitance)
     terms = [
         Term("capacitance", BLOCK, BLOCK, 2, np.eye(1)),
@@ -111,7 +112,7 @@ def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[lis
 
 
 def charge_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:
-    """Build the terms of the circuit's charge, and the voltage, for a coupling vector of each block."""
+    """Build the terms of the circuit's charge, and the voltage, from coupling vectors theta of blocks."""
     C = circuit.capacitance
     terms = [
         Term("capacitance", BLOCK, BLOCK, 0, np.eye(1) / C),
@@ -128,7 +129,7 @@ def charge_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[l
 def open_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> list[Term]:
     """Build the stiffness terms of open electrodes, whose charge stays constant.
 
-    They are theta theta^T / Cp, for a coupling vector theta of each block and the capacitance Cp.
+    The terms are theta theta^T / Cp, with a coupling vector theta of each block and the capacitance Cp.
     """
     return [
         Term("piezoelectric stiffness", a, b, 0, np.outer(of_a, of_b) / circuit.capacitance)

@@ -1,4 +1,4 @@
-"""Interface of discretizations: function spaces on a beam, integrated by Gauss rules on its cells."""
+"""Interface of discretizations: function spaces on a beam, integrated by Gauss rules on cells of the beam."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ class Cells:
 
 @dataclass(frozen=True)
 class ArcQuadrature:
-    """Gauss rule on cells of a beam, with integrals from the root to each of its points.
+    """Gauss rule on the cells of a beam, which also integrates from the root to each point.
 
     Parameters
     ----------
     cells : Cells
-        Cells and number of points.
+        Cells, and number of Gauss points on each.
     """
 
     cells: Cells
@@ -66,7 +66,7 @@ class ArcQuadrature:
         ends = np.cumsum(
             (of_cells @ gauss_rule(p)[1]).reshape(shape[:-1]) * self._half_lengths[:, 0], axis=-1
         )
-        integrals = np.empty((*values.shape[:-1], N + 1))  # allocation costs more than arithmetic
+        integrals = np.empty((*values.shape[:-1], N + 1))  # allocation takes longer than the arithmetic
         inside = integrals[..., :N].reshape(shape)
         np.multiply((of_cells @ integrals_between_points(p).T).reshape(shape), self._half_lengths, out=inside)
         inside[..., 1:, :] += ends[..., :-1, None]
@@ -74,7 +74,7 @@ class ArcQuadrature:
         return integrals
 
     def transposed(self, forces: np.ndarray) -> np.ndarray:
-        """Apply the transpose of `integrate` to forces (..., N + 1): shape (..., N)."""
+        """Apply the transposed matrix of `integrate` to forces (..., N + 1): shape (..., N)."""
         p = self.cells.points
         _, w = gauss_rule(p)
         inside = forces[..., :-1].reshape(*forces.shape[:-1], (len(self.cells.ends) - 1), p)
@@ -84,7 +84,7 @@ class ArcQuadrature:
         return scaled.reshape(*forces.shape[:-1], (len(self.cells.ends) - 1) * p)
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Compute weights (k, N) that integrate values at the points from the root to each of xi (k,)."""
+        """Compute weights (k, N) that integrate values at the Gauss points from the root to xi (k,)."""
         cell, t, own = self._find(xi)
         length, p = np.diff(self.cells.ends)[cell], self.cells.points
         matrix = np.where(np.arange(len(self.xi)) < (cell * p)[:, None], self.weights, 0.0)
@@ -92,7 +92,7 @@ class ArcQuadrature:
         return matrix
 
     def interpolate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Compute weights (k, N) that interpolate values at the points of each cell to xi (k,)."""
+        """Compute weights (k, N) that interpolate from the points of each cell to xi (k,)."""
         _, t, own = self._find(xi)
         matrix = np.zeros((len(xi), len(self.xi)))
         values = legendre.legvander(t, self.cells.points - 1) @ legendre_series(self.cells.points)
@@ -100,7 +100,7 @@ class ArcQuadrature:
         return matrix
 
     def _find(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Find each xi's cell (k,), its place there from -1 to 1 (k,), and the points' indices (k, p)."""
+        """Find the cell of each xi (k,), the local coordinate from -1 to 1 (k,), and point indices (k, p)."""
         ends, p = self.cells.ends, self.cells.points
         cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
         t = np.clip(2 * (xi - ends[cell]) / np.diff(ends)[cell] - 1, -1, 1)
@@ -119,11 +119,11 @@ def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
     return legendre.legvander(t, points) @ integrals @ legendre_series(points)
 
 
-_OF_TENSION = 3  # polynomial degree of the tension by a mass per length that is linear in x
+_OF_TENSION = 3  # polynomial degree of the tension, if the mass per length is linear in x
 
 
 class Sampler:
-    """Sampler of the beam's properties at the Gauss points of cells; each is evaluated once.
+    """Sampler of the beam's properties at the Gauss points of cells; each property is evaluated once.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ class Sampler:
 
     @classmethod
     def on_cells(cls, cells: Cells) -> Sampler:
-        """Make a sampler on cells that follow one another."""
+        """Build a sampler for the Gauss points of consecutive cells."""
         return cls(cells.ends[:-1], cells.ends[1:], cells.points)
 
     def __call__(self, profile: Profile) -> np.ndarray:
@@ -153,9 +153,10 @@ class Sampler:
         return self._known[profile]
 
     def _place(self, breakpoints: tuple[float, ...], degree: int) -> tuple[np.ndarray, np.ndarray]:
-        """Find the segment (c,) of each cell, and its Legendre polynomials (c, points, n) at the points.
+        """Find the segment (c,) that contains each cell, and Legendre polynomials (c, points, n).
 
-        The polynomials reach at least the degree; they are cached, as most properties have the same segments.
+        The polynomials have at least the given degree; they are cached, as most properties share their
+        segments.
         """
         placed = self._placed.get(breakpoints)
         if placed is not None and placed[1].shape[2] > degree:
@@ -185,7 +186,7 @@ class SampledSpace(FieldsOnly, ABC):
     @cached_property
     @abstractmethod
     def samples(self) -> list[np.ndarray]:
-        """Values of the functions and of each derivative at the Gauss points, of shape (n, k) each."""
+        """Values of the trial functions and of each derivative at the Gauss points, of shape (n, k) each."""
 
     @property
     def size(self) -> int:
@@ -195,10 +196,10 @@ class SampledSpace(FieldsOnly, ABC):
     @property
     @abstractmethod
     def coarse(self) -> np.ndarray | None:
-        """Indices of functions that span the coarser discretization; None where no subset does."""
+        """Indices of functions that span the coarser discretization; None if no subset of functions does."""
 
     def weights(self, weight: Profile) -> np.ndarray:
-        """Multiply the weights of the Gauss rule by a property of the beam."""
+        """Multiply the weights of the Gauss rule by a property of the beam at the Gauss points."""
         return self.rule * weight(self.points)
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
@@ -214,21 +215,21 @@ class SampledSpace(FieldsOnly, ABC):
 def product_of(
     rows: SampledSpace, columns: SampledSpace, weight: Profile, orders: tuple[int, int]
 ) -> np.ndarray:
-    """Integrate a weight times derivatives of function i of `rows` and j of `columns` on one rule: (n, m)."""
+    """Integrate a weight times derivatives of functions of `rows` and `columns` on a common rule: (n, m)."""
     return (rows.samples[orders[0]] * rows.weights(weight)) @ columns.samples[orders[1]].T
 
 
 class RootConditions(NamedTuple):
-    """Conditions that trial functions of a field satisfy at the root, and their smoothness.
+    """Boundary conditions of a field's trial functions at the root, and their smoothness.
 
     Parameters
     ----------
     held : int
-        Number of derivatives, from the value on, that vanish at the root.
+        Number of quantities that vanish at the root: the value, the first derivative, and so on.
     derivatives : int
         Highest order of a derivative that must be square-integrable.
     stiffness : str
-        Property of the sections that resists the highest derivative; functions may be adapted to it.
+        Stiffness of the sections against the highest derivative, by name; functions may be adapted to it.
     direction : int
         Direction of the displacement across the beam, 0 or 1.
     """
@@ -239,13 +240,13 @@ class RootConditions(NamedTuple):
     direction: int = 0
 
 
-CLAMPED = RootConditions(2, 2)  # a deflection without slope at the root
-HINGED = RootConditions(1, 2)  # a deflection that may turn about the root, by its first function
-FIXED = RootConditions(1, 1)  # a displacement that is 0 at the root, such as the stretch
+CLAMPED = RootConditions(2, 2)  # a deflection with zero slope at the root
+HINGED = RootConditions(1, 2)  # a deflection whose first function rotates about the root
+FIXED = RootConditions(1, 1)  # a displacement that is 0 at the root, such as stretch
 
 
 class Functions(Protocol):
-    """Functions phi_i of xi = x/L on [0, 1]."""
+    """Trial functions phi_i of xi = x/L on [0, 1]."""
 
     @property
     def size(self) -> int:
@@ -266,7 +267,7 @@ class Space(Functions, Protocol):
 
     @property
     def coarse(self) -> np.ndarray | None:
-        """Indices of functions that span the coarser discretization; None where no subset does."""
+        """Indices of functions that span the coarser discretization; None if no subset of functions does."""
         ...
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
@@ -284,19 +285,19 @@ class Spaces(Protocol):
     def functions(self, conditions: RootConditions) -> Space:
         """Build trial functions that satisfy conditions at the root.
 
-        The functions for `HINGED` are one with a slope at the root, then the functions for `CLAMPED`.
+        For `HINGED`, the first function has a slope at the root; the others are the functions for `CLAMPED`.
         """
         ...
 
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate over xi the weight times derivatives of function i of `rows` and j of `columns`."""
+        """Integrate over xi the weight times derivatives of the functions i of `rows` and j of `columns`."""
         ...
 
     @property
     def across(self) -> int:
-        """Number of functions across the width of a plate, without the constant one."""
+        """Number of functions across the width of a plate, not counting the constant one."""
         ...
 
     @property
@@ -305,7 +306,7 @@ class Spaces(Protocol):
         ...
 
     def shares_functions(self, other: Self) -> bool:
-        """Whether two spaces of one kind have the same functions, whatever their quadrature."""
+        """Whether two function spaces of a class have the same functions, whatever their Gauss rule."""
         ...
 
 
@@ -314,14 +315,15 @@ class Discretization(Protocol):
 
     In order to add a discretization, write a class in a module of its own:
 
-    1. It is a frozen dataclass of its sizes: it is hashed and pickled, and its `repr` stands in the
+    1. It is a frozen dataclass of its sizes: it is hashed and pickled, and its `repr` is recorded in the
        provenance of results.
     2. `spaces(beam)` returns the function spaces (`Spaces`).  They have a breakpoint, or a node, at each
-       of `beam.breakpoints`, so that integrals are exact where a property jumps.  Results keep them:
-       dataclasses of numbers and arrays, which compute the rest when asked (`FieldsOnly`), are pickled and
-       saved with a result.
-    3. All physics is in the fields (`beamdyn.equations.fields`): a space only integrates and evaluates.
-    4. `coarser` and `finer` make a sequence.  The truncation error of a result is estimated by its distance
+       of `beam.breakpoints`, so that integrals are exact where a property jumps.  They are pickled and saved
+       with results: as dataclasses of numbers and arrays, which compute derived quantities at first use
+       (`FieldsOnly`).
+    3. All physics is in the displacement fields (`beamdyn.equations.fields`); a function space only
+    integrates and evaluates. 4. `coarser` and `finer` make a sequence.  The truncation error of a result is
+    estimated by its distance
        from that of `coarser`; a tolerance is met by repeating `finer`.  Where functions of a space span those
        of the coarser one, its `coarse` names them, and the coarser equations are a part of these.
     5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size;
@@ -341,35 +343,35 @@ class Discretization(Protocol):
 
     @property
     def order(self) -> int | None:
-        """Order p of convergence of eigenvalues, whose error is as size^-p; None if it is not a power."""
+        """Order p of convergence of eigenvalues: their error is as size^-p; None if it is not a power."""
         ...
 
     @property
     def converges_regularly(self) -> bool:
-        """Whether the changes of an eigenvalue with each refinement decrease steadily, without setbacks."""
+        """Whether the changes of an eigenvalue decrease steadily from refinement to refinement."""
         ...
 
     @property
     def rounding(self) -> float:
-        """Relative rounding error of eigenvalues that stems from the integrals of the discretization."""
+        """Relative rounding error of eigenvalues that is caused by the integrals of the discretization."""
         ...
 
     def spaces(self, beam: Beam) -> Spaces:
-        """Build the function spaces on a beam."""
+        """Build the function spaces on a beam, one for each kind of boundary condition."""
         ...
 
     def cells(self, beam: Beam) -> Cells:
-        """Divide a beam into cells on which the functions are smooth, for integrals of large deflections."""
+        """Divide a beam into cells on which the functions are smooth, for integrals of large deflection."""
         ...
 
     def coarser(self) -> Discretization:
-        """Return a coarser discretization; the difference of their results estimates the error."""
+        """Return a coarser discretization; the difference between both results estimates the error."""
         ...
 
     def finer(self) -> Discretization | None:
-        """Return the next finer discretization; None at the largest."""
+        """Return the next finer discretization; None if this is the largest."""
         ...
 
     def fits(self, modes: int) -> bool:
-        """Whether even the coarser discretization has functions enough for a number of modes."""
+        """Return whether even the coarser discretization has enough functions for a number of modes."""
         ...

@@ -1,6 +1,6 @@
-"""Physical effects beyond the plain beam: names, how each is added, and what a model without it assumes.
+"""Physical effects beyond the plain (Euler-Bernoulli) beam: how to include each, and what replaces it.
 
-Sentences name the two directions of bending at the root.
+Messages name the two directions in which the beam bends at the root.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ EXCLUSIVE = "it cannot be combined with large deflection"
 
 @dataclass(frozen=True)
 class Effect:
-    """An effect that models of a beam may have or leave out.
+    """Physical effect that a beam model may include or neglect.
 
     Parameters
     ----------
     name : str
-        Name, as it is shown and saved.
+        Name, as it is displayed and saved.
     assumed : str
-        What a model assumes in its place; "{across}" stands for the direction across that of bending.
+        Assumption of a model without the effect; "{across}" is replaced by the name of the second direction.
     switch : str
-        Field of `Physics` that includes the effect; empty if no model has it.
+        Field of `Physics` that includes the effect; empty if no model can include it.
     value : int
         Value of the field `switch` of `Physics` with which the effect is included.
     needs : tuple of str
@@ -38,9 +38,9 @@ class Effect:
     bends : bool
         Whether the effect can be combined with large deflection in one plane.
     taken_out : str
-        Words for the effect where it must be left out so that large deflection can be included.
+        Description of the effect in messages, if it must be neglected in order to include large deflection.
     uncertainty : float
-        Relative error of the effect's change of frequencies in short thick beams, against solid bodies.
+        Relative error of the computed frequency change in short thick beams, compared with 3D solid models.
     """
 
     name: str
@@ -53,13 +53,13 @@ class Effect:
     uncertainty: float = 0.0
 
     def is_in(self, scene: Scene) -> bool:
-        """Whether the model of a scene has the effect."""
+        """Return whether the model of a scene includes the effect."""
         if self is ROTARY_INERTIA and scene.twists_in_space:
             return True
         return bool(self.switch) and getattr(scene.physics, self.switch) == self.value
 
     def is_left_out(self, scene: Scene) -> bool:
-        """Whether a scene's model lacks the effect; twist and offsets count only for beams that have them."""
+        """Return whether a scene's model neglects the effect; twist and offsets only if the beam has them."""
         has = {
             TWIST: scene.beam.is_twisted,
             OFFSETS: scene.beam.has_offsets,
@@ -73,12 +73,12 @@ class Effect:
         return self is not CAMBER
 
     def reason(self, scene: Scene) -> str:
-        """Say what the model of a scene assumes in place of the effect, and how to include the effect."""
+        """Explain what the model of a scene assumes without the effect, and how to include the effect."""
         assumed = self.assumption(scene)
         return Words(assumed, "; ", self._how_to_include(scene)) if self.switch else assumed
 
     def assumption(self, scene: Scene) -> str:
-        """Say what the model of a scene assumes in place of the effect."""
+        """Explain what the model of a scene assumes without the effect."""
         return self.assumed.format(across=name_directions(scene)[1][0])
 
     def _how_to_include(self, scene: Scene) -> str:
@@ -94,9 +94,9 @@ class Effect:
         return Words(Setting("physics", **{self.switch: self.value}), " includes it", data, without)
 
     def _why_refused(self, scene: Scene) -> str | None:
-        """Say why the scene's model cannot have the effect, whatever data are given.
+        """Explain why the scene's model cannot include the effect, whatever data are given.
 
-        None if it can have it, or lacks only data; also with large deflection, where this is not checked.
+        None if the effect can be included or only data are missing; also with large deflection (not checked).
         """
         if scene.physics.large_deflection or self is LARGE_DEFLECTION:
             return None
@@ -108,7 +108,7 @@ class Effect:
 
 
 def _lacks(beam: Beam, name: str) -> bool:
-    """Whether a property of a beam is neither given nor follows from its section."""
+    """Return whether a property of a beam is neither given nor computed from its cross-section."""
     has_ratio = beam.section is not None and beam.section.poissons_ratio is not None
     if name == "poissons_ratio":
         return beam.strip is None or beam.strip.poissons_ratio is None
@@ -170,12 +170,12 @@ NAMED = {effect.name: effect for effect in EFFECTS}
 
 
 def add_effects(scene: Scene, effects: Iterable[Effect]) -> Scene:
-    """Return the scene with further effects switched on in its physics.
+    """Return the scene with further effects switched on in its `Physics`.
 
     Raises
     ------
     InvalidValue
-        If the beam lacks what an effect needs, or the effects cannot be combined.
+        If the beam lacks a property that an effect needs, or the effects cannot be combined.
     """
     return replace(scene, physics=replace(scene.physics, **{each.switch: each.value for each in effects}))
 
@@ -185,16 +185,16 @@ _CHOSEN = 'physics is "auto": an analysis adds it where it matters'
 
 @dataclass(frozen=True)
 class OmittedEffect:
-    """An effect that a model leaves out.
+    """Physical effect that a model neglects.
 
     Parameters
     ----------
     name : str
         Name of the effect.
     reason : str
-        What the model assumes in its place, and how to include the effect if that can be done.
+        Assumption of the model without the effect, and how to include the effect if possible.
     physics : str
-        Name of the field of `Physics` that includes it; empty if no model has it.
+        Name of the field of `Physics` that includes the effect; empty if no model can include it.
 
     Examples
     --------
@@ -209,15 +209,15 @@ class OmittedEffect:
 
 
 def effects_left_out(scene: Scene) -> Iterator[Effect]:
-    """Yield the effects that the model of a scene leaves out, first those that it could include."""
+    """Yield the effects that the model of a scene neglects; those that it could include come first."""
     yield from (effect for effect in (*EFFECTS, *NEVER_MODELLED) if effect.is_left_out(scene))
 
 
 def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
-    """List the effects that the model of a scene leaves out, with what it assumes and how to include them.
+    """List the effects that the model of a scene neglects, with its assumptions and how to include them.
 
-    Where the physics is "auto", the model is that of the plain beam, to which an analysis may add any effect
-    but torsion, which only adds modes.
+    With physics "auto", the model is the Euler-Bernoulli beam, to which an analysis may add any effect except
+    torsion, which only adds modes.
     """
     modelled = replace(scene, physics=Physics()) if scene.chooses_physics else scene
     for effect in effects_left_out(modelled):
@@ -227,8 +227,8 @@ def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
         yield OmittedEffect(effect.name, reason, effect.switch)
 
 
-_OUTWARD = -1.0, 0.0  # cosine and sine of the setting angle of a beam that points outward
-# Names of directions of bending, each in a phrase and in one word.
+_OUTWARD = -1.0, 0.0  # cosine and sine of the setting angle of a radially outward beam
+# Names of the directions of bending, each as a phrase and as one word.
 _EDGE = "in the plane of rotation (edge)", "edge"
 _FLAP = "out of the plane of rotation (flap)", "flap"
 _OWN_EDGE = "edgewise, in the section's direction (edge)", "edge"
@@ -238,7 +238,7 @@ _ACROSS = "across the direction of bending", "across"
 
 
 def check_direction(direction: int) -> int:
-    """Check that a direction of deflection is 0 (that of bending at the root) or 1 (that across)."""
+    """Check that a direction of deflection is 0 (bending direction at the root) or 1 (across)."""
     if direction not in (0, 1):
         bound = "give 0 for the direction of bending at the root, or 1 for the direction across"
         raise InvalidValue("direction", direction, bound)
@@ -246,10 +246,10 @@ def check_direction(direction: int) -> int:
 
 
 def name_directions(scene: Scene) -> tuple[tuple[str, str], tuple[str, str]]:
-    """Name the direction of bending at the root and the one across, each in a phrase and in one word.
+    """Name the bending direction at the root and the one across, each as a phrase and as one word.
 
-    The words are edge and flap where the bending angle is a whole number of quarter turns, and at any angle
-    (a blade's pitch) for a beam that points outward: flap is the direction nearer to the axis of rotation.
+    The words are "edge" and "flap" if the bending angle is a multiple of 90 degrees, or at any angle (blade
+    pitch) if the beam points outward; "flap" is the direction nearer to the axis of rotation.
     """
     c, s = aligned_cos_sin(scene.mount.bending_angle)
     if s == 0:
@@ -262,15 +262,15 @@ def name_directions(scene: Scene) -> tuple[tuple[str, str], tuple[str, str]]:
 
 
 def first_drawn(scene: Scene) -> int:
-    """Choose the direction that is drawn with a solid line: flap if there is one, else that of bending."""
+    """Choose the direction drawn with a solid line: flap if there is one, else the bending direction."""
     return 1 if name_directions(scene)[1][1] == "flap" else 0
 
 
 def modelled_directions(scene: Scene) -> tuple[str, ...]:
-    """Name the directions in which a scene's beam bends, the one of bending at the root first."""
+    """Name the directions in which a scene's beam bends; the bending direction at the root comes first."""
     return tuple(words for words, _ in name_directions(scene))[: scene.physics.planes]
 
 
 def words_of_directions(scene: Scene) -> tuple[str, ...]:
-    """Name the directions of bending in one word each; empty where only one plane is modelled."""
+    """Name the directions of bending in one word each; empty if only one plane is modelled."""
     return tuple(word for _, word in name_directions(scene) if scene.physics.planes == 2)

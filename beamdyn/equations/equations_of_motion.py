@@ -1,8 +1,8 @@
 """The equations of motion of a scene, as a list of terms.
 
-M q'' + C q' + K q = f for the coordinates q of all fields.  Each matrix is a sum of terms
-``factor * quantity(t) * matrix`` with a quantity of the root's motion: batches over speeds, harmonic balance
-and the omission of terms all read this one list.
+M q'' + C q' + K q = f for the coordinates q of all fields.  Each matrix is a sum of terms ``factor *
+quantity(t) * matrix`` with a quantity of the root's motion: analyses at many speeds, harmonic balance and the
+omission of terms all use this one list.
 
 Derivation and conventions: docs/conventions.md.
 """
@@ -24,10 +24,12 @@ from beamdyn.equations.root_motion import UNIT_SPEED, Quantity, RootMotion, root
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 
-# Rounding errors of eigenproblems were fitted by benchmarks/stated_frequency_errors.py to 720 frequencies of
-# random scenes.  The matrices are graded, so that the errors are smaller than their norms suggest.
+# The rounding errors of eigenvalues were fitted to 720 frequencies of random scenes by
+# benchmarks/stated_frequency_errors.py.  As rows and columns of the matrices have very different sizes, the
+# errors are smaller than the norms suggest.
 BACKWARD = 8 * np.finfo(float).eps  # backward error of the stiffness, relative to the sum of its terms
-ROUNDING_SIZE = 40  # number of functions above which rounding errors grow in proportion to it, as measured
+# Number of functions above which measured rounding errors grow in proportion to the number of functions.
+ROUNDING_SIZE = 40
 
 
 @dataclass(frozen=True)
@@ -37,15 +39,16 @@ class SteadyPencil:
     Parameters
     ----------
     M, C, G, K0, K2 : ndarray, shape (n, n)
-        Mass, damping, gyroscopic matrix per speed, stiffness at rest, stiffness per squared speed.
+        Mass, damping, gyroscopic matrix divided by speed, stiffness at rest, stiffness divided by squared
+        speed.
     f2 : ndarray, shape (n,)
-        Static load per squared speed.
+        Static load divided by the squared speed.
     shift : float
         Squared first angular frequency of the beam with a clamped root [1/s2]; 0 if the root is clamped.
         K0 + shift M is positive definite.
     planes : int
-        Number of directions in which the beam bends, 1 or 2; with 2, rounding by cancelling entries is
-        counted.
+        Number of directions in which the beam bends, 1 or 2; with 2, the rounding of cancelling entries is
+        part of the error.
     """
 
     M: np.ndarray
@@ -58,10 +61,10 @@ class SteadyPencil:
     planes: int = 1
 
     def part(self, coordinates: np.ndarray) -> SteadyPencil:
-        """Extract the equations of some coordinates (ascending) that no others affect."""
+        """Extract the equations of some coordinates (ascending) that are not coupled to any others."""
         first, end = int(coordinates[0]), int(coordinates[-1]) + 1
         own = np.ix_(coordinates, coordinates)
-        if end - first == len(coordinates):  # a contiguous block is copied faster
+        if end - first == len(coordinates):  # copying a contiguous block is faster
             own = slice(first, end), slice(first, end)
         M, C, G, K0, K2 = (A[own].copy() for A in (self.M, self.C, self.G, self.K0, self.K2))
         return SteadyPencil(M, C, G, K0, K2, self.f2[coordinates], self.shift, self.planes)
@@ -78,14 +81,14 @@ class SteadyPencil:
 
 @dataclass(frozen=True)
 class Shape:
-    """Coordinates of a field as a linear function of the coordinates of the equations.
+    """Coordinates of a field as a linear function of the coordinates of the equations of motion.
 
     Parameters
     ----------
     block : str
-        Name of the block of coordinates: the field's own before a reduction.
+        Name of the block of coordinates: the field's own block, unless the equations are reduced.
     matrix : ndarray, shape (m, n)
-        Coefficients of the m functions of the discretization per coordinate of the block.
+        Coefficients of the m functions of the discretization per unit of each coordinate of the block.
     """
 
     block: str
@@ -94,13 +97,13 @@ class Shape:
 
 @dataclass(frozen=True)
 class Equations:
-    """Equations of motion of a scene in one discretization, or in modal coordinates.
+    """Equations of motion of a scene in the coordinates of one discretization, or in modal coordinates.
 
     Parameters
     ----------
     blocks : dict of str to slice
-        Slice of q that holds the coordinates of each field; after a reduction, of each set of fields that
-        are coupled, under the name of the first of them.
+        Slice of q with the coordinates of each displacement field; after a reduction, of each set of coupled
+        fields, under the name of the first field.
     terms : tuple of Term
         Terms of the left-hand side.
     loads : tuple of Load
@@ -110,18 +113,19 @@ class Equations:
     gravity : float
         Gravitational acceleration [m/s2].
     shapes : dict of str to Shape
-        Coordinates of each field by those of the equations.
+        Coordinates of each field as functions of those of the equations.
     deflections : dict of str to Deflection
         Functions and loads of each field that deflects the beam.
     shift : float
-        Squared first angular frequency with a clamped root [1/s2], 0 if clamped: see `SteadyPencil`.
+        Squared first angular frequency with a clamped root [1/s2]; 0 if the root is clamped: see
+        `SteadyPencil`.
     coarse : ndarray or None
-        Indices of the coordinates whose functions span those of the coarser discretization; None where no
-        subset does, and after a reduction.
+        Indices of the coordinates whose functions span those of the coarser discretization; None if no subset
+        does, and after a reduction.
     sections : tuple of (str, SectionFunctions)
         Names of the fields that deform the sections of a strip, and their functions.
     circuit : Circuit or None
-        Circuit of a harvester with a load, if its coordinate is not among those of the equations.
+        Circuit of a harvester with a load resistance, if it has no coordinate in the equations yet.
     voltage : Voltage or None
         Voltage of a harvester whose circuit has a coordinate in the equations.
     """
@@ -154,22 +158,22 @@ class Equations:
         """Number of directions in which the beam is deflected: 1 or 2."""
         return 1 + max(deflection.direction for deflection in self.deflections.values())
 
-    # Deflection of the beam by the coordinates ----------------------------------------------------
+    # Deflection of the beam as a function of the coordinates ---------------------------------------
 
     def deflection(self, xi: np.ndarray, order: int = 0, direction: int = 0) -> np.ndarray:
-        """Evaluate derivatives by x/L of the deflection per coordinate at xi (k,): shape (n, k).
+        """Evaluate derivatives by x/L of the deflection per unit coordinate at xi (k,): shape (n, k).
 
-        The direction is 0 for that of the bending angle, 1 for that across.
+        Direction 0 is that of the bending angle, direction 1 is across.
         """
         check_direction(direction)
         xi = np.asarray(xi, dtype=float)
         return self._over_coordinates(lambda d: d.space.evaluate(xi, order), direction, xi.shape)
 
     def surface(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Evaluate a strip's deflection in the direction of bending per coordinate: shape (n, k, l).
+        """Evaluate a strip's deflection in the direction of bending per unit coordinate: shape (n, k, l).
 
         The points are xi = x/L (k,) along and eta = 2 y/b (l,) across, with y in the direction across.
-        A ValueError is raised if an eta lies beside the strip.
+        A ValueError is raised if an eta lies outside the strip.
         """
         eta = real_array("eta", eta)
         if eta.size and np.abs(eta).max() > 1:
@@ -200,7 +204,7 @@ class Equations:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection per coordinate at the corner of the tip in the direction across, shape (n,)."""
+        """Deflection of the tip's corner in the direction across, per unit of each coordinate: shape (n,)."""
         values = self.tip.copy()
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -209,12 +213,12 @@ class Equations:
 
     @cached_property
     def tip(self) -> np.ndarray:
-        """Tip deflection per coordinate in the direction of bending, shape (n,)."""
+        """Tip deflection per unit of each coordinate in the direction of bending, shape (n,)."""
         return self.tips[0]
 
     @cached_property
     def tips(self) -> np.ndarray:
-        """Tip deflection per coordinate in each direction in which the beam bends, shape (1 or 2, n)."""
+        """Tip deflection per unit coordinate in each direction in which the beam bends, shape (1 or 2, n)."""
         return np.array([self._over_coordinates(lambda d: d.space.end(0), k) for k in range(self.planes)])
 
     def P(self, direction: int) -> np.ndarray:
@@ -224,7 +228,7 @@ class Equations:
     def Q(self, direction: int) -> np.ndarray:
         """Compute the load under a unit angular acceleration in a direction's plane [kg m], shape (n,).
 
-        Oblique sections and an oblique tip body are also tilted towards the other direction.
+        Sections and tip bodies with a product of inertia are also tilted towards the other direction.
         """
         of_direction = self._over_coordinates(lambda d: d.Q, direction)
         return of_direction + self._over_coordinates(lambda d: d.Q_across, 1 - direction)
@@ -232,7 +236,7 @@ class Equations:
     def _over_coordinates(
         self, quantity: Callable[[Deflection], np.ndarray], direction: int, shape: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """Gather a quantity of trial functions over all coordinates; 0 for fields of the other direction."""
+        """Collect a vector over all coordinates from those of trial functions; 0 for the other direction."""
         values = np.zeros((self.size, *shape))
         for name, deflection in self.deflections.items():
             if deflection.direction == direction:
@@ -244,7 +248,7 @@ class Equations:
 
     @cached_property
     def matrices(self) -> tuple[dict[Quantity, np.ndarray], ...]:
-        """Sums of the matrices that each quantity multiplies, for time derivatives of q of orders 0, 1, 2."""
+        """Sums of the matrices multiplied by each quantity, for time derivatives of q of orders 0, 1, 2."""
         sums: tuple[dict[Quantity, np.ndarray], ...] = ({}, {}, {})
         for term in self.terms:
             total = sums[term.order].setdefault(term.quantity, np.zeros((self.size, self.size)))
@@ -253,7 +257,7 @@ class Equations:
 
     @cached_property
     def vectors(self) -> dict[Quantity, np.ndarray]:
-        """Sums of the load vectors that each quantity of the root's motion multiplies."""
+        """Sums of the load vectors multiplied by each quantity of the root's motion."""
         sums: dict[Quantity, np.ndarray] = {}
         for load in self.loads:
             total = sums.setdefault(load.quantity, np.zeros(self.size))
@@ -261,7 +265,7 @@ class Equations:
         return sums
 
     def root(self, sample: MotionSample) -> RootMotion:
-        """Compute the motion of the root from that of the carrier."""
+        """Compute the motion of the root from the motion of the carrier."""
         return root_motion(self.mount, sample, self.gravity)
 
     def matrix(self, order: int, root: RootMotion) -> np.ndarray:
@@ -273,14 +277,15 @@ class Equations:
         return _sum_over_quantities(self.vectors, root, (self.size,))
 
     def steady(self) -> SteadyPencil:
-        """Return the equations at constant speed as polynomials of it, for a fixed centre and no gravity."""
+        """Return the equations at constant speed, as polynomials in speed; fixed centre, no gravity."""
         return self._steady
 
     @cached_property
     def _steady(self) -> SteadyPencil:
         rotating, parts = root_motion(self.mount, UNIT_SPEED), []
         nothing = np.zeros((self.size, self.size))
-        for of_order in self.matrices:  # constant matrix, and the sum of those that steady rotation adds
+        # Constant matrix, and the sum of the matrices added by steady rotation.
+        for of_order in self.matrices:
             moving: dict[Quantity, np.ndarray] = {q: A for q, A in of_order.items() if q != "unity"}
             turning = _sum_over_quantities(moving, rotating, nothing.shape) if moving else nothing
             parts.append((of_order.get("unity", nothing), turning))
@@ -290,7 +295,7 @@ class Equations:
 
     @cached_property
     def separate(self) -> tuple[SteadyPencil, ...]:
-        """Equations at steady speed, separately for each set of blocks in `connected`."""
+        """Equations at steady speed, one for each set of coupled blocks in `connected`."""
         sizes = {name: place.stop - place.start for name, place in self.blocks.items()}
         parts = []
         for names in self.connected:
@@ -302,13 +307,13 @@ class Equations:
 
     @cached_property
     def coupled(self) -> tuple[tuple[str, ...], ...]:
-        """Sets of blocks that are coupled by mass or stiffness, without terms of angular acceleration."""
+        """Sets of blocks coupled by mass or stiffness; terms with angular acceleration are not considered."""
         terms = (t for t in self.terms if t.order != 1 and t.quantity != "acceleration")
         return replace(self, terms=tuple(terms)).connected
 
     @cached_property
     def connected(self) -> tuple[tuple[str, ...], ...]:
-        """Sets of blocks that are coupled by any term."""
+        """Sets of coordinate blocks that are coupled by any term."""
         set_of = {name: {name} for name in self.blocks}
         for term in self.terms:
             joined = set_of[term.rows] | set_of[term.columns]
@@ -318,7 +323,7 @@ class Equations:
 
     @property
     def deflecting(self) -> list[str]:
-        """Names of the blocks of the fields that deflect the straight beam, before a reduction."""
+        """Names of the blocks that deflect the straight beam, before a reduction."""
         return [name for name in self.deflections if name in self.blocks]
 
     def places(self, names: Iterable[str]) -> np.ndarray:
@@ -378,11 +383,11 @@ class Equations:
     # Circuit of a harvester -------------------------------------------------------------------------
 
     def with_flux(self) -> Equations:
-        """Add the harvester's circuit, if any, by its flux: a coordinate with mass, but no stiffness."""
+        """Add the coordinate of the harvester's circuit, if any, as a flux: with mass, but no stiffness."""
         return self if self.circuit is None else self._with(*flux_terms(self.circuit, self._coupled_blocks))
 
     def with_charge(self) -> Equations:
-        """Add the harvester's circuit, if any, by its charge: a coordinate with stiffness, but no mass."""
+        """Add the coordinate of the harvester's circuit, if any, as a charge: with stiffness, but no mass."""
         if self.circuit is None:
             return self
         return self._with(*charge_terms(self.circuit, self._coupled_blocks))
@@ -403,7 +408,7 @@ class Equations:
 def _sum_over_quantities(
     coefficients: Mapping[Quantity, np.ndarray], root: RootMotion, shape: tuple[int, ...]
 ) -> np.ndarray:
-    """Sum each quantity times its matrix or vector of a given shape, at all times of the root's motion."""
+    """Sum each quantity times its matrix or vector of a given shape, at all times of root motion."""
     total = np.zeros((*root.unity.shape, *shape))
     for quantity, coefficient in coefficients.items():
         values = getattr(root, quantity)
@@ -412,7 +417,7 @@ def _sum_over_quantities(
 
 
 def place_blocks(sizes: Mapping[str, int]) -> dict[str, slice]:
-    """Assign consecutive slices to the coordinates of the fields."""
+    """Assign consecutive slices of coordinates to the fields, given their numbers of coordinates."""
     blocks, start = {}, 0
     for name, size in sizes.items():
         blocks[name] = slice(start, start := start + size)

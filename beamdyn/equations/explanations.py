@@ -1,4 +1,4 @@
-"""Reasons why a term is present in a scene or not: sentences and conditions for `beamdyn.terms`."""
+"""Reasons why a term is in a scene's equations or not: sentences and conditions for `beamdyn.terms`."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor, tip_inertia
 
-_ROUNDING = 1e-15  # rounding error of accelerations, as by that of pi in angles, relative to the largest one
-_SAMPLES = 501  # sampled times before the speed is steady, and as many at steady speed
+_ROUNDING = 1e-15  # rounding error of accelerations (as by pi in angles), relative to the largest one
+_SAMPLES = 501  # number of times sampled before the speed is steady, and again at steady speed
 _TURNS = 10  # number of revolutions that are sampled at steady speed
-_MOST_PLACES = 6  # largest number of point masses whose places are listed
-_HORIZON = 100.0  # time sampled of a motion that is never steady and has no end [s]
+_MOST_PLACES = 6  # largest number of point masses whose positions are listed
+_HORIZON = 100.0  # sampled duration [s] of a motion that never becomes steady and has no end
 
 
-# A scene with its motion sampled ----------------------------------------------------------------------
+# A scene with samples of its motion -------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class SampledScene:
         start = min(motion.steady_start, motion.end)
         if not math.isfinite(start):
             start = max(_HORIZON, *motion.breakpoints, 0.0)
-        speed = abs(motion.final_speed)  # some revolutions at the final speed are sampled, too
+        speed = abs(motion.final_speed)  # also sample some revolutions at the final speed
         times = (
             np.linspace(0, start, _SAMPLES),
             np.linspace(0, _TURNS * 2 * math.pi / (speed or np.inf), _SAMPLES),
@@ -85,7 +85,7 @@ Sentence: TypeAlias = "str | Callable[[SampledScene], str]"
 
 @dataclass(frozen=True)
 class Condition:
-    """Condition for the presence of a term, with the sentence that explains its absence."""
+    """Condition for the presence of a term, with the sentence that explains the absence."""
 
     is_met: Callable[[SampledScene], bool]
     otherwise: Sentence
@@ -102,7 +102,7 @@ class Explanation:
     reason : str or callable
         Why the term is present.
     conditions : tuple of Condition
-        Conditions of its presence, all of which must be met.
+        Conditions for the presence of the term, all of which must be met.
     """
 
     symbol: str
@@ -110,14 +110,14 @@ class Explanation:
     conditions: tuple[Condition, ...] = ()
 
     def sentence(self, scene: SampledScene, present: bool) -> str:
-        """Say why the term is present in the scene, or the first condition that is not met."""
+        """Explain why the term is present in the scene, or state the first condition that is not met."""
         failed = [c.otherwise for c in self.conditions if not c.is_met(scene)]
         text = self.reason if present else [*failed, "its coefficient is zero"][0]
         return text if isinstance(text, str) else text(scene)
 
 
 def say_mass(scene: SampledScene) -> str:
-    """Say that mass is present in every scene, and which point masses contribute to it."""
+    """State that mass is present in every scene, and which point masses contribute to it."""
     heavy = [lump for lump in scene.scene.beam.point_masses if lump.mass]
     if not heavy:
         return "always"
@@ -130,7 +130,7 @@ def say_mass(scene: SampledScene) -> str:
 
 
 def say_tension(scene: SampledScene) -> str:
-    """Say what accelerates the root along the beam and so causes tension."""
+    """State what accelerates the root along the beam and so causes tension."""
     sources = scene.sources("root_axial")
     if sources == ["rotation"]:
         return "the root's steady acceleration; no translation, so no parametric tension"
@@ -138,14 +138,14 @@ def say_tension(scene: SampledScene) -> str:
 
 
 def say_softening(scene: SampledScene) -> str:
-    """Say why rotation pulls the beam further from its axis."""
+    """Explain why rotation increases a deflection away from the rotation axis."""
     return (
         "it bends in the plane of rotation" if IN_PLANE.is_met(scene) else "the precone has it bend outward"
     )
 
 
 def say_static_load(scene: SampledScene) -> str:
-    """Say what accelerates the root in the direction of bending and so loads the beam."""
+    """State what accelerates the root in the direction of bending and so loads the beam."""
     sources = [source for name in _transverse(scene) for source in scene.sources(name)]
     where = "across the beam" if scene.scene.physics.planes == 2 else "in the direction of bending"
     return f"the root accelerates {where} by {_enumerate([*dict.fromkeys(sources)])}"
@@ -173,7 +173,7 @@ def _enumerate(words: list[str]) -> str:
 
 
 def _has_different_inertias(scene: SampledScene) -> bool:
-    """Whether the tip body's energy of rotation changes as it tilts out of the plane of rotation."""
+    """Return whether the tip body's rotational energy changes as it tilts out of the plane of rotation."""
     tip, planes = scene.scene.beam.tip, scene.scene.physics.planes
     if tip is None:
         return False
@@ -186,7 +186,7 @@ def _has_different_inertias(scene: SampledScene) -> bool:
 
 
 def _has_oblique_inertia(scene: SampledScene) -> bool:
-    """Whether sections or tip body have a product of inertia about the axis of rotation and the beam."""
+    """Return whether sections or tip body have a product of inertia about rotation axis and beam axis."""
     (c, s), beam = aligned_cos_sin(scene.scene.mount.bending_angle), scene.scene.modelled_beam
     d, n, xi = np.array([c, -s]), np.array([s, c]), np.linspace(0, 1, 101)
     sections = (d[p] * n[q] * R(xi) for (p, q), R in section_tensor(beam, "rotary_inertia").items())
@@ -195,20 +195,20 @@ def _has_oblique_inertia(scene: SampledScene) -> bool:
 
 
 def _is_on_springs(scene: SampledScene) -> bool:
-    """Whether a spring holds the root in a direction that is modelled."""
+    """Return whether a spring supports the root in a direction that is modelled."""
     springs = scene.scene.mount.root_stiffnesses[: scene.scene.physics.planes]
     return any(0 < k < math.inf for k in springs)
 
 
 def _say_root(scene: SampledScene) -> str:
-    """Say how the root is held where no spring holds it."""
+    """State how the root is supported if there is no spring."""
     springs = scene.scene.mount.root_stiffnesses[: scene.scene.physics.planes]
     if math.inf not in springs:
         return "the root is a hinge: it turns freely"
     return "the root is clamped" if 0 not in springs else "the root is clamped or a hinge: no spring holds it"
 
 
-# Conditions that terms of several fields share.
+# Conditions shared by terms of several fields.
 
 TURNS = Condition(lambda s: s.is_nonzero("speed"), "the carrier does not turn")
 ACCELERATES = Condition(lambda s: s.is_nonzero("acceleration"), "constant speed: no angular acceleration")

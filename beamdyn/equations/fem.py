@@ -1,4 +1,4 @@
-"""Finite elements by scikit-fem: cubic Hermite deflection and quadratic stretch."""
+"""Finite elements by scikit-fem: cubic Hermite elements for deflection, quadratic ones for stretch."""
 
 from __future__ import annotations
 
@@ -19,12 +19,13 @@ from beamdyn.scene.sections import weight_degree
 
 _ACROSS = 8  # number of functions across the width of a plate
 MOST_ELEMENTS = 1000  # largest accepted number of elements
-MOST_REFINED = 100  # largest number of elements from `finer`: beyond it Ritz functions are the better choice
+# Largest number of elements that `finer` chooses: above it, Ritz functions are more efficient.
+MOST_REFINED = 100
 # Shortest segment, as a fraction of the length: on shorter ones rounding leaves no correct digit.
 _SHORTEST = 1e-5 * (1 - 1e-9)
-_POINTS = 5  # Gauss points on each element that resolve the cosine and sine of its slope
+_POINTS = 5  # number of Gauss points on each element, enough for cosine and sine of the slope
 _GRADING = 3.0  # the element size grows from the root to the tip by the factor 1 + 2 _GRADING
-# Elements by the order of the derivatives: 2 for a deflection by bending, 1 for a stretch.
+# Elements by the order of derivatives in the energy: 2 for bending deflection, 1 for stretch.
 _ELEMENTS = {2: ElementLineHermite, 1: ElementLineP2}
 
 
@@ -39,7 +40,7 @@ class Fem:
     mesh : {"graded", "uniform"}
         Graded elements shrink towards the root, where a fast outward beam has a boundary layer.
     on_each : int
-        Smallest number of elements on each segment between breakpoints; the coarser mesh halves it.
+        Smallest number of elements on each segment between breakpoints; the coarser mesh has half of it.
 
     References
     ----------
@@ -79,7 +80,7 @@ class Fem:
 
     @property
     def converges_regularly(self) -> bool:
-        """True: the eigenvalue error falls as a power of the element length."""
+        """True: refinement reduces the eigenvalue error steadily, as a power of the element length."""
         return True
 
     @property
@@ -88,16 +89,17 @@ class Fem:
         return 4 * float(np.finfo(float).eps) * self.elements**3
 
     def nodes(self, beam: Beam) -> np.ndarray:
-        """Compute the positions x/L of nodes: segments have elements in proportion to their length."""
+        """Compute the positions x/L of nodes; segments have elements in proportion to their length."""
         ends = _meshable(np.array(beam.breakpoints))
         g = 0.0 if self.mesh == "uniform" else _GRADING
-        # A mesh that is uniform over s is seven times as fine at the root as at the tip, over x/L.
+        # A mesh that is uniform over s has seven times smaller elements, over x/L, at the root than at the
+        # tip.
         over_s = (np.sqrt(1 + 4 * g * (1 + g) * ends) - 1) / (2 * g) if g else ends
         counts = _distribute(self.elements, np.diff(over_s), self.on_each)
         parts = [np.linspace(a, b, n + 1)[:-1] for (a, b), n in zip(pairwise(over_s), counts, strict=True)]
         steps = np.concatenate([*parts, over_s[-1:]])
         nodes = (steps + g * steps**2) / (1 + g)
-        for end in ends:  # rounding must not leave a tiny segment beside a breakpoint
+        for end in ends:  # rounding must not leave a tiny segment next to a breakpoint
             nodes[np.abs(nodes - end).argmin()] = end
         return nodes
 
@@ -107,7 +109,7 @@ class Fem:
         return FemSpaces(self.nodes(beam), order)
 
     def cells(self, beam: Beam) -> Cells:
-        """Return the elements as cells of the beam."""
+        """Return the elements as integration cells of the beam."""
         return Cells(self.nodes(beam), _POINTS)
 
     def coarser(self) -> Fem:
@@ -115,18 +117,18 @@ class Fem:
         return replace(self, elements=max(2, self.elements // 2), on_each=max(1, self.on_each // 2))
 
     def finer(self) -> Fem | None:
-        """Return a mesh of a quarter more elements, up to 100; None at 100 or more."""
+        """Return a mesh with a quarter more elements, up to 100; None at 100 or more."""
         if self.elements >= MOST_REFINED:
             return None
         return replace(self, elements=min(MOST_REFINED, 5 * self.elements // 4))
 
     def fits(self, modes: int) -> bool:
-        """Whether even the coarser mesh has functions enough for a number of modes."""
+        """Return whether even the coarser mesh has enough functions for a number of modes."""
         return 2 * self.coarser().elements >= modes
 
 
 def _meshable(ends: np.ndarray) -> np.ndarray:
-    """Return the ends x/L of segments, or refuse one too short for elements to keep any correct digit."""
+    """Return the ends x/L of segments; raise an error if one is so short that rounding spoils elements."""
     lengths = np.diff(ends)
     bound = "a segment between breakpoints must be at least 1e-5 of the length for finite elements"
     remedy = "let the section jump there, or take discretization='ritz'"
@@ -135,10 +137,10 @@ def _meshable(ends: np.ndarray) -> np.ndarray:
 
 
 def _distribute(total: int, lengths: np.ndarray, least: int) -> np.ndarray:
-    """Distribute a number of elements among segments by their length, at least `least` on each.
+    """Distribute a number of elements over segments by their length, with at least `least` on each.
 
-    Short segments are refined with the others: each has at least half of an equal share, unless its elements
-    were then ten times as short as equal ones, beyond which rounding costs more than it gains.
+    Short segments are refined too: each has at least half of the mean number of elements, unless that makes
+    its elements more than ten times shorter than the mean, where rounding errors prevail.
     """
     part = lengths / lengths.sum()
     share = np.minimum(np.maximum(part, 0.5 / len(part)), 10 * part)
@@ -185,27 +187,27 @@ class FemSpaces(FieldsOnly):
 
     @property
     def fewer_across(self) -> int:
-        """Number of functions across in the coarser model: the same, as meshes differ along the beam only."""
+        """Number of functions across in the coarser model: the same, as meshes differ only along the beam."""
         return _ACROSS
 
     def shares_functions(self, other: FemSpaces) -> bool:
-        """Whether other finite-element spaces have the same nodes."""
+        """Return whether other finite-element spaces have the same nodes."""
         return np.array_equal(self.nodes, other.nodes)
 
 
 @dataclass(frozen=True)
 class FemSpace(FieldsOnly):
-    """Finite-element functions that satisfy the conditions at the root.
+    """Finite-element functions that satisfy boundary conditions at the root.
 
-    A slope at a hinged root is a rotation of the whole beam, x/L, not bending of the first element:
-    the rotation has no curvature, not even by rounding, which could hide a soft spring.
+    For a hinged root, one function is the rigid rotation x/L of the beam, instead of bending of the first
+    element: its curvature is exactly 0, so that no rounding error can exceed the stiffness of a soft spring.
 
     Parameters
     ----------
     spaces : FemSpaces
         Mesh and quadrature.
     conditions : RootConditions
-        Conditions at the root; each derivative that vanishes there fixes one degree of freedom.
+        Boundary conditions; each derivative that vanishes at the root fixes one degree of freedom.
     """
 
     spaces: FemSpaces
@@ -214,7 +216,7 @@ class FemSpace(FieldsOnly):
     @cached_property
     def basis(self) -> Basis:
         """scikit-fem's basis: mesh, element and quadrature."""
-        # A new element for each basis, because ElementLineHermite caches the matrix of its first mesh.
+        # Each basis needs a new element, because ElementLineHermite caches the matrix of its first mesh.
         return Basis(self.spaces.mesh, _ELEMENTS[self.conditions.derivatives](), intorder=self.spaces.order)
 
     @property
@@ -240,7 +242,7 @@ class FemSpace(FieldsOnly):
 
     @property
     def coarse(self) -> None:
-        """None: no subset of the functions spans a coarser mesh, whose functions are sums of several."""
+        """None: no subset of the functions spans a coarser mesh, whose functions are linear combinations."""
         return None
 
     def weights(self, weight: Profile) -> np.ndarray:
@@ -284,7 +286,7 @@ class FemSpace(FieldsOnly):
 
 
 def _turn(xi: np.ndarray, order: int) -> np.ndarray:
-    """Evaluate the `order`-th derivative at xi (k,) of x/L, a rotation about the root."""
+    """Evaluate the `order`-th derivative at xi (k,) of x/L, the rigid rotation about the root."""
     return (xi, np.ones_like(xi), np.zeros_like(xi))[order]
 
 
@@ -300,7 +302,7 @@ def _integrate(rows: FemSpace, columns: FemSpace, weight: Profile, orders: tuple
     return matrix
 
 
-# Weak forms: their arguments are scikit-fem's, which has no types for them.
+# Weak forms: scikit-fem defines their arguments, and has no types for them.
 
 
 def _derivative(u: Any, order: int) -> Any:
@@ -309,7 +311,7 @@ def _derivative(u: Any, order: int) -> Any:
     return u.grad[0] if order == 1 else u.hess[0][0]
 
 
-# Products of derivatives of two orders, of rows and columns: scikit-fem passes the columns first.
+# Products of derivatives of the orders of rows and columns: scikit-fem passes the columns first.
 _PRODUCTS = {
     (a, b): BilinearForm(lambda u, v, w, a=a, b=b: w.weight * _derivative(u, b) * _derivative(v, a))
     for a in range(3)

@@ -1,4 +1,4 @@
-"""Voltage, current and layer strain of a harvester as linear functions of coordinates of the equations."""
+"""Voltage, current and layer strain of a harvester, as linear functions of the coordinates of equations."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from beamdyn.equations.circuit import BENDS, Voltage, coupling_of, strain_of
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.scene.beam import Beam
 
-_FACES = 9  # number of places along the layers at which strains are compared
+_FACES = 9  # number of positions along the layers at which strains are compared
 
 
 def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Voltage, Voltage]:
-    """Build voltage across the load [V] and current through it [A] in the coordinates of equations.
+    """Compute coefficients of the voltage across the load [V] and current through it [A], by coordinates.
 
     Parameters
     ----------
     equations : Equations
-        Equations with the circuit's coordinate, if there is one.
+        Equations of motion, with the circuit's coordinate if there is one.
     full : Equations
         Equations in all functions of the discretization, from which `equations` were reduced.
     beam : Beam
@@ -37,7 +37,7 @@ def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Vo
 
 
 def strain_rows(equations: Equations, beam: Beam) -> np.ndarray:
-    """Compute the strain of the layer's outer face at places along it, per coordinate: shape (k, n)."""
+    """Compute the strain of the layer's outer face at positions along it, per coordinate: shape (k, n)."""
     assert beam.electrodes is not None, "electrodes stand on a layer"
     xi, shape = beam.electrodes.inside(np.linspace(0, 1, _FACES)), equations.shapes[BENDS]
     rows = np.zeros((_FACES, equations.size))

@@ -1,6 +1,7 @@
-"""Integrals over the mass along the beam, and the axial force by its acceleration, as piecewise polynomials.
+"""Integrals over the mass along the beam, and the axial force by accelerations, as piecewise polynomials.
 
-A body at the tip is not included: it has an offset and moments of inertia, and the fields add its terms.
+A tip body is not included: it has an offset and moments of inertia, and the displacement fields add its
+terms.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from beamdyn.scene.profile import FRACTION, Profile, mean
 
 @dataclass(frozen=True)
 class PiecewisePolynomials:
-    """Polynomials in x/L on each part of the beam.
+    """Polynomials in x/L on each part of the beam (between point masses).
 
     Parameters
     ----------
@@ -31,7 +32,7 @@ class PiecewisePolynomials:
     ends: tuple[float, ...]
 
     def counts(self, number: int) -> list[int]:
-        """Share a number of functions among the parts of the beam; short parts get fewer."""
+        """Distribute a number of functions over the parts of the beam; shorter parts get fewer."""
         return [int(np.ceil(number * length**0.5)) for length in np.diff(self.ends)]
 
     def __call__(self, xi: np.ndarray, counts: Sequence[int], continuous: bool) -> np.ndarray:
@@ -40,18 +41,18 @@ class PiecewisePolynomials:
         Parameters
         ----------
         xi : ndarray, shape (N,)
-            Places within the parts.
+            Positions x/L.
         counts : sequence of int
             Number of polynomials on each part; continuous functions include the linear ones in any case.
         continuous : bool
-            Whether the functions are continuous from part to part, or may jump.
+            Whether the functions are continuous between parts, or may jump there.
         """
         on_parts = [self._on_part(xi, k, n) for k, n in enumerate(counts)]
         if len(on_parts) == 1:
             return on_parts[0]
         if not continuous:
             return np.concatenate(on_parts)
-        bubbles = [P[2:] - P[:-2] for P in on_parts]  # bubbles are 0 at both ends of their part
+        bubbles = [P[2:] - P[:-2] for P in on_parts]  # bubble functions: 0 at both ends of their part
         return np.concatenate([self._hats(xi), *bubbles])
 
     def _on_part(self, xi: np.ndarray, k: int, number: int) -> np.ndarray:
@@ -68,11 +69,11 @@ class PiecewisePolynomials:
         return np.array([np.interp(xi, self.ends, unit) for unit in np.eye(len(self.ends))])
 
     def _part(self, xi: np.ndarray) -> np.ndarray:
-        """Find the index of the part in which each xi lies: shape (N,)."""
+        """Find the index of the part that contains each xi: shape (N,)."""
         return np.clip(np.searchsorted(self.ends, xi, side="right") - 1, 0, len(self.ends) - 2)
 
     def contained(self, counts: Sequence[int], fewer: Sequence[int], continuous: bool) -> np.ndarray:
-        """Tell which polynomials of given counts per part are also among those of smaller counts: (n,)."""
+        """Mark those of `counts` polynomials per part that a set of `fewer` per part also contains: (n,)."""
         bubbles = 2 if continuous and len(counts) > 1 else 0
         on_parts = [np.arange(max(n - bubbles, 0)) < m - bubbles for n, m in zip(counts, fewer, strict=True)]
         hats = np.ones(len(self.ends) if bubbles else 0, dtype=bool)
@@ -87,18 +88,18 @@ class PiecewisePolynomials:
 
 
 def gram_by_mass(beam: Beam, space: Space) -> np.ndarray:
-    """Integrate products of functions i and j over the mass [kg], shape (n, n)."""
+    """Integrate products of functions i and j, weighted by the mass [kg]: shape (n, n)."""
     return space.gram(beam.mass_per_length, 0) * beam.length + product_at_lumps(beam, space, space)
 
 
 def product_by_mass(beam: Beam, spaces: Spaces, rows: RootConditions, columns: RootConditions) -> np.ndarray:
-    """Integrate products of function i of `rows` and j of `columns` over the mass [kg], shape (n, m)."""
+    """Integrate products of functions i of `rows` and j of `columns`, weighted by the mass [kg]: (n, m)."""
     of_sections = spaces.product(beam.mass_per_length, rows, columns) * beam.length
     return of_sections + product_at_lumps(beam, spaces.functions(rows), spaces.functions(columns))
 
 
 def loads_by_mass(beam: Beam, space: Space) -> tuple[np.ndarray, np.ndarray]:
-    """Integrate functions [kg], and functions times the distance from the root [kg m], over the mass."""
+    """Integrate functions [kg], and functions times distance from the root [kg m], weighted by the mass."""
     (xi, mass), length = beam.lumps, beam.length
     load = space.load(beam.mass_per_length) * length
     moment = space.load(_moment_per_length(beam)) * length**2
@@ -109,7 +110,7 @@ def loads_by_mass(beam: Beam, space: Space) -> tuple[np.ndarray, np.ndarray]:
 
 
 def product_at_lumps(beam: Beam, rows: Functions, columns: Functions) -> np.ndarray:
-    """Sum products of function i of `rows` and j of `columns` over the point masses [kg], shape (n, m)."""
+    """Sum products of functions i of `rows`, j of `columns` over the point masses [kg]: shape (n, m)."""
     xi, mass = beam.lumps
     if not mass.size:
         return np.zeros((rows.size, columns.size))
@@ -133,7 +134,7 @@ def _moment_per_length(beam: Beam) -> Profile:
 
 @lru_cache(maxsize=64)
 def outboard_moments(beam: Beam) -> tuple[Profile, Profile]:
-    """Compute the mass [kg] outboard of each section and its first moment about the root [kg m], over x/L."""
+    """Compute the mass [kg] beyond each section and its first moment about the root [kg m], over x/L."""
     (xi, mass), length, of_sections = beam.lumps, beam.length, beam.mass_per_length
     outboard = of_sections.scaled(length).outboard_integral()
     moment = _moment_per_length(beam).scaled(length**2).outboard_integral()
@@ -142,7 +143,7 @@ def outboard_moments(beam: Beam) -> tuple[Profile, Profile]:
 
 @lru_cache(maxsize=64)
 def axial_tension(beam: Beam) -> tuple[Profile, Profile]:
-    """Compute the tension per root acceleration, N_A [kg], and per squared speed, N_B [kg m], over x/L.
+    """Compute tension per root acceleration, N_A [kg], and per squared speed, N_B [kg m], over x/L.
 
     The axial force at steady speed is omega^2 N_B - a_O1 N_A: Lee and Yoo (2019), eqs. (18), (19).
     """
@@ -157,7 +158,7 @@ PLACES = np.linspace(0.0, 1.0, 101)  # positions x/L from root to tip at which t
 
 
 def steady_tension(beam: Beam, mount: Mount) -> np.ndarray:
-    """Compute the axial force by steady rotation, per squared speed [N s2], at `PLACES`: shape (101,)."""
+    """Compute the axial force in steady rotation, over squared speed [N s2], at `PLACES`: shape (101,)."""
     n_a, n_b = _sampled_tension(beam)
     cosine, _ = exact_cos_sin(mount.precone)
     inward = exact_cos_sin(mount.setting_angle)[0] * mount.radius
@@ -172,7 +173,7 @@ def _sampled_tension(beam: Beam) -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache(maxsize=64)
 def sampled_axial_stiffness(beam: Beam) -> np.ndarray:
-    """Evaluate the axial stiffness [N], which the beam must have, at `PLACES`: shape (101,)."""
+    """Evaluate the axial stiffness [N] at `PLACES`, for a beam that has one: shape (101,)."""
     assert beam.axial_stiffness is not None
     return beam.axial_stiffness(PLACES)
 

@@ -1,7 +1,7 @@
-"""Assumed modes given by their bending moments, for beams of many segments.
+"""Trial functions defined by their bending moments, for beams of many segments.
 
-Where properties have a kink or a jump, at each station of a table, the curvature of a beam has one, too;
-its bending moment M is smooth.  Trial functions with the curvature
+At a kink or jump of the beam's properties, as at each station of a table, the curvature has a kink or jump,
+but the bending moment M is smooth.  Trial functions with the curvature
 
     w'' = M(x) / EI(x)
 
@@ -10,15 +10,16 @@ beam, and the moments by inertia and tension while the beam vibrates in the firs
 
     int_x^1 int_s^1 rho A w,  int_x^1 N w',
 
-as in a step of inverse iteration: they have the small kinks of M, which polynomials lack.  In deflection by
-shear and in stretch, the slope is a force over a stiffness.  Twisted sections bend in both directions under a
-moment in one: curvatures are moments times entries of the sections' compliance.
+as in a step of inverse iteration; these have the small kinks of M, which polynomials cannot represent.  In
+deflection by shear and in stretch, the slope is a force over a stiffness.  Pretwisted sections bend in both
+directions under a moment in one: curvatures are moments times entries of the sections' compliance.
 
 At a point mass the moment has a kink, and the shear force a jump: each part of the beam between point masses
-has its own polynomials, and those of moments are continuous from part to part.
+has its own polynomials; the moments are continuous between parts.
 
-The quotients are interpolated by polynomials on cells.  The functions are thus piecewise polynomials, of
-which integrals are exact, and eigenvalues are upper bounds as those of other assumed modes.
+The quotients of moment and stiffness are interpolated by polynomials on cells.  The functions are thus
+piecewise polynomials with exact integrals, and the eigenvalues are upper bounds, as in every Rayleigh-Ritz
+method.
 """
 
 from __future__ import annotations
@@ -46,23 +47,23 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile, merge_breakpoints
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
 
-NODES = 10  # nodes on each cell, through which the quotients are interpolated
-# Largest of the last coefficients of an interpolant, over its largest coefficient, at which the cell counts
-# as resolved: eigenvalues depend on the square.
+NODES = 10  # number of nodes on each cell, through which quotients of moment and stiffness are interpolated
+# Size of an interpolant's last coefficients, over its largest coefficient, at which a cell is resolved; the
+# error of eigenvalues is as its square.
 _RESOLVED = 1e-7
 _ROUNDING = 10 * float(np.finfo(float).eps)  # relative rounding error of a sum of polynomials
-_PHASE = 7.0  # largest change of phase of the highest polynomial within a cell [rad]
-_SHORTEST = 1e-10  # shortest cell that is still halved, as x/L
-_BLOCK = 32  # number of columns that LAPACK treats at once
-# Size of a function's part that is independent of the other functions, below which it is left out.
+_PHASE = 7.0  # largest phase change [rad] of the highest polynomial within a cell
+_SHORTEST = 1e-10  # length of the shortest cell that is still halved, as a fraction of the beam's length
+_BLOCK = 32  # number of columns that LAPACK processes as a block
+# Norm of the component of a function that is orthogonal to the other functions, below which it is left out.
 _DEPENDENT = 1e-9
 
-Values: TypeAlias = "dict[tuple[int, int], np.ndarray]"  # entries of a tensor, by directions
-# Order of the derivative of a displacement that each stiffness resists.
+Values: TypeAlias = "dict[tuple[int, int], np.ndarray]"  # entries of a tensor, by pairs of directions
+# Order of the derivative of the displacement that each stiffness resists.
 _ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "axial_stiffness": 1}
 _ORDERS |= {"torsion_stiffness": 1, "warping_stiffness": 2}
 _SCALAR = ("axial_stiffness", "torsion_stiffness", "warping_stiffness")  # stiffnesses without a direction
-# For each stiffness, the stiffnesses whose displacements cause inertial forces in its functions.
+# For each stiffness, the stiffnesses whose displacements contribute inertial forces to its functions.
 _COUPLED = {
     "bending_stiffness": ("bending_stiffness", "shear_stiffness"),
     "shear_stiffness": ("bending_stiffness", "shear_stiffness"),
@@ -72,15 +73,15 @@ _COUPLED = {
 
 @dataclass(frozen=True)
 class MomentSpaces(FieldsOnly):
-    """Function spaces on a beam whose functions are given by moments and other forces.
+    """Function spaces on a beam, with functions defined by bending moments and other internal forces.
 
     Parameters
     ----------
     beam : Beam
         The beam, with the modelled properties.
     forces : int
-        Number of forces or moments in each direction; with point masses, each part between them has this
-        number times the square root of the part's share of the length.
+        Number of forces or moments in each direction; with point masses, each part of the beam between them
+        has this number times the square root of its fraction of the length.
     coarse : int
         Number of forces that the coarser discretization has.
     """
@@ -110,12 +111,12 @@ class MomentSpaces(FieldsOnly):
         return self.coarse
 
     def shares_functions(self, other: MomentSpaces) -> bool:
-        """Whether other spaces have the same beam and sizes, as cells and forces need all stiffnesses."""
+        """Whether other spaces have the same beam and sizes: cells and forces depend on all stiffnesses."""
         return self == other
 
     @cached_property
     def polynomials(self) -> PiecewisePolynomials:
-        """Polynomials on the parts of the beam between point masses."""
+        """Polynomials on each part of the beam between point masses."""
         return PiecewisePolynomials(merge_breakpoints(np.concatenate([[0.0], self.beam.points, [1.0]])))
 
     @cached_property
@@ -126,7 +127,7 @@ class MomentSpaces(FieldsOnly):
         return _halve(halved, self._are_unresolved)
 
     def _are_unresolved(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-        """Tell which cells with given ends are too long to resolve some entry of a compliance."""
+        """Mark the cells, with given ends, that are too long to resolve some entry of a compliance."""
         at_nodes, unresolved = Sampler(left, right, NODES), np.zeros(len(left), dtype=bool)
         for tensor in self._stiffnesses.values():
             values = {entry: at_nodes(profile).reshape(-1, NODES) for entry, profile in tensor.items()}
@@ -135,7 +136,7 @@ class MomentSpaces(FieldsOnly):
                     continue
                 largest = float(np.abs(tensor[i, i].end_values()).max())
                 rounding = _ROUNDING * largest / np.abs(values[i, i]).min(axis=1)
-                # Legendre series of the interpolants through the nodes.
+                # Legendre series of the interpolating polynomials.
                 series = np.abs(entry @ legendre_series(NODES).T)
                 least = np.maximum(_RESOLVED, rounding) * series.max(axis=1)
                 unresolved |= ~(series[:, -2:].max(axis=1) <= least)
@@ -149,7 +150,7 @@ class MomentSpaces(FieldsOnly):
 
     @cached_property
     def nodes(self) -> ArcQuadrature:
-        """Gauss points of all cells through which the quotients of force and stiffness are interpolated."""
+        """Gauss points of all cells, at which quotients of force and stiffness are interpolated."""
         return ArcQuadrature(Cells(self.cells, NODES))
 
     @cached_property
@@ -159,7 +160,7 @@ class MomentSpaces(FieldsOnly):
 
     @cached_property
     def compliance(self) -> dict[str, Values]:
-        """Inverse of each stiffness tensor of the sections at the nodes, by name."""
+        """Inverse of each stiffness tensor of the sections at the nodes, by the name of the stiffness."""
         return {
             name: invert({entry: self.at_nodes(profile) for entry, profile in tensor.items()})
             for name, tensor in self._stiffnesses.items()
@@ -177,7 +178,7 @@ class MomentSpaces(FieldsOnly):
 
 
 def _halve(ends: np.ndarray, are_coarse: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
-    """Halve cells with ends (c + 1,) until `are_coarse(left, right)` marks none."""
+    """Halve cells with ends (c + 1,) until `are_coarse(left, right)` marks no cell."""
     fine, (left, right) = [], (ends[:-1], ends[1:])
     while left.size:
         coarse = are_coarse(left, right) & (right - left > _SHORTEST)
@@ -188,7 +189,7 @@ def _halve(ends: np.ndarray, are_coarse: Callable[[np.ndarray, np.ndarray], np.n
     return np.append(np.sort(np.concatenate(fine)), ends[-1])
 
 
-@lru_cache(maxsize=16)  # fields of a scene, and pairs of fields, ask for the same functions
+@lru_cache(maxsize=16)  # fields of a scene, and pairs of fields, use the same functions
 def _build_space(spaces: MomentSpaces, conditions: RootConditions) -> MomentSpace:
     return MomentSpace(spaces, conditions)
 
@@ -197,7 +198,7 @@ def _build_space(spaces: MomentSpaces, conditions: RootConditions) -> MomentSpac
 
 
 def stiffness_tensor(beam: Beam, name: str) -> Tensor:
-    """Return a stiffness of the sections in the directions e1, e2; an undirected one has one entry."""
+    """Return a stiffness of the sections by its components along e1, e2; a scalar one has one entry."""
     if name in _SCALAR:
         stiffness = getattr(beam, name)
         return {} if stiffness is None else {(0, 0): stiffness}
@@ -205,7 +206,7 @@ def stiffness_tensor(beam: Beam, name: str) -> Tensor:
 
 
 def invert(values: Values) -> Values:
-    """Invert a tensor of the sections at all points; entries are given by directions."""
+    """Invert a tensor of the sections at all points; its entries are given by pairs of directions."""
     if (0, 1) not in values:
         return {entry: 1 / value for entry, value in values.items()}
     determinant = values[0, 0] * values[1, 1] - values[0, 1] ** 2
@@ -227,18 +228,20 @@ def _interpolation(points: int) -> np.ndarray:
 # Forces -------------------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=8)  # twisted sections bend in both directions under the same moments
+@lru_cache(maxsize=8)  # pretwisted sections bend in both directions under the same moments
 def _build_forces(
     spaces: MomentSpaces, stiffness: str, derivatives: int, direction: int
 ) -> tuple[np.ndarray, np.ndarray | None]:
     """Compute n forces or moments in one direction at the N nodes, and mark those of the coarser basis.
 
-    They act against `stiffness`, and their `derivatives`-th derivative is a load.  The first are polynomials;
-    the others are caused by the inertia and tension of the displacements that the first cause.  The marks
-    (n,) tell which of them the coarser basis has, too; they are None if it has different ones.
+    They deform the beam against `stiffness`, and their `derivatives`-th derivative is a load.  The first
+    forces are polynomials; the others are caused by inertia and tension in the displacements by the first.
+    The marks (n,) are True for forces that the coarser basis also has; they are None if it has different
+    forces.
     """
     beam, parts, causes = spaces.beam, spaces.polynomials, []
-    # Loads: stiffness against the displacement, order of the displacement's derivative, and weight.
+    # Inertial loads: the stiffness that resists the displacement, the derivative order of the displacement,
+    # and the weight.
     mass, tension = spaces.at_nodes(beam.mass_per_length), spaces.at_nodes(axial_tension(beam)[1])
     for name in _COUPLED[stiffness]:
         if name in spaces.compliance:
@@ -259,7 +262,7 @@ def _build_forces(
     caused = []
     for name, order, weight in causes:
         force = weight * displaced[name][order]
-        for _ in range(derivatives - order):  # integrates from each node to the tip
+        for _ in range(derivatives - order):  # integrate from each node to the tip
             integral = spaces.nodes.integrate(force)
             force = integral[:, -1:] - integral[:, :-1]
         caused.append(force)
@@ -271,15 +274,15 @@ def _build_forces(
 
 @lru_cache(maxsize=4)  # all directions share the same polynomials
 def _polynomials(spaces: MomentSpaces, counts: tuple[int, ...], continuous: bool) -> np.ndarray:
-    """Evaluate polynomials on each part of the beam, `counts` of them, at the nodes: shape (n, N)."""
+    """Evaluate polynomials on the parts of the beam, `counts` on each, at the nodes: shape (n, N)."""
     return spaces.polynomials(spaces.nodes.xi, counts, continuous)
 
 
 def _share(counts: Sequence[int], causes: int) -> tuple[list[int], list[int]]:
-    """Divide counts of forces per part into polynomials that cause others, and polynomials in total.
+    """Split the number of forces per part into polynomials that cause other forces, and all polynomials.
 
-    Each of the `causes`, such as inertia, adds one force for each causing polynomial.  The division only
-    affects which space the trial functions span; its error is estimated with fewer of them.
+    Each of the `causes`, such as inertia, adds one force for each causing polynomial.  The split only affects
+    the space that the trial functions span; its error is estimated with fewer functions.
     """
     causing = [count // (1 + causes) for count in counts]
     return causing, [count - causes * n for count, n in zip(counts, causing, strict=True)]
@@ -292,15 +295,15 @@ def _share(counts: Sequence[int], causes: int) -> tuple[list[int], list[int]]:
 class MomentSpace(SampledSpace):
     """Trial functions whose highest derivative is a force divided by a stiffness.
 
-    The highest derivatives are orthonormal with the stiffness in their direction as weight; a rotation
-    about the root stands before them where the root turns.
+    The highest derivatives are orthonormal, weighted by the stiffness in their direction.  If the root can
+    rotate, the first function is the rigid rotation about the root.
 
     Parameters
     ----------
     spaces : MomentSpaces
         Beam and number of forces.
     conditions : RootConditions
-        Conditions at the root, with the stiffness and its direction.
+        Boundary conditions at the root, with the stiffness and its direction.
     """
 
     spaces: MomentSpaces
@@ -326,7 +329,7 @@ class MomentSpace(SampledSpace):
 
     @cached_property
     def _quotients(self) -> tuple[int, np.ndarray]:
-        """Number of coarse quotients, and orthonormal quotients of forces and stiffness at the points (m, k).
+        """Number of quotients of the coarser basis, and orthonormal quotients of force and stiffness (m, k).
 
         The first quotients, whose number is returned, span the coarser discretization; 0 if none do.
         """
@@ -350,7 +353,7 @@ class MomentSpace(SampledSpace):
 
     @property
     def coarse(self) -> np.ndarray | None:
-        """Indices of functions that span the coarser discretization, which come first; None if none do."""
+        """Indices of functions that span the coarser discretization (the first ones); None if none do."""
         return np.arange(self._turns + self._quotients[0]) if self._quotients[0] else None
 
     @cached_property
@@ -383,35 +386,35 @@ class MomentSpace(SampledSpace):
             return self.samples[order] @ quadrature.interpolate_to(xi).T
         values = self.samples[order + 1] @ quadrature.integrate_to(xi).T
         if self._turns and order == 1:
-            values[0] = 1.0  # the rotation has its slope at the root, too
+            values[0] = 1.0  # the rigid rotation has a slope at the root, too
         return values
 
 
 def _orthonormalize_nested(
     columns: np.ndarray, of_coarse: np.ndarray, weight: np.ndarray
 ) -> tuple[int, np.ndarray]:
-    """Orthonormalize columns so that the first vectors, whose number is returned, span the marked columns."""
+    """Orthonormalize columns; the first vectors, whose number is returned, span the marked columns."""
     root = np.sqrt(weight)[:, None]
     first, rest = _span(_unit(columns[:, of_coarse] * root)), _unit(columns[:, ~of_coarse] * root)
-    for _ in range(2):  # the first pass leaves errors relative to the components that it removed
+    for _ in range(2):  # the first pass leaves errors relative to the removed components
         rest = rest - first @ (first.T @ rest)
     return first.shape[1], np.concatenate([first, _span(rest)], axis=1) / root
 
 
 def orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Compute an orthonormal basis (k, m) of columns (k, n) under a weight (k,), to rounding."""
+    """Compute an orthonormal basis (k, m) of columns (k, n) with weights (k,), accurate to rounding."""
     root = np.sqrt(weight)[:, None]
     return _span(_unit(columns * root)) / root
 
 
 def _unit(columns: np.ndarray) -> np.ndarray:
-    """Divide columns by their norms, and leave out columns that are 0."""
+    """Divide columns by their norms, and omit columns that are 0."""
     norm = np.linalg.norm(columns, axis=0)
     return columns[:, norm > 0] / norm[norm > 0]
 
 
 def _span(columns: np.ndarray) -> np.ndarray:
-    """Compute an orthonormal basis (k, m) of columns (k, n) of norm 1 or less, to rounding."""
+    """Compute an orthonormal basis (k, m) of columns (k, n) of norm 1 or less, accurate to rounding."""
     n = columns.shape[1]
     reflectors, _, tau, _, _ = dgeqp3(columns, lwork=_BLOCK * (n + 1) + 2 * n)
     rank = int((np.abs(np.diag(reflectors)) > _DEPENDENT).sum())

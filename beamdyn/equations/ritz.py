@@ -1,4 +1,4 @@
-"""Assumed modes: Rayleigh-Ritz spaces of integrated Legendre polynomials or of eigenfunctions at rest."""
+"""Rayleigh-Ritz trial functions: integrated Legendre polynomials, or eigenfunctions of the beam at rest."""
 
 from __future__ import annotations
 
@@ -20,26 +20,27 @@ from beamdyn.scene.sections import weight_degree
 
 _MOST_ACROSS = 16  # number of functions across the width of a plate
 MOST_FUNCTIONS = 200  # largest accepted number of functions on each segment
-_POINTS_OF_TURNS = 14  # Gauss points on each segment beyond those that integrate small deflections exactly
-_POINTS_OF_MOMENTS = 8  # Gauss points on each cell of the basis "moments", whose cells are many and small
+_POINTS_OF_TURNS = 14  # number of additional Gauss points on each segment, for large deflections
+# Number of Gauss points on each cell of the basis "moments", whose cells are many and small.
+_POINTS_OF_MOMENTS = 8
 
-# Number of functions of the coarser basis, over that of the basis: smaller where the basis converges slowly.
+# Ratio of function numbers of the coarser basis and the basis: smaller if the basis converges slowly.
 _COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}
 _WORDS = {"legendre": "Legendre functions", "eigenfunctions": "eigenfunctions", "moments": "bending moments"}
-# Number of functions of the finer basis, over that of the basis: larger where the basis converges slowly.
+# Ratio of function numbers of the finer basis and the basis: larger if the basis converges slowly.
 _FINER = {"legendre": 1.2, "eigenfunctions": 1.2, "moments": 1.35}
 
 
 @dataclass(frozen=True)
 class Ritz:
-    """Assumed modes: a Rayleigh-Ritz basis.
+    """Rayleigh-Ritz basis of assumed modes.
 
     Parameters
     ----------
     functions : int
-        Number of functions for the deflection, and as many for the stretch where it is modelled,
-        from 1 to 200; for Legendre functions, the number on each segment between the beam's breakpoints;
-        of moments in twisted sections, the number for a moment in each direction.
+        Number of functions for the deflection, and for the stretch if it is modelled, from 1 to 200; for
+        Legendre functions, the number on each segment between the beam's breakpoints; for moments in twisted
+        sections, the number in each direction.
     basis : {"legendre", "eigenfunctions", "moments"}
         Integrated Legendre polynomials; or the modes of the uniform beam at rest, which the papers use
         and whose error falls slowly, as N^-5, under rotation; or deflections by bending moments that are
@@ -58,9 +59,9 @@ class Ritz:
     3.516015269
     """
 
-    # The error of eigenvalues does not fall as a power of the number of functions.
+    # The error of eigenvalues is not a power of the number of functions.
     order = None
-    rounding = 0.0  # the scaling of the functions keeps all digits of their integrals
+    rounding = 0.0  # the functions are scaled so that their integrals keep all digits
 
     functions: int = 14
     basis: Literal["legendre", "eigenfunctions", "moments"] = "legendre"
@@ -80,27 +81,27 @@ class Ritz:
 
     @property
     def converges_regularly(self) -> bool:
-        """Whether further functions change eigenvalues less and less; false for moments on many segments."""
+        """Whether more functions change eigenvalues less and less; false for moments on many segments."""
         return self.basis != "moments"
 
     def spaces(self, beam: Beam) -> RitzSpaces | MomentSpaces:
         """Build the function spaces on a beam."""
         if self.basis == "moments":
             return MomentSpaces(beam, self.functions, self.fewer)
-        # Gauss points on each segment are exact for Legendre functions, ample for eigenfunctions.
+        # Gauss points on each segment: exact for Legendre functions, more than enough for eigenfunctions.
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
         points, across = degree + 2 + weight_degree(beam) // 2, min(self.functions - 2, _MOST_ACROSS)
         return RitzSpaces(self, tuple(beam.breakpoints), points, max(2, across))
 
     def cells(self, beam: Beam) -> Cells:
-        """Return the segments as cells, with points enough for cosines of slopes of several turns."""
+        """Return the segments as cells, with enough points for cosines of slopes of several turns."""
         spaces = self.spaces(beam)
         if isinstance(spaces, MomentSpaces):
             return Cells(spaces.cells, _POINTS_OF_MOMENTS)
         return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
-        """Return a smaller basis, whose distance from this one exceeds the truncation error of this one."""
+        """Return a smaller basis; the distance to its results exceeds the truncation error of this one."""
         return replace(self, functions=self.fewer)
 
     @property
@@ -109,13 +110,13 @@ class Ritz:
         return max(1, min(int(_COARSER[self.basis] * self.functions), self.functions - 2))
 
     def finer(self) -> Ritz | None:
-        """Return the next larger basis; None at the largest."""
+        """Return the next larger basis; None if this is the largest."""
         if self.functions == MOST_FUNCTIONS:
             return None
         return replace(self, functions=min(MOST_FUNCTIONS, int(_FINER[self.basis] * self.functions) + 1))
 
     def fits(self, modes: int) -> bool:
-        """Whether even the coarser basis has functions enough for a number of modes."""
+        """Return whether even the coarser basis has enough functions for a number of modes."""
         return self.fewer >= modes
 
 
@@ -132,7 +133,7 @@ class RitzSpaces:
     points : int
         Number of Gauss points on each segment.
     across : int
-        Number of functions across the width beyond the mean, where sections camber or twist.
+        Number of functions across the width beyond the mean, if sections camber or twist.
     """
 
     ritz: Ritz
@@ -156,7 +157,7 @@ class RitzSpaces:
         return max(2, self.across - 2)
 
     def shares_functions(self, other: RitzSpaces) -> bool:
-        """Whether other spaces have the same basis and segments."""
+        """Return whether other spaces have the same basis and segments."""
         return (self.ritz, self.breakpoints) == (other.ritz, other.breakpoints)
 
 
@@ -167,9 +168,9 @@ class RitzSpace(SampledSpace):
     Parameters
     ----------
     spaces : RitzSpaces
-        Basis, segments and rule.
+        Basis, segments and Gauss rule.
     conditions : RootConditions
-        Conditions at the root.
+        Boundary conditions at the root.
     """
 
     spaces: RitzSpaces
@@ -177,13 +178,13 @@ class RitzSpace(SampledSpace):
 
     @property
     def coarse(self) -> np.ndarray:
-        """Indices of the coarser basis' functions: the first of each segment, and the root's rotation."""
+        """Indices of the coarser basis' functions: the first of each segment, and the root rotation."""
         return self._coarse
 
     @cached_property
     def _coarse(self) -> np.ndarray:
         functions, fewer = self.spaces.ritz.functions, self.spaces.ritz.fewer
-        # Where the root turns, the rotation is one more function.
+        # If the root can rotate, the rigid rotation is an additional function.
         turns = self.conditions.derivatives - self.conditions.held
         on_segment = np.arange(self.size - turns) % functions < fewer
         return np.flatnonzero(np.concatenate([np.ones(turns, dtype=bool), on_segment]))
@@ -219,7 +220,7 @@ class RitzSpace(SampledSpace):
         return self._tip_values[order]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at xi (k,); where the root turns, the rotation x/L is first."""
+        """Evaluate the `order`-th derivatives at xi (k,); with a hinged root, the rotation x/L is first."""
         xi, (held, derivatives) = np.asarray(xi, dtype=float), self.conditions[:2]
         ritz, ends = self.spaces.ritz, self.spaces.breakpoints
         values = _BASES[ritz.basis](ritz.functions, ends, derivatives, xi, order)
@@ -229,7 +230,7 @@ class RitzSpace(SampledSpace):
         return np.concatenate([rotation[None, :], values])
 
 
-# The functions are independent of the beam's properties: caching halves the time of a small model.
+# The functions do not depend on the beam's properties: caching them halves the time of a small model.
 @lru_cache(maxsize=128)
 def _build_space(spaces: RitzSpaces, conditions: RootConditions) -> RitzSpace:
     return RitzSpace(spaces, conditions)
@@ -241,10 +242,11 @@ def _build_space(spaces: RitzSpaces, conditions: RootConditions) -> RitzSpace:
 def _integrated_legendre(
     functions: int, ends: tuple[float, ...], derivatives: int, xi: np.ndarray, order: int
 ) -> np.ndarray:
-    """Evaluate derivatives at xi of functions whose highest one is a Legendre polynomial on one segment.
+    """Evaluate derivatives at xi of functions whose highest derivative is a Legendre polynomial on a segment.
 
-    Being integrals from the root, they satisfy the conditions there and are smooth at breakpoints up to the
-    highest derivative, which may jump; scaled so that these derivatives are orthonormal.
+    As integrals from the root, the functions satisfy the root conditions and are smooth at breakpoints,
+    except for the highest derivative, which may jump.  They are scaled so that these derivatives are
+    orthonormal.
     """
     if order > derivatives:
         raise ValueError(f"order = {order}: the functions have derivatives up to order {derivatives}")
@@ -255,7 +257,7 @@ def _integrated_legendre(
 
 
 def _integrate_on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -> np.ndarray:
-    """Integrate n Legendre polynomials on [a, b] from the root, repeatedly; values at xi: shape (n, k)."""
+    """Integrate n Legendre polynomials on [a, b] repeatedly from the root; return values at xi: (n, k)."""
     half = (b - a) / 2
     scale = np.sqrt((2 * np.arange(n) + 1) / (b - a))[:, None]
     inside, beyond = (xi >= a) & (xi <= b), xi > b
@@ -293,9 +295,9 @@ def clamped_free_roots(count: int) -> np.ndarray:
 def _eigenfunctions(
     functions: int, ends: tuple[float, ...], derivatives: int, xi: np.ndarray, order: int
 ) -> np.ndarray:
-    """Evaluate derivatives of the uniform beam's mode shapes, divided by b^2; of a rod's, divided by b.
+    """Evaluate derivatives of the uniform beam's mode shapes divided by b^2, or of a rod's divided by b.
 
-    The formula used neither overflows nor cancels at high modes.
+    The formula neither overflows nor loses digits by cancellation at high modes.
     """
     quarter = order * np.pi / 2  # the order-th derivative of cos and sin shifts their phase
     if derivatives == 1:

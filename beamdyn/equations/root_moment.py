@@ -1,17 +1,17 @@
-"""Bending moment at the root, from the loads and the inertia of the whole beam.
+"""Bending moment at the root, computed from the loads and the inertia of the whole beam.
 
-The curvature of a few modes converges slowly at a clamped end, and from below.  The principle of virtual
-work needs no curvature there: its test function w may turn about the root, against the clamp, whose moment
-M then does work,
+The curvature of a few modes converges slowly at a clamped end, and from below.  The principle of virtual work
+needs no curvature there: its test function w may rotate about the root, so that the clamp's moment M does
+work,
 
     M w'(0) = f[w] - m[q'', w] - g[q', w] - k[q, w],
 
-with the loads f and the forms m, g, k of mass, gyroscopic terms and stiffness.  The test function here is
-the rigid rotation x/L minus as much of the kept shapes as makes it orthogonal to them in the mass: neither
-the accelerations nor modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) work on it.  What remains is
-the moment of the kept shapes and the static one of all others, as in the mode-acceleration method: Craig
-and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4.  Where a spring holds the root, M is
-the moment of the spring, which also works on the part of the kept shapes in w, as they turn the root.
+with the loads f and the forms m, g, k of mass, gyroscopic terms and stiffness.  The test function is the
+rigid rotation x/L, made orthogonal to the modes in the model with respect to the mass matrix: neither
+accelerations nor modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) do work on it. The result is the
+moment of the modes in the model, and the static moment of all others, as in the mode-acceleration method:
+Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4.  If a spring supports the root, M
+is the moment of the spring; it also does work on the modes contained in w, as they rotate the root.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ class RootMoment:
     Parameters
     ----------
     load : dict of str to float
-        Moment by each quantity of the root's motion on the beam at rest [N m per unit].
+        Moment in the undeflected beam per unit of each quantity of the root's motion [N m per unit].
     position, velocity : dict of str to ndarray, shape (n,)
-        Moment per coordinate and per velocity, by each quantity of the root's motion.
+        Moment per unit coordinate and velocity, for each quantity of the root's motion that multiplies it.
     """
 
     load: Mapping[Quantity, float]
@@ -47,7 +47,7 @@ class RootMoment:
     velocity: Mapping[Quantity, np.ndarray]
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Compute the moment [N m] for q and v (T, n), positive if it bends to positive deflection: (T,)."""
+        """Compute the moment [N m], (T,), for q and v (T, n), positive if it bends to positive deflection."""
         moment = np.zeros(root.unity.shape)
         for quantity, value in self.load.items():
             moment += getattr(root, quantity) * value
@@ -58,9 +58,9 @@ class RootMoment:
 
 
 def root_moment(scene: Scene, discretization: Discretization, equations: Equations) -> RootMoment:
-    """Derive the bending moment at the root for the coordinates of given equations.
+    """Derive the bending moment at the root as a function of the coordinates of given equations.
 
-    The moment is about the axis of bending of the section at the root, which the twist may have turned.
+    The moment is about the bending axis of the root section, which depends on the twist.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def root_moment(scene: Scene, discretization: Discretization, equations: Equatio
     discretization : Discretization
         Discretization of the scene's equations.
     equations : Equations
-        Equations of the scene in this discretization, as they are or reduced.
+        Equations of the scene in this discretization, reduced or not.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def root_moment(scene: Scene, discretization: Discretization, equations: Equatio
 def strain_per_moment(scene: Scene) -> float:
     """Compute the strain of the outer fibre at the root per bending moment there [1/(N m)].
 
-    The beam must have an outer fibre.  In a plate, the strain is the mean over the width.
+    The beam must have an outer fibre.  For a plate, the strain is the mean over the width.
     """
     beam, root = scene.beam, np.zeros(1)
     assert beam.outer_fibre is not None
@@ -98,7 +98,7 @@ def strain_per_moment(scene: Scene) -> float:
 
 
 def _weighted_sum(parts: Sequence[Mapping[Quantity, Any]], factors: list[float]) -> dict[Quantity, Any]:
-    """Sum values by quantity times factors, one factor for each part; a missing quantity counts as 0."""
+    """Sum values of each quantity times factors, one factor for each part; a missing quantity counts as 0."""
     names: dict[Quantity, None] = dict.fromkeys(name for part in parts for name in part)
     return {
         name: sum(f * part.get(name, 0.0) for f, part in zip(factors, parts, strict=True)) for name in names
@@ -116,7 +116,7 @@ class StaticLoad:
     force : tuple of (float, int), optional
         Position x/L and direction of a unit force.
     deflection : ndarray, shape (n,)
-        Coordinates of all functions of the discretization under the load.
+        Static deflection under the load, as coordinates of all functions of the discretization.
     """
 
     accelerations: Mapping[Quantity, complex]
@@ -127,7 +127,7 @@ class StaticLoad:
 def static_moment(
     scene: Scene, discretization: Discretization, equations: Equations, root: RootMotion, load: StaticLoad
 ) -> complex:
-    """Compute the bending moment at the root under a static load [N m], from forces alone.
+    """Compute the bending moment at the root under a static load [N m], by equilibrium of forces.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def static_moment(
 
 
 def _freed(scene: Scene, discretization: Discretization, direction: int) -> Equations:
-    """Assemble the equations of the scene with a root that turns freely in one direction."""
+    """Assemble the equations of the scene with a root that rotates freely in one direction."""
     hinges = {"root_stiffness": 0.0} if direction == 0 else {"second_root_stiffness": 0.0}
     local = replace(scene.damping, ratios=())  # modal damping does no work on the test function
     freed = replace(scene, damping_ratio=0.0, damping=local, mount=replace(scene.mount, **hinges))
@@ -169,16 +169,16 @@ def _field_of(equations: Equations, direction: int) -> str:
 
 
 def _moment(scene: Scene, discretization: Discretization, equations: Equations, direction: int) -> RootMoment:
-    """Derive the moment of the clamp or spring at the root, by virtual work of a rotation."""
+    """Derive the moment of the clamp or spring at the root from the virtual work of a rotation."""
     spring = scene.mount.root_stiffnesses[direction]
     if spring == 0:
         return RootMoment({}, {}, {})
     full, name = _freed(scene, discretization, direction), _field_of(equations, direction)
     kept, M, rigid = _embed(full, equations), full.matrices[2]["unity"], _rotation(full, full.blocks[name])
-    moving = kept.any(axis=0)  # leaves out the coordinate of a circuit
+    moving = kept.any(axis=0)  # omit the coordinate of a circuit
     share, own = np.zeros(equations.size), kept if moving.all() else kept[:, moving]
     share[moving] = np.linalg.solve(own.T @ M @ own, own.T @ M @ rigid)
-    rotation = rigid - kept @ share  # the mass projection on the kept shapes is subtracted
+    rotation = rigid - kept @ share  # subtract the mass-orthogonal projection on the modes in the model
     length = scene.beam.length  # the slope of the rotation x/L is 1/L
 
     def rows(order: int) -> dict[Quantity, np.ndarray]:
@@ -201,7 +201,7 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
 
 
 def _embed(full: Equations, equations: Equations) -> np.ndarray:
-    """Express the coordinates of given equations (columns) in those of equations with a free root."""
+    """Compute the matrix from coordinates of given equations to those of equations with a free root."""
     kept = np.zeros((full.size, equations.size))
     for name, shape in equations.shapes.items():
         end = full.blocks[name].stop

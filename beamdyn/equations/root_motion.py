@@ -13,7 +13,7 @@ from beamdyn.scene.mount import Mount, aligned_cos_sin, exact_cos_sin
 Quantity = Literal[
     "unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse", "root_across"
 ]
-UNIT_SPEED = MotionSample.steady(1.0)  # the carrier turns at 1 rad/s
+UNIT_SPEED = MotionSample.steady(1.0)  # the carrier rotates at 1 rad/s
 CONSTANT_AT_STEADY_SPEED: tuple[Quantity, ...] = ("unity", "speed", "acceleration", "speed_squared")
 
 
@@ -34,7 +34,7 @@ class RootMotion:
     root_across : ndarray
         Acceleration c a_O3 - s a_O2 in the direction across, minus gravity [m/s2].
 
-    Directions are those of the beam's axes, which the precone turns.
+    Directions are the axes of the beam, which the precone inclines.
     """
 
     unity: np.ndarray
@@ -47,7 +47,7 @@ class RootMotion:
 
 
 def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> RootMotion:
-    """Compute the motion of the beam's root from that of the carrier.
+    """Compute the motion of the beam's root from the motion of the carrier.
 
     Parameters
     ----------

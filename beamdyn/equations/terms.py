@@ -20,12 +20,12 @@ from beamdyn.equations.ritz import Ritz
 from beamdyn.scene.motion import Line
 from beamdyn.scene.scene import Scene, check_scene
 
-_BASIS = Ritz(3)  # any small basis: the list of terms does not depend on it
+_BASIS = Ritz(3)  # any small basis, as the list of terms does not depend on the basis
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One term of the equations of motion, and why it is present in a scene or absent.
+    """Term of the equations of motion, and why it is present in a scene or absent.
 
     Parameters
     ----------
@@ -56,14 +56,14 @@ class Entry:
 
 @dataclass(frozen=True)
 class Terms(Result):
-    """Terms of the equations of motion, present or absent in a scene; iterable, and prints as a table.
+    """Terms of the equations of motion, present or absent in a scene; iterable, prints as a table.
 
     Parameters
     ----------
     entries : tuple of Entry
         All terms of the fields that are modelled.
     left_out : tuple of OmittedEffect
-        Effects that the model leaves out, by name and reason.
+        Effects that the model neglects, by name and reason.
     lines : tuple of Line
         Frequencies that translation and gravity excite, as multiples of the speed.
     provenance : Provenance
@@ -135,7 +135,7 @@ def terms(scene: Scene) -> Terms:
     ----------
     scene : Scene
         The scene; without a motion, steady rotation at 1 rad/s is assumed.  Physics "auto" is the plain
-        beam; the effects left out then say that analyses choose them.
+        Euler-Bernoulli beam; the neglected effects are then described as chosen by analyses.
 
     Returns
     -------
@@ -170,7 +170,7 @@ def terms(scene: Scene) -> Terms:
 
 
 def _terms_by_name(scene: Scene) -> dict[str, list[Term | Load]]:
-    """Group the terms and loads of a scene by name; one name may be in the equations of several fields."""
+    """Group the terms and loads of a scene by name; a name may occur in the equations of several fields."""
     equations, found = assemble_equations(scene, _BASIS), {}
     for term in (*equations.terms, *equations.loads):
         found.setdefault(term.name, []).append(term)
@@ -178,7 +178,7 @@ def _terms_by_name(scene: Scene) -> dict[str, list[Term | Load]]:
 
 
 def _describe(every: list[Term | Load], assembled: list[Term | Load], scene: SampledScene) -> Entry:
-    """Describe the terms of one name, given as they are in general and as assembled for the scene."""
+    """Describe all terms with the same name, as they are in general and as assembled for the scene."""
     sizes = [float(np.abs(term.coefficient(scene.root)).max()) for term in assembled]
     largest, name = max(sizes, default=0.0), every[0].name
     explanation = _EXPLANATIONS.get(name, Explanation(name, "it is assembled"))

@@ -1,9 +1,10 @@
 """Backbone curve: frequency over amplitude, to first order, for a beam about its equilibrium.
 
 A free vibration x = eps w + eps^2 z of an undamped beam, w = Re(v exp(i tau)) a mode, has the angular
-frequency omega + eps^2 omega_2 (Lindstedt and Poincare).  The forces that are even in w give the steady part
-and the second harmonic z, the odd ones omega_2 by the condition that they do no work on the mode.  All forces
-are those of the full equations at small amplitudes, two of which give the limit eps = 0.
+frequency omega + eps^2 omega_2 (Lindstedt and Poincare).  The forces that are even in w give z, which has a
+constant part and a second harmonic; the odd forces give omega_2, by the condition that they do no work on the
+mode.  All forces are those of the full equations at small amplitudes, and results at two amplitudes give the
+limit eps = 0.
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ from beamdyn.scene.validity import check_speeds, refuse_tip_load
 class Backbone(StatesModelError):
     """Frequency of a free vibration over its amplitude a, to first order: f = f0 (1 + k (a/L)^2).
 
-    `error` is that of the coefficient k; `model_error` and `left_out`, computed when asked for, are what the
-    physics left out would change in the frequency f0.
+    `error` is the error of the coefficient k.  `model_error` and `left_out`, computed at their first use,
+    estimate how much neglected physical effects change the frequency f0.
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ class Backbone(StatesModelError):
     coefficient : float
         Nondimensional coefficient k; a is the longer semi-axis of the tip's path, L the length [m].
     error : float
-        Estimated absolute error of the coefficient, a ratio.
+        Estimated absolute error of the nondimensional coefficient.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
@@ -82,12 +83,12 @@ class Backbone(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the small-vibration frequency by the effects left out of the model, of shape ()."""
+        """Changes of the small-vibration frequency by each neglected effect, of shape ()."""
         effects = left_out_of_frequencies(self.scene, self.speed, self.mode)
         return replace(effects, unlisted=()).at(self.mode - 1)
 
     def at(self, amplitude: np.ndarray | float) -> np.ndarray:
-        """Compute the frequency [Hz] at amplitudes of the tip [m]."""
+        """Compute the frequency [Hz] for given amplitudes of the tip [m]."""
         return self.frequency * (1 + self.coefficient * (np.asarray(amplitude) / self.scene.beam.length) ** 2)
 
 
@@ -111,7 +112,8 @@ def backbone(
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     tolerance : float, optional
-        As for `natural_modes`, for the frequency of small vibration; the coefficient has an error of its own.
+        As for `natural_modes`, for the frequency of small vibration; the error of the coefficient is stated
+        separately.
 
     Returns
     -------
@@ -120,9 +122,9 @@ def backbone(
     Raises
     ------
     NoEquilibrium
-        An ArithmeticError: if the beam has no equilibrium at this speed.
+        If the beam has no equilibrium at this speed (an ArithmeticError).
     ValueError
-        If the mode does not vibrate about the equilibrium.
+        If the mode does not oscillate about the equilibrium.
 
     References
     ----------
@@ -165,27 +167,28 @@ def backbone(
 
 
 def _coarser_coefficients(model: Model, speeds: np.ndarray, mode: int) -> tuple[float, float]:
-    """Compute the coefficient by the two coarser models; nan if the coarsest has no such mode.
+    """Compute the coefficient with the two coarser models; nan if the coarsest one has no such mode.
 
-    The finer of the two has the mode, because the error of the frequency was estimated from it.
+    The finer of these models has the mode, because the frequency's error was estimated from it.
     """
     coarse, coarsest = model.coarser, model.coarser.coarser
     found = FreeVibration.of(coarse, float(speeds[0]), mode).coefficient(SMALL / 2)
-    with suppress(ArithmeticError, np.linalg.LinAlgError):  # the coarsest may have no equilibrium
+    with suppress(ArithmeticError, np.linalg.LinAlgError):  # the coarsest model may have no equilibrium
         if coarsest.solver.size >= mode:
             return found, FreeVibration.of(coarsest, float(speeds[0]), mode).coefficient(SMALL / 2)
     return found, np.nan
 
 
-# Amplitude of the tip over the length: the change of frequency is found at half of it, and its error by the
-# difference from that at the whole.
+# Ratio of the tip amplitude to the length.  The frequency change is computed at half this amplitude, and the
+# error of the result from the difference to the change at the full amplitude.
 SMALL = 0.02
-# Ratio of the stated error to the difference of both changes, which may be one sample of rounding errors.
+# Ratio of the stated error to the difference of the two changes, because this difference may be a rounding
+# error.
 _OF_AMPLITUDE = 2.0
-_STEADY = 1e-3  # relative distance of coefficients below which bases converge steadily
-_ROUNDED = 1e-7  # relative distance of coefficients that may be due to rounding, divided by eps^2
-_SAMPLES = 16  # samples of a period, which separate harmonics up to the seventh
-_RESONANT = 1e-3  # condition of the dynamic stiffness below which a second harmonic resonates with a mode
+_STEADY = 1e-3  # relative difference of coefficients below which bases converge steadily
+_ROUNDED = 1e-7  # relative difference of coefficients that rounding may cause, times eps^2
+_SAMPLES = 16  # number of samples per period, which separate harmonics up to the seventh
+_RESONANT = 1e-3  # condition of the dynamic stiffness below which the second harmonic is resonant with a mode
 
 
 @dataclass(frozen=True)
@@ -195,7 +198,7 @@ class FreeVibration:
     Parameters
     ----------
     state : BentState
-        The equilibrium.
+        Equilibrium about which the beam vibrates.
     speed, omega : float
         Speed, and angular frequency of the mode [rad/s].
     vector : ndarray of complex, shape (n,)
@@ -209,7 +212,7 @@ class FreeVibration:
 
     @classmethod
     def of(cls, model: Model, speed: float, mode: int) -> FreeVibration:
-        """Find the mode of a given number about the equilibrium of a model."""
+        """Find the mode with a given number about the equilibrium of a model."""
         solver = model.deflected
         found = solver.solve(np.array([speed]), mode)
         state = solver.elastica.at(solver.equilibria(np.array([speed]))[0])
@@ -220,18 +223,18 @@ class FreeVibration:
         )
 
     def coefficient(self, small: float) -> float:
-        """Compute the frequency's relative change over the squared relative amplitude, in the limit of 0."""
+        """Compute the relative frequency change over the squared relative amplitude, in the limit of 0."""
         rough, fine = (self._shift(eps) for eps in (small, small / 2))
         return (4 * fine - rough) / (3 * self.omega)
 
     def warnings(self) -> list[str]:
-        """List a warning if the second harmonic is near a mode, which then vibrates, too."""
+        """List a warning if the second harmonic is close to a natural frequency, and so excites a mode."""
         values = np.abs(np.linalg.eigvals(np.linalg.solve(self._dynamic(0), self._dynamic(2))))
         near = values.min() < _RESONANT * 3  # the mode itself has the value 3 = |1 - 2^2|
         return ["twice the frequency is near that of another mode: the two exchange energy"] if near else []
 
     def _dynamic(self, harmonic: int) -> np.ndarray:
-        """Compute the dynamic stiffness (n, n) at a multiple of the frequency."""
+        """Compute the dynamic stiffness matrix (n, n) at a multiple of the frequency."""
         state, w, pencil = self.state, harmonic * self.omega, self.state.linearized().steady()
         return (
             pencil.K0
@@ -241,7 +244,7 @@ class FreeVibration:
         )
 
     def _shift(self, eps: float) -> float:
-        """Compute the change of the angular frequency over eps^2 [rad/s] at a small amplitude eps."""
+        """Compute the change of the angular frequency, divided by eps^2 [rad/s], at a small amplitude eps."""
         v, state = self.vector, self.state
         even = (self._forces({1: eps * v}) + self._forces({1: -eps * v})) / (2 * eps**2)
         z = {h: -np.linalg.solve(self._dynamic(h), _harmonic(even, h)) for h in (0, 2)}
@@ -251,7 +254,7 @@ class FreeVibration:
         return float(np.real(v.conj() @ _harmonic(odd, 1)) / np.real(v.conj() @ slope @ v))
 
     def _forces(self, harmonics: dict[int, np.ndarray]) -> np.ndarray:
-        """Compute the residual (_SAMPLES, n) over a period of a motion with given harmonics."""
+        """Compute the residual (_SAMPLES, n) over one period, for a motion with given harmonics."""
         phase = 2 * np.pi * np.arange(_SAMPLES) / _SAMPLES
         waves = {h: np.exp(1j * h * phase)[:, None] * x for h, x in harmonics.items()}
         q, rate, acceleration = (

@@ -1,6 +1,7 @@
 """Guaranteed lower and upper bounds of natural frequencies of bending, and of critical speeds.
 
-The theorem is in `beamdyn.modes.residual_bound`; here, the Ritz part grows until the bounds hardly narrow.
+`beamdyn.modes.residual_bound` proves the theorem; this module enlarges the Ritz basis until the bounds hardly
+get narrower.
 """
 
 from __future__ import annotations
@@ -30,15 +31,16 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection
 
 _EPS = float(np.finfo(float).eps)
-_NARROW = 1e-11  # relative width of the bounds of squares below which the basis is not enlarged
-# Relative width of the bounds of squares below which the basis is not enlarged, for two coupled planes: their
-# Ritz parts are twice as large, and this width is a few times the allowances for rounding.
+_NARROW = 1e-11  # relative width of bounds of squared frequencies below which the basis is not enlarged
+# Relative width of bounds below which the basis of two coupled planes is not enlarged: their bases are twice
+# as large, and this width is a few times the allowances for rounding.
 _RESOLVED = 1e-8
-_PROOF_SIZES = (24, 48, 96)  # sizes of bases, on all segments, tried for a bound of the critical speed
-_CLOSE = 1 - 1e-6  # fraction of the squared Ritz value at which a bound is close enough
-# Fractions of the squared Ritz value that are tried as bounds of the critical speed.
+# Numbers of functions, on all segments together, tried for a bound of the critical speed.
+_PROOF_SIZES = (24, 48, 96)
+_CLOSE = 1 - 1e-6  # fraction of the squared Ritz value above which a bound is close enough
+# Fractions of the squared critical speed by Ritz's method that are tried as lower bounds.
 _SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
-_OF_DEFLECTION = 1e-3  # relative error of the model from which the static deflection is taken
+_OF_DEFLECTION = 1e-3  # relative error of the model that computes the static deflection
 
 
 @dataclass(frozen=True)
@@ -50,16 +52,16 @@ class FrequencyBounds(Result):
     speed : float
         Speed [rad/s].
     lower, upper : ndarray, shape (m,)
-        Bounds of the frequency [Hz]; nan where the mode is, or for `lower` may be, unstable.
+        Bounds of the frequency [Hz]; nan if the mode is (for `lower`: may be) unstable.
     lower_squared, upper_squared : ndarray, shape (m,)
         Bounds of the squared angular frequency [rad2/s2], negative for an unstable mode; nan where
         none is guaranteed.
     width : ndarray, shape (m,)
         Relative width upper / lower - 1; nan where a bound is nan.
     how : str
-        Argument by which the bounds are guaranteed.
+        Argument that guarantees the bounds.
     warnings : tuple of str
-        Bounds that are missing, and why; also if rotation bends the beam too far for the model.
+        Missing bounds and their reasons; also a deflection by rotation that is too large for the model.
     provenance : Provenance
         Program version, discretization and computing time.
 
@@ -99,7 +101,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is not used.  Physics "auto" is the plain beam.
+        The scene; its motion is not used.  Physics "auto" means the plain Euler-Bernoulli beam.
     speed : float
         Speed [rad/s].
     modes : int
@@ -112,12 +114,12 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     Raises
     ------
     ValueError
-        If an argument is out of its range, or the scene has what the theorem does not cover: stretch, shear,
-        rotary inertia, damping, springs at the root, or two planes that the precone couples.
+        If an argument is out of its range, or the scene has a property that the theorem does not cover:
+        stretch, shear, rotary inertia, damping, springs at the root, or two planes that the precone couples.
 
     References
     ----------
-    The theorem that docs/bounds.md states and proves (own).
+    Own theorem, stated and proved in docs/bounds.md.
 
     Examples
     --------
@@ -141,11 +143,12 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
             "higher the degree of its properties, the fewer there are"
         )
     enclosed = [_enclose(plane, speed, modes) for plane in planes or (scene,)]
-    # The k-th lowest of both planes lies between the k-th lowest of their lower and of their upper bounds.
+    # The k-th lowest frequency of both planes together lies between the k-th lowest of all lower bounds and
+    # of all upper bounds.
     lower = _lowest([low for low, _, _ in enclosed], modes, -np.inf)
     upper = _lowest([high for _, high, _ in enclosed], modes, np.inf)
     method = max((ritz for _, _, ritz in enclosed), key=lambda ritz: ritz.functions)
-    speeds = np.array([speed])  # rotation may bend the beam too far for the bounded model
+    speeds = np.array([speed])  # rotation may bend the beam more than the bounded model allows
     tips = choose_model(scene, "ritz", speeds, 1, _OF_DEFLECTION).static_tips(speeds)
     deflection = np.linalg.norm(tips, axis=1)
     bent = warn_of_static_deflection(deflection, scene.beam.length, speeds)
@@ -157,7 +160,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
         lower_squared=lower,
         upper_squared=upper,
         width=high / low - 1,
-        how="above: Rayleigh-Ritz; below: the same less a bound of the coupling to all other functions",
+        how="upper: Rayleigh-Ritz; lower: Rayleigh-Ritz minus a bound of the coupling to all other functions",
         warnings=(*warn_of_plain(unresolved), *_warnings(lower, upper), *bent),
         provenance=Provenance.since(start, str(method), "its complement"),
         scene=scene,
@@ -167,7 +170,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
 def _lowest(of_planes: Sequence[np.ndarray], modes: int, missing: float) -> np.ndarray:
     """Merge the bounds of all planes, and return the lowest, ascending; nan where none is known.
 
-    A missing lower bound is -inf, or the bound of the mode before; a missing upper bound is inf.
+    A missing lower bound counts as -inf, or as the bound of the mode before; a missing upper bound as inf.
     """
     if len(of_planes) == 1:
         return of_planes[0][:modes]
@@ -177,19 +180,19 @@ def _lowest(of_planes: Sequence[np.ndarray], modes: int, missing: float) -> np.n
 
 
 def _widen(values: np.ndarray, units: int) -> np.ndarray:
-    """Move values up (units > 0) or down (units < 0) by a number of rounding units."""
+    """Increase (units > 0) or decrease (units < 0) values by a number of rounding units."""
     return values + units * _EPS * np.abs(values)
 
 
 def _frequency(squared: np.ndarray, units: int) -> np.ndarray:
-    """Convert squared angular frequencies to frequencies [Hz], moved by rounding units; nan if negative."""
+    """Convert squared angular frequencies to frequencies [Hz], changed by rounding units; nan if negative."""
     return _widen(np.sqrt(np.where(squared > 0, squared, np.nan)) / (2 * np.pi), units)
 
 
 def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[Statement]:
     missing = (
         "no lower bound of ",
-        ": the functions left out could not be bounded, even with the largest basis",
+        ": the error of the remaining functions could not be bounded, even with the largest basis",
     )
     unstable = "", " are unstable: see the bounds of the squares"
     undecided = "", " may be stable or not: the bounds of the squares enclose zero"
@@ -205,7 +208,7 @@ def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[Statement]:
 
 
 def _nondimensional(scene: Scene) -> tuple[Scene, float]:
-    """Scale a scene to unit length, mass and stiffness, and return its unit of time [s], too."""
+    """Scale a scene to unit length, mass and stiffness; also return the unit of time [s]."""
     beam, length = scene.beam, scene.beam.length
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
@@ -225,8 +228,8 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
 def bound_critical_speed(scene: Scene) -> float:
     """Compute a guaranteed lower bound of the critical speed of bending [rad/s]; 0 if none is proved.
 
-    The theorem with z = 0 and k = 1 proves that the stiffness is positive definite at that speed, and so at
-    every slower one.
+    The theorem, with z = 0 and k = 1, proves that the stiffness is positive definite at this speed and thus
+    at every lower one.
     """
     scaled, time = _nondimensional(scene)
     if (flexibility := bound_flexibility(scaled.beam.bending_stiffness)) is None:
@@ -235,7 +238,7 @@ def bound_critical_speed(scene: Scene) -> float:
     sizes = iter(_PROOF_SIZES)
 
     def finer(found: tuple[float, float]) -> tuple[float, float] | None:
-        """Find the largest squared speed at which the stiffness is proved positive, and the Ritz value."""
+        """Find the largest squared speed with a stiffness proved positive definite, and Ritz's value."""
         if (total := next(sizes, None)) is None:
             return None
         part = PlaneEnclosure(scaled, min(most, max(6, total // segments)), 1.0, flexibility)
@@ -255,7 +258,7 @@ def bound_critical_speed(scene: Scene) -> float:
 
 
 def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.ndarray, Ritz]:
-    """Bound the squared angular frequencies in one plane or two coupled ones; return the last basis, too."""
+    """Bound squared angular frequencies in one plane or two coupled planes; also return the last basis."""
     scaled, time = _nondimensional(scene)
     beam, speed = scaled.beam, speed * time
     first = bound_flexibility(beam.bending_stiffness)
@@ -278,18 +281,18 @@ def _enclose(scene: Scene, speed: float, modes: int) -> tuple[np.ndarray, np.nda
     return _widen(lower, -8) / time**2, _widen(upper, 8) / time**2, ritz
 
 
-# Lower and upper bounds, size of the basis, and width of the bounds from the basis before.
+# Lower and upper bounds, size of the basis, and width of the bounds for the previous basis.
 _Found: TypeAlias = tuple[np.ndarray, np.ndarray, int, np.ndarray]
 
 
 def _narrow(
     enclosure: Callable[[int], Enclosure], sizes: Iterator[int], modes: int, narrow: float
 ) -> tuple[np.ndarray, np.ndarray, int]:
-    """Compute bounds from growing bases until they hardly narrow, and the size of the last basis."""
+    """Compute bounds with growing bases until they hardly get narrower, and the size of the final basis."""
 
     def finer(found: _Found) -> _Found | None:
         lower, upper, _, _ = found
-        # The eigensolution of a large basis may fail by rounding.
+        # Rounding may make the eigensolution of a large basis fail.
         with suppress(StopIteration, np.linalg.LinAlgError):
             size = next(sizes)
             low, high = enclosure(size).bounds(modes)

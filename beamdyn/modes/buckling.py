@@ -1,18 +1,18 @@
-"""Decision whether rotation buckles a beam at any speed, made without a search for that speed.
+"""Decision whether rotation buckles a beam at any speed, without a search for the critical speed.
 
 A critical speed exists exactly if some deflection u lowers the form that multiplies the squared speed,
 
     F(u) = int N u'^2 - c^2 int rho A u^2 - c^2 m t^2 + (s^2 (J_e - J_1) + eps N(L)) D^2,
 
-with the tension N = N_B - a N_A per squared speed, a = r cos(phi), t = u(L) + eps D, D = u'(L); symbols as
-in docs/conventions.md.  Bending stiffness is not in F.  So any deflection counts that is 0 at the root,
-whatever its slope there, and D does not depend on it: a short bend at the tip gives any D.
+with the tension N = N_B - a N_A per squared speed, a = r cos(phi), t = u(L) + eps D, D = u'(L); symbols as in
+docs/conventions.md.  Bending stiffness is not in F.  So any deflection that is 0 at the root is admissible,
+whatever its slope there, and D is independent of u: a short bend at the tip gives any D.
 
 rho A dx includes the point masses along the beam; N is smaller beyond each of them.
 
 **Tension.**  Where N < 0, short waves make F negative.  As N' = -rho A (x - a), N is least at an end.
 
-**Tip body.**  Let T be the matrix of F in (u(L), D) after completing a square with u = x, a rigid turn:
+**Tip body.**  Let T be the matrix of F in (u(L), D) after completing a square with u = x, a rigid rotation:
 
     F = int N (u' - u/x)^2 + int rho A (s^2 x - a) u^2 / x + (u(L), D) T (u(L), D)^T,
     T_11 = m (s^2 L + eps - a) / L,  T_12 = -c^2 m eps,  T_22 = s^2 (J_e - J_1) + m eps (L - a + s^2 eps).
@@ -25,26 +25,27 @@ a = -r / cos eta, the coefficients 1 / cos^2 eta in place of c^2 = 1 in the plan
 place of 0 out of it, J_e - J_1 less tan^2 eta B, and s^2 = 1 - c^2 of either sign: the integral of
 (s^2 x - a) rho A u^2 / x is not negative where s^2 L >= a.
 
-**Two planes.**  Neither bending stiffness nor twist is in F, which in the directions in the plane of
-rotation (c = 1) and out of it (s = 1) falls into two forms of this kind: a critical speed exists if it does
-in either.  A tip body has J_e - J_1 out of the plane, of the axes of its section.
+**Two planes.**  Neither bending stiffness nor twist is in F, which splits into two forms of this kind, in the
+plane of rotation (c = 1) and out of it (s = 1): a critical speed exists if it does in either.  A tip body has
+J_e - J_1 out of the plane, of the axes of its section.
 
-**Shear** frees the slope of the sections, hence D, from that of the deflection: F is the same.
+**Shear** makes the rotation of the sections, hence D, independent of the slope of the deflection: F is the
+same.
 
-**Springs** at the root or along the beam are stiffness, and change nothing.  At a hinge without springs along
-the beam, a rigid turn u = x has no stiffness:
+**Springs** at the root or along the beam are stiffness, which is not in F.  With a hinge and no springs along
+the beam, a rigid rotation u = x has no stiffness:
 
     F(x) = s^2 (I_0 + J_e - J_1 - int rho I) - a S_1,  I_0 = int rho A x^2 + m (L + eps)^2,
 
 with S_1 = int rho A x + m (L + eps).  If F(x) < 0, the beam is unstable at every speed, if F(x) = 0, neutral.
 
 **Rotary inertia** of sections that tilt out of the plane of rotation, and a tip body with a product of
-inertia between both planes, may lower F without limit in a bend of no length.  Where F without them is
-positive, the last section says below which speed they buckle nothing, usually one at which the axial strain
-of the beam has passed 1 %, where linear theory ends.
+inertia between both planes, may lower F without limit in an infinitely short bend.  Where F without them is
+positive, the last section gives a speed below which they cannot cause buckling, usually one at which the
+axial strain of the beam has passed 1 %, where linear theory ends.
 
-**String.**  Else, least over D, F is the form of a string with a mass at its end.  Its lowest eigenvalue
-decides; it converges fast, as without bending stiffness there are no thin layers.
+**String.**  Otherwise, minimized over D, F is the form of a string with a mass at its end.  Its lowest
+eigenvalue decides; it converges fast, as without bending stiffness there are no thin layers.
 
 **Toppling.**  Let F0 be the form F above for a slender beam, and E twice the energy of bending and of
 the springs at the root.  With the tilt theta of the sections (theta2 in the plane of rotation, theta3 out of
@@ -54,8 +55,8 @@ it), the tensor I of their rotary inertia and that of the tip body, B, rotation 
     + int g (theta2 theta3' - theta3 theta2'),    g(x) = int_x^L I23 - B23,
 
 where B33 theta3^2 at the tip is a part of F0.  With the compliance C(x), the integral of the sections' from
-the root to x plus that of the springs, theta_i^2 <= C_ii E.  So what rotation adds is at least -r E per
-squared speed, with
+the root to x plus that of the springs, theta_i^2 <= C_ii E.  So rotation adds at least -r E per squared
+speed, with
 
     r = int (I33 C33 + |I23| (C22 C33)^(1/2)) + |B23| (C22 C33)^(1/2) + (int g^2 trace(C) / EI)^(1/2),
 
@@ -92,16 +93,18 @@ from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor, tip_inertia
 
-_ROUNDING = 64 * float(np.finfo(float).eps)  # rounding error of a sum, relative to its terms
-_SHORTEST = 1e-12  # distance of a point mass from the tip, as x/L, below which it counts as at the tip
-_STRING_SIZES = 60, 100  # numbers of functions, on all segments together, of two bases that must agree
-# Smallest distance of an eigenvalue from its limit, relative to the difference of the two bases.
+# Rounding error of a sum, relative to the magnitudes of its terms.
+_ROUNDING = 64 * float(np.finfo(float).eps)
+_SHORTEST = 1e-12  # distance x/L of a point mass from the tip below which it counts as a tip mass
+# Numbers of functions, on all segments together, of two bases whose results must agree.
+_STRING_SIZES = 60, 100
+# Smallest distance of an eigenvalue from the limit that decides, over the difference of the two bases.
 _RESOLVED = 10
 _CELLS = 2000  # number of cells of the midpoint rule on all segments together
 _MARGIN = 1.01  # factor that allows for the error of the midpoint rule
-# Axial strain, in order of magnitude (speed L / speed of sound)^2, at which linear theory ends.
+# Order of magnitude of the axial strain, (speed L / speed of sound)^2, at which linear theory ends.
 _LARGE_STRAIN = 0.01
-_ALIGNED = 1e-14  # product of inertia, relative to the moments, below which a body is not oblique
+_ALIGNED = 1e-14  # ratio of a product of inertia to the moments of inertia below which it counts as 0
 
 
 @dataclass(frozen=True)
@@ -113,13 +116,13 @@ class Buckling:
     exists : bool or None
         Whether there is a critical speed; None if this could not be decided.
     why : str
-        The argument that decides, in words.
+        Argument that decides, as a sentence.
     speed : float or None
-        Critical speed [rad/s], where the argument supplies it: 0 if the beam is unstable at every speed, inf
-        if its axial strain passes 1 % first; None if a search is needed.
+        Critical speed [rad/s], if the argument gives it: 0 if the beam is unstable at every speed, inf if its
+        axial strain passes 1 % first; None if a search is needed.
     none_below : float
-        Where only the inertia of tilting sections can buckle the beam, a speed [rad/s] below which it does
-        not; else 0.
+        If only the inertia of tilting sections can buckle the beam, a speed [rad/s] below which it does not;
+        otherwise 0.
     """
 
     exists: bool | None
@@ -131,15 +134,16 @@ class Buckling:
 def decide_buckling(scene: Scene) -> Buckling:
     """Decide whether bending has a critical speed, by the arguments in the docstring of this module.
 
-    The arguments do not hold where offsets of sections couple bending with torsion.
+    The arguments do not hold if offsets of section centres couple bending with torsion.
     """
     if scene.physics.torsion and scene.beam.has_offsets:
         return Buckling(None, "no argument covers sections with offsets")
     if (turning := _least_turning(scene)) < 0:
-        return Buckling(True, "the rotation turns the beam about its hinge", speed=0.0)
+        return Buckling(True, "rotation makes the beam unstable about its hinge", speed=0.0)
     beam, tip = scene.modelled_beam, scene.beam.tip or TipMass(0.0)
     cosine, sine = exact_cos_sin(scene.mount.precone)
-    slope2, a = (sine / cosine) ** 2, _inward(scene) / cosine  # tan^2 eta, which is 0 without precone, and a
+    # tan^2 eta of the precone eta, and a of the module's docstring.
+    slope2, a = (sine / cosine) ** 2, _inward(scene) / cosine
     if scene.physics.planes == 1:
         cos2, sin2 = (v**2 for v in aligned_cos_sin(scene.mount.bending_angle))
         tilt = (sin2 - slope2) * (tip.inertia_about_bending_direction - tip.axial_inertia)
@@ -163,30 +167,32 @@ def decide_buckling(scene: Scene) -> Buckling:
 
 
 def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> Buckling:
-    """Decide for a slender beam in one plane, finally by the string: F >= 0 if its lowest eigenvalue > 1.
+    """Decide for a slender beam in one plane, if necessary by the lowest eigenvalue of a string (see module).
 
-    The arguments are the distance a of the root from the axis, against the direction of the beam [m], c^2 and
-    s^2, and terms of J_e - J_1 [kg m2].
+    The parameters are a, the distance of the root beyond the rotation axis, against the beam's direction [m];
+    c^2 and s^2; and the terms of J_e - J_1 [kg m2].
     """
     L, tip = beam.length, beam.tip or TipMass(0.0)
     m, eps, reach, (xi, lumped) = tip.mass, tip.offset, L + tip.offset - a, beam.lumps
     n_a, n_b = (float(n(np.zeros(1))[0]) for n in axial_tension(beam))
     lump = float(lumped[xi > 1 - _SHORTEST].sum())
     at_root, at_tip = _sum(n_b, -a * n_a), _sum((m + lump) * L, m * eps, -(m + lump) * a)
-    toppling = _sum(tilt, m * eps * L, -m * eps * a, m * eps * sin2 * eps)  # T_22 of this module's matrix T
-    coupling = cos2 * m * eps  # -T_12 of the matrix T in the docstring of this module
+    # T_22 of the matrix T in the module's docstring.
+    toppling = _sum(tilt, m * eps * L, -m * eps * a, m * eps * sin2 * eps)
+    coupling = cos2 * m * eps  # -T_12 of the matrix T in the module's docstring
     if at_root < 0 or at_tip < 0:
         return Buckling(True, "the rotation compresses a part of the beam")
     if toppling < 0 or (toppling == 0 and coupling):
         return Buckling(True, "the rotation topples the tip body, however stiff the beam")
-    determinant = _sum(  # determinant of T, times L / m
+    determinant = _sum(  # determinant of the matrix T in the module's docstring, times L / m
         *(tilt * v for v in (sin2 * L, eps, -a)), *(m * eps * reach * v for v in (sin2 * L, sin2 * eps, -a))
     )
-    # With T_22 = 0, T_12 is 0, too, and T_11 has the sign of the tension at the tip.
+    # If T_22 = 0, T_12 is 0 too, and T_11 has the sign of the tension at the tip.
     pulled = a <= min(0.0, (1 - cos2) * L) and (toppling == 0 or determinant >= 0)
     if cos2 == 0 or pulled:
         return Buckling(False, "the rotation stiffens the beam against every deflection")
-    end_mass = cos2 * m + (coupling**2 / toppling if coupling else 0.0)  # c^2 m (1 + c^2 m eps^2 / T_22)
+    # Mass at the end of the string: c^2 m (1 + c^2 m eps^2 / T_22).
+    end_mass = cos2 * m + (coupling**2 / toppling if coupling else 0.0)
     coarse, fine = (_lowest_of_string(beam, a, cos2, end_mass, size) for size in _STRING_SIZES)
     if fine < 1 - _ROUNDING * _STRING_SIZES[-1]:
         return Buckling(True, "the rotation softens the beam more than its tension stiffens it")
@@ -196,7 +202,7 @@ def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float
 
 
 def _lowest_of_string(beam: Beam, a: float, cos2: float, end_mass: float, size: int) -> float:
-    """Compute an upper bound of the string's lowest ratio of work of tension to that of spin (Ritz)."""
+    """Compute an upper bound of the string's lowest ratio of tension work to centrifugal work, by Ritz."""
     space = Ritz(max(2, size // (len(beam.breakpoints) - 1))).spaces(beam).functions(FIXED)
     n_a, n_b = axial_tension(beam)
     tension = space.gram(n_b, 1) - a * space.gram(n_a, 1)
@@ -209,21 +215,21 @@ def _lowest_of_string(beam: Beam, a: float, cos2: float, end_mass: float, size: 
 def _sum(*terms: float) -> float:
     """Add numbers; 0 if the sum is within their rounding errors.
 
-    A critical speed that depends on less than these errors lies beyond 1e6 sqrt(EI / (rho A L^4)).
+    If a smaller sum decides about a critical speed, that speed exceeds 1e6 sqrt(EI / (rho A L^4)).
     """
     total = math.fsum(terms)
     return total if abs(total) > _ROUNDING * math.fsum(map(abs, terms)) else 0.0
 
 
 def _inward(scene: Scene) -> float:
-    """Compute the root's distance a from the axis of rotation, against the direction of the beam [m]."""
+    """Compute a, the distance of the root from the rotation axis, against the beam's direction [m]."""
     return scene.mount.radius * aligned_cos_sin(scene.mount.setting_angle)[0]
 
 
 def _least_turning(scene: Scene) -> float:
-    """Compute the minimum of this module's form F over unit turns about a hinge [kg m2]; inf if clamped."""
+    """Compute the minimum of the form F (see module) over unit rotations about a hinge [kg m2]; or inf."""
     springs = scene.mount.root_stiffnesses[: scene.physics.planes]
-    # Whether springs along the beam hold it, in each direction.
+    # Whether springs along the beam support the beam, in each direction.
     held = [scene.beam.springs(direction)[1].size > 0 for direction in range(len(springs))]
     hinges = np.flatnonzero((np.array(springs) == 0) & ~np.array(held))
     if not hinges.size:
@@ -249,10 +255,10 @@ def _least_turning(scene: Scene) -> float:
 
 
 def _decide_toppling(scene: Scene) -> Buckling | None:
-    """Decide for a beam that rotation stiffens but for the inertia of tilting bodies; None if none tilts.
+    """Decide for a beam that only the inertia of tilting bodies can buckle; None if no body tilts.
 
-    Integrals are sums over n cells; tensors (n, 2, 2) have the directions in the plane of rotation and out of
-    it.
+    Integrals are sums over n cells; the components of tensors (n, 2, 2) are in the plane of rotation and out
+    of it.
     """
     beam, planes, mount, shear = scene.modelled_beam, scene.physics.planes, scene.mount, scene.physics.shear
     ends = np.array(beam.breakpoints)
@@ -267,15 +273,16 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
         return None
     bending = _tensor(beam, "bending_stiffness", xi, planes)
     springs = np.array(mount.root_stiffnesses)[:planes]
-    flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # flexibility from the smaller bending stiffness
-    root = np.diag([1 / k if k else 0.0 for k in springs])  # hinges count as rigid: see the conditions below
+    flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # flexibility of the smaller bending stiffness
+    # Hinges count as rigid here: see the conditions below.
+    root = np.diag([1 / k if k else 0.0 for k in springs])
     by_bending = np.cumsum(np.linalg.inv(bending) * width[:, None, None], axis=0)
     C = components @ (root + by_bending) @ components.T
     torque, slope = np.cumsum((width * products)[::-1])[::-1] - body, np.sqrt(C[:, 0, 0])
     n_a, n_b = axial_tension(beam)
-    at = np.append(xi[:-1], 1.0)  # the last cell has the value at the tip
+    at = np.append(xi[:-1], 1.0)  # the last cell takes the value at the tip
     tension = n_b(at) - _inward(scene) * n_a(at)
-    ratios = [np.inf]  # candidates of r from the two arguments
+    ratios = [np.inf]  # candidates of r (module's docstring) from the two arguments
     if not any(k == 0 and (n or oblique) for k, n in zip(springs, components[1], strict=True)):
         both = np.sqrt(C[:, 0, 0] * C[:, 1, 1])
         ratio = width @ (moments * C[:, 1, 1] + np.abs(products) * both)
@@ -292,11 +299,11 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
             smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
             ratio = max(ratio, float((tension / smaller).max()))
         ratios.append(ratio)
-    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # speed of sound over the length
+    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # speed of sound divided by length
     if inertia := float(width @ rotary[:, 0, 0]):
         sound_speed = (inertia * float(width @ (1 / bending[:, 0, 0]))) ** -0.5
     speed = math.inf if slowest >= _LARGE_STRAIN**0.5 * sound_speed else None
-    # Whatever the stiffness, sections or a tip body may topple in a bend of no length.
+    # Whatever the stiffness, sections or a tip body may topple in an infinitely short bend.
     free_end = tension[-1] < moments[-1] * (components[1] ** 2).sum()
     surely = not mount.precone and bool(shear or oblique or free_end)
     why = "only the rotary inertia of what tilts out of the plane can buckle it"
@@ -306,9 +313,9 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
 def _tilting_inertia(
     scene: Scene, components: np.ndarray, rotary: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Compute I33 (all of it in one plane) and I23 of sections (n,) [kg m], and B23 of the tip body [kg m2].
+    """Compute I33 and I23 of sections (n,) [kg m], and B23 of the tip body [kg m2]; symbols: see module.
 
-    Products of inertia within rounding are set to 0.  With precone, B23 includes a factor above 1.
+    Products of inertia within rounding of 0 are set to 0.  With precone, B23 includes a factor above 1.
     """
     if scene.physics.planes == 1:
         return rotary[:, 0, 0] * bool(components[1, 0]), np.zeros(len(rotary)), 0.0

@@ -1,4 +1,4 @@
-"""Critical speed: the lowest speed at which the stiffness of the straight beam is singular."""
+"""Critical speed: the lowest speed at which the stiffness matrix of the straight beam is singular."""
 
 from __future__ import annotations
 
@@ -58,36 +58,37 @@ _BENT = Words(
 )
 _LOST = "the beam that {} has no stiffness against a further bend or twist"
 _KEPT = "the beam that {} was followed so far, and stays stable"
-_FUNCTIONS = 5  # number of functions of a model that only tells whether rotation loads the beam
+# Number of functions of a model that only determines whether rotation loads the beam transversely.
+_FUNCTIONS = 5
 
 
 @dataclass(frozen=True)
 class CriticalPoint(StatesModelError):
     """Critical speed, at which the stiffness of the rotating beam is singular, with its error.
 
-    `error` is numerical; `model_error` and `left_out`, computed when asked for, are what the physics
-    left out would change in a speed that was found.
+    `error` is the numerical error.  `model_error` and `left_out`, computed at their first use, estimate how
+    much neglected physical effects change the critical speed.
 
     Parameters
     ----------
     speed : float
-        Critical speed [rad/s]; inf if there is none, or if none was found: `none_below` says which; 0 if the
-        rotation turns the beam about a hinge at every speed.
+        Critical speed [rad/s]; inf if there is none, or if none was found (see `none_below`); 0 if the beam
+        is unstable about a hinge at every speed.
     error : float
-        Estimated relative error of the speed; 0 where an argument decides, inf if it is unresolved.
+        Estimated relative error of the speed; 0 if a theoretical argument decides, inf if it is unresolved.
     none_below : float
-        No critical speed lies below this [rad/s]: `speed` itself where it was found, a guaranteed bound
-        where not, inf if there is none.  With an error of 0, only the inertia of tilting sections can
-        buckle the beam past this bound, where linear theory has long ended; a beam that rotation bends in
-        space was followed up to this speed.
+        No critical speed is below this value [rad/s]: `speed` itself if it was found, otherwise a guaranteed
+        bound, or inf if there is none.  With an error of 0, only the inertia of tilting sections can buckle
+        the beam above this bound, far outside linear theory.  If rotation bends the beam in space, its
+        equilibria were computed up to this speed.
     reason : str
-        Why there is a critical speed, or none, or why that is not known.
+        Why there is a critical speed or none, or why this is not known.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How it was found.
+        How the result was computed.
     of_bent_beam : bool
-        Whether the rotation, or a load at its tip, bends the beam before it loses stability.
+        Whether rotation or a tip load bends the beam before it loses stability.
 
     Examples
     --------
@@ -119,9 +120,9 @@ class CriticalPoint(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the critical speed by the effects that the model leaves out, of shape ()."""
+        """Changes of the critical speed by each neglected effect, of shape ()."""
         if self.of_bent_beam and np.isfinite(self.speed):
-            return nothing_known(self.scene, "it is not computed of a beam that has bent before")
+            return nothing_known(self.scene, "it is not computed for a beam that is already bent")
         if self.model is None or not (0 < self.speed < np.inf and np.isfinite(self.error)):
             return nothing_known(self.scene)
         return left_out_of_critical_speed(self.model, self.speed)
@@ -132,9 +133,9 @@ def critical_speed(
 ) -> float:
     """Compute the critical speed [rad/s], at which the first frequency vanishes; inf if there is none.
 
-    A warning is issued if there may be one where none was found, if its error is large, or if rotation bends
-    the beam at every speed, so that it does not buckle as a straight one does.  `critical_point` gives the
-    same with its error and its model error.
+    A warning is issued if a critical speed may exist although none was found, if the error is large, or if
+    rotation bends the beam at every speed, so that it does not buckle like a straight beam.  `critical_point`
+    also returns the error and the model error.
 
     Parameters
     ----------
@@ -143,7 +144,7 @@ def critical_speed(
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     tolerance : float, optional
-        As for `natural_modes`; a warning is issued if it cannot be kept.
+        As for `natural_modes`; a warning is issued if it is not met.
 
     Returns
     -------
@@ -175,13 +176,14 @@ def critical_point(
 ) -> CriticalPoint:
     """Compute the critical speed and its error: the lowest with a singular stiffness K0 + omega^2 K2.
 
-    Whether there is one is decided first, by an argument (`beamdyn.modes.buckling`).  If there is, it is
-    sought with finer and finer discretizations, because it may belong to a short bend at the tip; if these
-    end without one, guaranteed bounds say up to which speed there is none.
+    A theoretical argument first decides whether a critical speed exists (`beamdyn.modes.buckling`).  If so,
+    it is searched with finer and finer discretizations, because the buckling mode may be a short bend at the
+    tip; if none is found, guaranteed bounds state up to which speed there is none.
 
-    Where rotation bends the beam in space from rest on, the critical speed is that at which the equilibrium
-    that follows from rest loses its stability: a deep section buckles sideways, or the branch turns back.
-    The same holds with a dead load at the tip; a load under which a beam may flutter is refused.
+    If rotation bends the beam in space at every speed, the critical speed is the one at which the
+    equilibrium, continued from rest, loses stability: a deep section buckles sideways, or the equilibrium
+    branch turns back.  The same holds with a tip load of fixed direction; a load that may cause flutter is
+    refused.
 
     Parameters
     ----------
@@ -222,21 +224,22 @@ def critical_point(
         if scene.bends_in_space:
             return _of_bent_beam(scene, discretization, target, tolerance, start)
         return _argued(scene, Buckling(False, _BENT), start)
-    # Large deflection does not change when a straight beam buckles.
+    # Large deflection does not change the speed at which a straight beam buckles.
     return _of_straight_beam(scene.straightened, discretization, target, tolerance, start)
 
 
 def _of_straight_beam(
     scene: Scene, discretization: DiscretizationChoice, target: float, tolerance: float | None, start: float
 ) -> CriticalPoint:
-    """Find the critical speed of a straight beam, by an argument or by a search."""
+    """Find the critical speed of a straight beam, by a theoretical argument or by a search."""
     target = affordable_target(scene, discretization, target)
     models = partial(critical_search.models_of_critical_speed, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):
-        # The argument, which knows only the order of magnitude of the strain, missed buckling below 1 %.
+        # The argument, which uses only the order of magnitude of the strain, missed buckling below 1 %
+        # strain.
         buckling = replace(buckling, speed=None)
-    # The search is for buckling by bending, within reach of the theory.
+    # The search is for buckling by bending, within the validity of linear theory.
     sought = buckling.exists is not False and buckling.speed is None
     if buckling.speed == 0 or (not sought and not scene.physics.stretch):
         return _argued(scene, buckling, start)
@@ -252,7 +255,7 @@ def _of_straight_beam(
             found = bending
         else:
             reason = "the rotation softens the stretch by more than the axial stiffness"
-    none_below = found.speed  # replaced by bounds of slender planes where the speed is not resolved
+    none_below = found.speed  # the bounds of slender planes replace this value if the speed is not resolved
     if np.isinf(found.error):
         by_plane = () if scene.physics.stretch else map(bound_critical_speed, separate_planes(scene))
         none_below = min(by_plane, default=0.0 if scene.physics.stretch else buckling.none_below)
@@ -269,13 +272,13 @@ def _of_straight_beam(
 
 
 def _is_lower(bending: critical_search.FoundSpeed, found: critical_search.FoundSpeed) -> bool:
-    """Whether bending becomes critical first; a basis that resolves stretch may miss bending's speed."""
+    """Return whether bending becomes critical first; a basis that resolves stretch may miss that speed."""
     same = min(bending.error + found.error, UNRESOLVED)
     return bool(np.isfinite(bending.speed)) and bending.speed <= found.speed * (1 + same)
 
 
 def _made_by(found: critical_search.FoundSpeed, start: float) -> Provenance:
-    """Build the provenance of a search that began at a given time."""
+    """Build the provenance record of a search that began at a given time."""
     names = str(found.model.discretization), str(found.coarse.discretization)
     return Provenance.since(start, *names)
 
@@ -283,7 +286,7 @@ def _made_by(found: critical_search.FoundSpeed, start: float) -> Provenance:
 def _of_bent_beam(
     scene: Scene, discretization: DiscretizationChoice, target: float, tolerance: float | None, start: float
 ) -> CriticalPoint:
-    """Find the speed at which a beam that rotation bends from rest on loses its stability."""
+    """Find the speed at which a beam that rotation bends at every speed loses stability."""
     target = affordable_target(scene, discretization, target)
     models = critical_search.models_of_critical_speed(scene, discretization, target, cheapest=True)
     found, is_lost = critical_search.search_bent(models, target)
@@ -308,7 +311,7 @@ def _bending(scene: Scene) -> str:
 
 
 def _is_loaded_across(scene: Scene) -> bool:
-    """Whether rotation bends the beam at every speed, in a modelled direction."""
+    """Return whether rotation bends the beam at every speed, in a modelled direction."""
     if scene.beam.is_curved:
         return True
     in_plane = 1.0 if scene.physics.planes == 2 else aligned_cos_sin(scene.mount.bending_angle)[0]
@@ -316,7 +319,7 @@ def _is_loaded_across(scene: Scene) -> bool:
 
 
 def _refuse_without_potential(scene: Scene) -> None:
-    """Refuse a load at the tip under which the beam may flutter, which no singular stiffness shows."""
+    """Raise an error for a tip load that may cause flutter, which a singular stiffness does not show."""
     load = scene.tip_load
     name = "follows" if load.follows else "moment"
     if scene.may_flutter_by_load:
@@ -326,7 +329,7 @@ def _refuse_without_potential(scene: Scene) -> None:
 
 
 def _is_within_theory(model: Model) -> bool:
-    """Whether a model resolves its critical speed, without an axial strain above 1 % as far as known."""
+    """Return whether a model resolves its critical speed, with an axial strain (if known) below 1 %."""
     found = critical_search.compare_critical_speeds(model)
     if np.isinf(found.error):
         return False
@@ -335,7 +338,7 @@ def _is_within_theory(model: Model) -> bool:
 
 
 def _argued(scene: Scene, buckling: Buckling, start: float) -> CriticalPoint:
-    """Build the critical point that follows from an argument alone, without a search."""
+    """Build the critical point that follows from a theoretical argument alone, without a search."""
     provenance = Provenance.since(start, "an argument", "nothing")
     speed = np.inf if buckling.speed is None else buckling.speed
     none_below = buckling.none_below or speed
@@ -351,7 +354,7 @@ def _warnings(
     discretization: DiscretizationChoice,
     tolerance: float | None,
 ) -> Iterator[str]:
-    """Yield warnings about a critical speed that was found, or about a search that found none."""
+    """Yield warnings about a critical speed that was found, or about a search without result."""
     yield from warn_of_left_out(scene)
     if discretization == "fem" and found.model.discretization.order is None:
         said = f"finite elements do not resolve the critical speed: sought with {found.model.discretization}"
@@ -368,12 +371,12 @@ def _warnings(
         said = f"the estimated relative error of the critical speed is {found.error:.1g}"
         quantity = "estimated relative error"
         yield Statement(said, kind=TOLERANCE, quantity=quantity, value=found.error, limit=1e-6)
-    if _is_loaded_across(scene):  # the beam has bent long before the critical speed
+    if _is_loaded_across(scene):  # the beam bends far before it reaches the critical speed
         said = "rotation bends the beam at every speed, so that it does not buckle as a straight one does: "
         yield Statement(said, Speeds(found.speed), f" is {OUTSIDE}", kind=OUTSIDE)
 
 
-# Choice of the physics ------------------------------------------------------------------------------
+# Choice of the physical effects ---------------------------------------------------------------------
 
 
 def _find_with_chosen_physics(
@@ -381,7 +384,7 @@ def _find_with_chosen_physics(
 ) -> CriticalPoint:
     """Find a critical point with the effects that change it by more than the tolerance.
 
-    The size of each effect is judged by the critical speed found with it: a second plane may buckle where the
+    Each effect is judged by the critical speed computed with it, as a second plane may buckle although the
     first does not.
     """
 
@@ -390,7 +393,7 @@ def _find_with_chosen_physics(
         additions, not_known, _ = list_effects(candidate)
         sizes = {added.name: _change(known, find(added.scene)) for added in additions}
         assumed = {added.name: f"it is estimated {added.assumed}" for added in additions if added.assumed}
-        # Where rotation bends the beam from rest on, it does not buckle.
+        # If rotation bends the beam at every speed, it does not buckle.
         sizes[LARGE_DEFLECTION.name] = math.inf if bends(Model(candidate, Ritz(_FUNCTIONS))) else 0.0
         lost = "its critical speed is not resolved"
         unresolved = {name: lost for name, size in sizes.items() if math.isnan(size)}
@@ -405,10 +408,9 @@ def _find_with_chosen_physics(
 
 
 def _change(without: CriticalPoint, within: CriticalPoint) -> float:
-    """Compute the relative change of a critical speed by an effect.
+    """Compute the relative change of a critical speed by an effect, from the speeds without and with it.
 
-    It is inf if there is a critical speed only with, or only without the effect, and nan if one is
-    unresolved.
+    It is inf if a critical speed exists only with, or only without the effect, and nan if one is unresolved.
     """
     if math.isinf(without.error) or math.isinf(within.error):
         return math.nan

@@ -1,4 +1,4 @@
-"""Search for a critical speed with finer and finer models, each compared with one of half its size."""
+"""Search for a critical speed with finer and finer models, each compared with a model of half its size."""
 
 from __future__ import annotations
 
@@ -16,20 +16,22 @@ from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, 
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.scene import Scene
 
-# Number of modes for which the first basis is sized, so that a basis of half its size usually suffices, too.
+# Number of modes for which the first basis is chosen, so that a basis of half its size usually suffices too.
 _SIZED_FOR = 5
-_NEAR_TIP = 0.5  # x/L beyond which the deflection is so large that rounding of short elements shows
-# Rounding error times the cubed relative length of the shortest element.
+# x/L above which deflections are so large that rounding errors of short elements become visible.
+_NEAR_TIP = 0.5
+# Rounding error of an element, times the cube of the shortest element's relative length.
 _OF_SHORTEST = 4 * float(np.finfo(float).eps)
-_ROUNDING_OF_BENT = 1e-10  # relative rounding error: the stiffness is a small sum of large terms
-# Smallest error at which meshes of a bent beam aim: each mesh costs as much as all before.
+# Relative rounding error of a bent beam, whose stiffness is a small sum of large terms.
+_ROUNDING_OF_BENT = 1e-10
+# Smallest error target for meshes of a bent beam, because each mesh costs as much as all coarser meshes.
 _MESHES_OF_BENT = 1e-5
-_TO_HALF = 4  # number of steps from a basis to one of about half its size
+_TO_HALF = 4  # number of steps from a basis to a basis of about half the size
 
 
 @dataclass(frozen=True)
 class FoundSpeed:
-    """Critical speed of a model [rad/s], its relative error, and the part of rounding in the error."""
+    """Critical speed of a model [rad/s], relative error of this speed, and the rounding part of the error."""
 
     model: Model
     coarse: Model
@@ -41,9 +43,9 @@ class FoundSpeed:
 def models_of_critical_speed(
     scene: Scene, discretization: DiscretizationChoice, target: float, cheapest: bool
 ) -> Iterator[Model]:
-    """List the models in which a critical speed is sought; see `list_models`, of which the first is made now.
+    """List the models in which a critical speed is searched, see `list_models`; only the first is built now.
 
-    So a beam with too many segments is refused, even if no model needs to be solved.
+    This refuses a beam with too many segments even if no model needs to be solved.
     """
     named = isinstance(discretization, str)
     modes, split = (_SIZED_FOR, split_tip(scene)) if named else (1, scene)
@@ -52,10 +54,10 @@ def models_of_critical_speed(
 
 
 def search_critical_speed(models: Iterator[Model], target: float) -> FoundSpeed:
-    """Refine models until the error meets the target or rounding, or the models end."""
+    """Refine models until the error meets the target or the rounding error, or no finer model is left."""
 
     def finer(found: FoundSpeed) -> FoundSpeed | None:
-        # The factorization of a large basis may fail by rounding: the result before is then the best.
+        # Rounding may make the factorization of a large basis fail: the previous result is then the best.
         with suppress(np.linalg.LinAlgError, StopIteration):
             return compare_critical_speeds(next(models))
         return None
@@ -67,10 +69,11 @@ def search_critical_speed(models: Iterator[Model], target: float) -> FoundSpeed:
 
 
 def compare_critical_speeds(model: Model) -> FoundSpeed:
-    """Compute the critical speed of a model, with its error from a model of about half the size.
+    """Compute the critical speed of a model, and its error from a model of about half the size.
 
-    A basis that lacks only a few functions would differ too little where convergence is slow: where the error
-    falls as a power p >= 1 of the size, it is at most the distance from the basis of half the size.
+    With slow convergence, the distance from a basis with only a few functions less would be too small.  If
+    the error is proportional to size^-p with p >= 1, it is at most the distance from the basis of half the
+    size.
     """
     discretization, solver = model.discretization, model.solver
     order, noise = discretization.order, discretization.rounding
@@ -82,32 +85,32 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
         coarse = model.coarser
         ends = discretization.cells(model.scene.modelled_beam).ends
         shortest = float(np.diff(ends)[ends[1:] > _NEAR_TIP].min())
-        noise = max(noise, _OF_SHORTEST * shortest**-3)  # elements have a rounding error from their integrals
+        noise = max(noise, _OF_SHORTEST * shortest**-3)  # element integrals have a rounding error
     fine_softening, coarse_softening = solver.softening, coarse.solver.softening
     distance = fine_softening - coarse_softening
     softening = fine_softening if order is None else fine_softening + distance / (2**order - 1)
-    if not 0 < softening < np.inf:  # this is False for nan, too
+    if not 0 < softening < np.inf:  # the condition is False for nan, too
         return FoundSpeed(model, coarse, np.inf, np.inf, np.inf)
     rounding = solver.critical_rounding
     noise, left = rounding + noise, abs(distance)
-    if order is not None:  # short segments may keep a mesh from having half the elements of another
+    if order is not None:  # short segments may prevent a mesh with half the elements of another
         half = coarse.coarser.solver
         before = coarse_softening - half.softening if is_halved(half, coarse.solver) else np.nan
         left = float(extrapolation_error(*np.array([[distance], [before], [noise * softening]]))[0])
     error = left / (2 * softening) + noise
-    # A comparison with the same functions tells nothing.
+    # A comparison of models with the same functions does not show an error.
     resolved = error < UNRESOLVED and coarse.solver.size < solver.size
     error = float(error) if resolved else np.inf
     return FoundSpeed(model, coarse, float(softening**-0.5), error, rounding)
 
 
-# Beams that rotation bends --------------------------------------------------------------------------
+# Beams that rotation bends at every speed -----------------------------------------------------------
 
 
 def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, bool]:
-    """Refine the speed at which a beam that rotation bends loses stability; also return whether it does.
+    """Refine the speed at which a beam that rotation bends loses stability; also return whether one exists.
 
-    Where it stays stable, the returned speed is the largest that was tried.
+    If the beam stays stable, the returned speed is the largest one that was tried.
     """
     found, is_lost = compare_bent(next(models))
     if found.model.discretization.order is not None:
@@ -118,7 +121,7 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
 
 
 def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
-    """Find the speed of loss of stability, its error by the coarser model, and whether it was found."""
+    """Find the speed of loss of stability, the error by the coarser model, and whether a speed was found."""
     (squared, is_lost), (of_coarse, also) = (
         find_loss_of_stability(each.deflected.load) for each in (model, model.compared)
     )
@@ -129,7 +132,7 @@ def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
 
 
 def _margin(model: Model) -> float:
-    """Choose the ratio of error to distance between two models; for meshes of half the elements, 1."""
+    """Choose the ratio of error to distance between two models; 1 for meshes with half the elements."""
     if model.discretization.order is not None:
         return 1.0
     return (SLOW_BASES if model.lacks_one else BASES_OF_FIELDS).factor

@@ -1,4 +1,4 @@
-"""Equilibria of a beam that rotation bends by any angle, and their branches over speed."""
+"""Equilibria of a beam with arbitrarily large deflection by rotation, and their branches over speed."""
 
 from __future__ import annotations
 
@@ -38,27 +38,27 @@ from beamdyn.scene.mount import Mount, aligned_cos_sin
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
-_FINE = 0.05  # arc length of a step, small enough for smooth curves in a picture
+_FINE = 0.05  # arc length of a step, small enough for smooth curves in a plot
 _MOST_POINTS = 2000  # largest number of points of a branch
-_STEEPEST = 2 * np.pi  # slope angle up to which a branch is followed [rad]
+_STEEPEST = 2 * np.pi  # largest slope angle [rad] up to which a branch is continued
 _UNSTABLE = "the straight beam, of which effects are judged, is unstable"
-_JUST_BELOW = 1 - 1e-9  # last speed of the stable straight beam that is listed, over the critical speed
-_ROUNDING = 1e-13  # error of a position over the length
+_JUST_BELOW = 1 - 1e-9  # ratio of the last listed speed of the stable straight beam to its critical speed
+_ROUNDING = 1e-13  # rounding error of a position, relative to the length
 
 
 @dataclass(frozen=True)
 class Equilibrium(StatesModelError):
-    """Equilibrium of a beam at a steady speed, of any deflection.
+    """Equilibrium of a beam at a steady speed, with any deflection.
 
-    `error` is the numerical error; `model_error` and `left_out`, computed when asked for, are what the
-    physics left out would change in the deflection of the tip, as far as it is small.
+    `error` is the numerical error.  `model_error` and `left_out`, computed at their first use, estimate how
+    much neglected physical effects change the tip deflection, for small deflections.
 
     Parameters
     ----------
     speed : float
         Speed [rad/s].
     branch : str
-        "straight": it follows from rest as the speed rises; "bent": it exists beside the straight branch.
+        "straight": continued from rest as the speed rises; "bent": another equilibrium, next to that branch.
     tip : ndarray, shape (3,)
         Position of the tip from the root along b1, b2, b3 [m].
     tip_angle : float
@@ -67,7 +67,7 @@ class Equilibrium(StatesModelError):
     error : float
         Estimated error of the position of the tip [m].
     stable : bool
-        Whether no small motion about the equilibrium grows.
+        Whether all small motions about the equilibrium stay small.
     growth_rate : float
         Largest growth rate of a small motion [1/s]; 0 if it is stable.
     warnings : tuple of str
@@ -108,11 +108,11 @@ class Equilibrium(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the straight beam's tip deflection by the effects left out of the model: shape ()."""
+        """Changes of the straight beam's tip deflection by each neglected effect: shape ()."""
         return left_out_by_solving(self.scene, self._solve_static)
 
     def _solve_static(self, scene: Scene, _: str) -> SolvedValues:
-        """Solve the static tip deflection of a straight beam with an effect added."""
+        """Compute the static tip deflection of a straight beam that includes an effect."""
         speeds = np.array([self.speed])
         tip = np.linalg.norm(choose_model(scene.undamped, "ritz", speeds, 1).static_tips(speeds))
         return SolvedValues(np.asarray(tip), _UNSTABLE if np.isnan(tip) else "")
@@ -151,8 +151,8 @@ def equilibrium(
     speed : float
         Speed [rad/s].
     branch : {"straight", "bent"}, optional
-        "straight": the equilibrium that follows from rest as the speed rises; "bent": the stable one next to
-        it, past a critical speed or a turning point.  By default that of `scene.physics`.
+        "straight": the equilibrium continued from rest as the speed rises; "bent": the stable one next to it,
+        above a critical speed or a turning point.  The default is the branch of `scene.physics`.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     tolerance : float, optional
@@ -165,7 +165,7 @@ def equilibrium(
     Raises
     ------
     NoEquilibrium
-        An ArithmeticError: if the branch has no equilibrium at this speed.
+        If the branch has no equilibrium at this speed (an ArithmeticError).
 
     References
     ----------
@@ -192,8 +192,8 @@ def equilibrium(
     error = np.abs(tip - of_coarse).max() * (SLOW_BASES.factor if solution.model.lacks_one else 1.0)
     at = Words("at ", Speeds(float(speeds[0])))
     flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
-    loaded = "a small force across at the tip leads to a stable one if it is there"
-    remedy = loaded if scene.tip_load.acts else 'branch="bent" asks for the stable one beside it'
+    loaded = "a small transverse force at the tip leads to a stable equilibrium, if there is one"
+    remedy = loaded if scene.tip_load.acts else 'branch="bent" gives the stable equilibrium next to it'
     said = "the equilibrium is unstable ", at, f": a small motion grows at {growth:.3g} 1/s; {remedy}"
     rate = {"quantity": "growth rate [1/s]", "value": growth, "limit": 0.0}
     unstable = Statement(*said, kind=GROWING, remedy=remedy, **rate)
@@ -222,7 +222,7 @@ def _with_large_deflection(scene: object, branch: str | None) -> Scene:
 
 
 def _directions(mount: Mount) -> np.ndarray:
-    """Compute components (2, 2) on b2, b3 of the direction of bending, and of the direction across."""
+    """Compute components (2, 2) along b2, b3 of the direction of bending, and of the direction across."""
     c, s = aligned_cos_sin(mount.bending_angle)
     return np.array([[c, s], [-s, c]])
 
@@ -237,7 +237,7 @@ def _in_space(positions: np.ndarray, mount: Mount) -> np.ndarray:
 
 @dataclass(frozen=True)
 class EquilibriumBranch:
-    """Points of one branch of equilibria, in the order in which it is followed.
+    """Points of one branch of equilibria, in the order of continuation.
 
     Parameters
     ----------
@@ -248,9 +248,9 @@ class EquilibriumBranch:
     tip : ndarray, shape (k, 3)
         Positions of the tip from the root along b1, b2, b3 [m].
     stable : ndarray of bool, shape (k,)
-        Whether the potential energy, including that of the centrifugal forces, has a minimum.
+        Whether the potential energy, including that of centrifugal forces, has a minimum there.
     turning_speeds : ndarray, shape (t,)
-        Speeds at which the branch turns back, by a fold or where it meets the straight beam [rad/s].
+        Speeds [rad/s] at which the branch turns back, at a fold or where it meets the straight beam.
 
     Examples
     --------
@@ -277,9 +277,9 @@ class EquilibriumBranches(Result):
     top_speed : float
         Top speed [rad/s].
     branches : tuple of EquilibriumBranch
-        The branch from rest, then the branch next to it at the top speed, if there is one.
+        The branch from rest, then another branch that exists at the top speed, if any.
     critical_speed : float
-        Speed at which the straight beam buckles [rad/s]; inf where rotation bends it from rest on.
+        Speed at which the straight beam buckles [rad/s]; inf if rotation bends it at every speed.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
@@ -355,10 +355,10 @@ def equilibrium_branches(
         branches = [_collect("straight", load, continuation.start_curve(load, rest, 0.0, 1.0), top)]
     else:
         speeds = np.union1d(np.linspace(0, top, 101), min(top, _JUST_BELOW * solver.critical_speed))
-        stable = speeds < solver.critical_speed  # the stiffness is linear in the squared speed
+        stable = speeds < solver.critical_speed  # the stiffness depends linearly on the squared speed
         tips = np.tile(_in_space(load.elastica.beam.at(rest).tip, scene.mount), (len(speeds), 1))
         branches = [EquilibriumBranch("straight", speeds, tips, stable, np.empty(0))]
-    try:  # follows the other branch from the top speed through its turning points
+    try:  # continues another branch from the top speed through its turning points
         start_of_bent = continuation.start_curve(load, find_bent(load, top), top**2, -1.0)
         branches.append(_collect("bent", load, start_of_bent, top))
     except NoEquilibrium as error:
@@ -374,9 +374,9 @@ def equilibrium_branches(
 
 
 def _collect(name: str, load: Loading, start: continuation.Point, top: float) -> EquilibriumBranch:
-    """Collect the points of a branch until it passes the top speed, or the beam has made a turn."""
+    """Collect the points of a branch until it passes the top speed, or until the beam has turned by 2 pi."""
     points = [start]
-    with suppress(continuation.NotConverged):  # until the branch cannot be followed further
+    with suppress(continuation.NotConverged):  # until the branch cannot be continued
         for point in continuation.follow(load, start, _FINE):
             if point.p >= top**2 and point.p_rate:
                 at_top = continuation.find_at(load, points[-1], point, top**2)
@@ -385,7 +385,7 @@ def _collect(name: str, load: Loading, start: continuation.Point, top: float) ->
             points.append(point)
             if np.abs(point.q @ load.angles).max() > _STEEPEST or len(points) > _MOST_POINTS:
                 break
-    # At a turning point the stiffness is singular: it ends the part before it, and is as stable as that.
+    # At a turning point the stiffness is singular; the point counts as stable if the branch before it is.
     judged = [b if b.p_rate else a for a, b in zip([start, *points], points, strict=False)]
     tips = load.elastica.beam.at(np.array([point.q for point in points])).tip
     return EquilibriumBranch(

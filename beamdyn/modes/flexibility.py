@@ -1,4 +1,4 @@
-"""Upper bounds of the flexibility 1/EI, and of the work of loads on all deflections of unit energy.
+"""Upper bounds of the flexibility 1/EI, and of the work of loads on deflections of unit elastic energy.
 
 All quantities are nondimensional, as in `beamdyn.modes.residual_bound`.
 """
@@ -17,21 +17,22 @@ from beamdyn.scene.profile import Profile
 
 _EPS = float(np.finfo(float).eps)
 _DEGREES = (0, 8, 16, 32, 64, 128)
-_EXCESS = 1e-10  # relative excess of the bound over 1/EI
-_HALVINGS = 40  # largest number of halvings of a segment on which no polynomial degree suffices
+_EXCESS = 1e-10  # relative margin of the bound above 1/EI
+_HALVINGS = 40  # largest number of halvings of a segment on which no polynomial degree gives a bound
 
 
 def bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:
-    """Bound the traces of the operators P1 ... P4 relative to the energy a from above: shape (4,).
+    """Compute upper bounds (4,) of the traces of tension, mass and tip-slope forms, relative to the energy.
 
     The slope at x under unit energy is at most sqrt(int_0^x 1/EI), the deflection
     sqrt(int_0^x (x - s)^2 / EI).  Exchanging the integrals leaves outboard integrals of the loads:
-    int_s^1 (x - s)^2 rho A dx is twice the threefold outboard integral of rho A.
+    int_s^1 (x - s)^2 rho A dx is twice the triple integral of rho A from the tip to s.
     """
     tip = beam.tip or TipMass(0.0)
     n_a, n_b = axial_tension(beam)
     moment = outboard_moments(beam)[0].outboard_integral().outboard_integral().scaled(2.0)
-    arm = Profile((0.0, 1.0), ((0.5 + tip.offset, -0.5),))  # the lever 1 - s + eps
+    # Lever arm from s to the tip body's centre of mass, 1 - s + eps.
+    arm = Profile((0.0, 1.0), ((0.5 + tip.offset, -0.5),))
     loads = (n_b.outboard_integral(), n_a.outboard_integral(), moment)
     tension_b, tension_a, inertia = (_integral(flexibility * load) for load in loads)
     inertia += tip.mass * _integral(flexibility * (arm * arm))
@@ -43,14 +44,14 @@ def _integral(profile: Profile) -> float:
 
 
 def bound_on_cells(profile: Profile, ends: np.ndarray) -> np.ndarray:
-    """Bound the absolute values of a property on cells with ends (c + 1,), using |P_k| <= 1."""
+    """Bound the absolute value of a property on cells with ends (c + 1,) by its Legendre coefficients."""
     parts = profile.split(ends.tolist())
     first = np.searchsorted(parts.breakpoints, ends[:-1])
     return np.maximum.reduceat(np.abs(parts.series).sum(axis=0), first)
 
 
 def bound_flexibility(stiffness: Profile) -> Profile | None:
-    """Find a piecewise polynomial that bounds 1/EI closely from above; None if the search fails."""
+    """Find a piecewise polynomial that is a close upper bound of 1/EI; None if the search fails."""
     for _ in range(_HALVINGS):
         rows = [bound_reciprocal(np.array(row)) for row in stiffness.coefficients]
         bounds = tuple(row for row in rows if row is not None)
@@ -62,10 +63,10 @@ def bound_flexibility(stiffness: Profile) -> Profile | None:
 
 
 def bound_reciprocal(row: np.ndarray) -> tuple[float, ...] | None:
-    """Find a polynomial close above 1/EI on a segment from the Legendre coefficients of EI.
+    """Find a polynomial that is a close upper bound of 1/EI on a segment, given Legendre coefficients of EI.
 
-    With |1 - EI g| <= misfit < 1 for a polynomial g, it is
-    g / (1 - misfit); None if no degree is close enough.
+    With |1 - EI g| <= misfit < 1 for a polynomial g, the bound is g / (1 - misfit); None if no degree is
+    close enough.
     """
     for degree in _DEGREES:
         t, _ = gauss_rule(degree + 1)

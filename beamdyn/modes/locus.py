@@ -1,4 +1,4 @@
-"""Loci: natural modes followed over speed."""
+"""Frequency loci: natural modes followed over speed."""
 
 from __future__ import annotations
 
@@ -30,16 +30,17 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
 _MOST_JUDGED = 16  # largest number of speeds of a locus at which the model error is computed
-_EXTRA_MODES = 2  # number of further higher modes, with which the requested ones may exchange their order
+_EXTRA_MODES = 2  # number of additional higher modes, with which the requested modes may exchange their order
 
 
 @dataclass(frozen=True)
 class Locus(TellsKinds, StatesModelError):
     """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
 
-    `error` is the numerical error; `model_error` (k, m) and `left_out`, computed when asked for, are what the
-    physics left out would change at the `left_out_speeds` (k,), or by `left_out_at` at others.  `kind` (S, m)
-    is "bending", "torsion" or "camber" as in `Modes`, at each speed: modes exchange their kinds as they veer.
+    `error` is the numerical error.  `model_error` (k, m) and `left_out`, computed at their first use,
+    estimate the changes by neglected physical effects at the `left_out_speeds` (k,); `left_out_at` does so at
+    other speeds.  `kind` (S, m) is "bending", "torsion" or "camber" as in `Modes`, at each speed: modes
+    exchange their kinds at a veering.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ class Locus(TellsKinds, StatesModelError):
     eigenvalue : ndarray of complex, shape (S, m)
         Eigenvalue s of the motion exp(s t) [1/s].
     plane_share : ndarray, shape (S, m, 2)
-        Share of each direction of bending at the root in the kinetic energy of the mode's deflection.
+        Fraction of the kinetic energy of the mode's deflection in each direction of bending at the root.
     static_deflection : ndarray, shape (S,)
         Static tip deflection under the rotation [m], signed or a magnitude as in `Modes`.
     axial_strain : ndarray, shape (S,)
@@ -90,7 +91,7 @@ class Locus(TellsKinds, StatesModelError):
     provenance: Provenance
     scene: Scene = field(repr=False)
     model: Model = field(repr=False)
-    # Eigenvalues (S, k) in ascending order, including a few more modes.
+    # Eigenvalues (S, k) in ascending order, including additional higher modes.
     ascending: np.ndarray = field(repr=False)
     place: np.ndarray = field(repr=False)  # index of each mode in `ascending` (S, m)
     kinds: np.ndarray | None = field(default=None, repr=False, metadata=ADDED_LATER)
@@ -105,14 +106,14 @@ class Locus(TellsKinds, StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of frequencies at the `left_out_speeds` by the effects left out of the model, (k, m)."""
+        """Changes of frequencies at the `left_out_speeds` by each neglected effect, (k, m)."""
         return self.left_out_at(self._judged)
 
     @property
     def left_out_speeds(self) -> np.ndarray:
         """Speeds of the locus at which the model error is computed [rad/s], (k,).
 
-        Both ends are included, and the speeds before and after a mode becomes unstable or stable.
+        They are the first and last speed, and the speeds before and after a mode becomes unstable or stable.
         """
         return self.speeds[self._judged]
 
@@ -125,16 +126,16 @@ class Locus(TellsKinds, StatesModelError):
         return np.unique(np.concatenate([spread, before, before + 1]))
 
     def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
-        """Estimate the changes by the effects left out at the speeds of given indices (k,): (k, m)."""
+        """Estimate the changes by neglected effects at the speeds with given indices (k,): shape (k, m)."""
         at = np.asarray(indices, dtype=int)
         return left_out_with_modes(self.model, self.speeds[at], self.eigenvalue[at])
 
     def to_dict(self) -> dict[str, Any]:
-        """Convert the result to numbers, lists and strings, with model error and effects left out."""
+        """Convert the result to numbers, lists and strings, with model error and neglected effects."""
         return super().to_dict() | {"left_out_speeds": self.left_out_speeds.tolist()}
 
     def names(self) -> tuple[str, ...]:
-        """Return the names of the modes: a number, and the kind unless a mode mostly bends at first."""
+        """Return the names of the modes: a number, and the kind unless the mode begins as bending."""
         kinds = (f", {kind}" if kind != BENDING else "" for kind in self.kind[0])
         return tuple(f"mode {i}{kind}" for i, kind in enumerate(kinds, 1))
 
@@ -149,7 +150,7 @@ class Locus(TellsKinds, StatesModelError):
 
 
 @announced
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
+@one_blas_thread()  # with small matrices, further threads only slow each other down
 def frequency_locus(
     scene: Scene,
     speeds: np.ndarray | Sequence[float] | float,
@@ -170,7 +171,7 @@ def frequency_locus(
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     tolerance : float, optional
-        As for `natural_modes`; kept at every speed.
+        As for `natural_modes`; met at every speed.
 
     Returns
     -------
@@ -201,7 +202,7 @@ def frequency_locus(
     solution = solve_to_tolerance(scene, discretization, speeds, modes, tolerance, _EXTRA_MODES)
     order, confidence = track(solution.eigen.vector, solution.model.solver.pencil.M)
     s, followed = np.take_along_axis(solution.eigen.eigenvalue, order, axis=1)[:, :modes], order[:, :modes]
-    # An extra mode gets the largest error at its speed.
+    # An additional mode gets the largest error of all modes at the same speed.
     errors = np.repeat(solution.error.max(axis=1, keepdims=True), followed.max(initial=0) + 1, axis=1)
     errors[:, :modes] = solution.error[:, : errors.shape[1]]
     error = np.take_along_axis(errors, followed, axis=1)

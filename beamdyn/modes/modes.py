@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-# Coordinates and shapes as `Modes.mesh` returns them.
+# Coordinates and shapes, as returned by `Modes.mesh`.
 Mesh: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
@@ -48,9 +48,9 @@ Mesh: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 class Modes(TellsKinds, StatesModelError):
     """Natural modes at one speed, the lowest first.
 
-    `error` is numerical; `model_error` (m,) and `left_out`, computed when asked for, are what the
-    physics left out would change.  `kind` (m,) names the kind with most of a mode's kinetic energy:
-    "bending", "torsion" or "camber".
+    `error` is the numerical error.  `model_error` (m,) and `left_out`, computed at their first use, estimate
+    the changes by neglected physical effects.  `kind` (m,) names the kind of motion with most of a mode's
+    kinetic energy: "bending", "torsion" or "camber".
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ class Modes(TellsKinds, StatesModelError):
     frequency : ndarray, shape (m,)
         Frequency [Hz]; nan where a mode is unstable or does not oscillate.
     error : ndarray, shape (m,)
-        Estimated relative error of the frequency, or of the growth rate where there is none.
+        Estimated relative error of the frequency, or of the growth rate if there is no frequency.
     growth_rate : ndarray, shape (m,)
         Growth rate [1/s]: positive for an unstable mode, negative for a damped one.
     status : ndarray of str, shape (m,)
@@ -70,14 +70,14 @@ class Modes(TellsKinds, StatesModelError):
         Tip deflections of the mass-normalised modes [kg^-1/2] in the direction of bending at the root and
         across it, the larger one positive; 0 across where one plane is modelled.
     plane_share : ndarray, shape (m, 2)
-        Share of each direction in the kinetic energy of the mode's deflection: without that of its stretch.
+        Fraction of the kinetic energy of the mode's deflection (without stretch) in each direction.
     load, load_across : ndarray, shape (m,)
         Modal loads under a unit root acceleration in either direction, P in modal coordinates [kg^1/2].
     angular_load, angular_load_across : ndarray, shape (m,)
         Modal loads under a unit angular acceleration in either plane, Q in modal coordinates [kg^1/2 m].
     static_deflection : float
-        Static tip deflection under the rotation [m], with its sign; its magnitude where two planes are
-        modelled; nan past the critical speed.
+        Static tip deflection under rotation [m], with its sign; its magnitude if two planes are modelled; nan
+        above the critical speed.
     axial_strain : float
         Largest static axial strain: uncertainty of a model without stretch; nan if it is unknown.
     warnings : tuple of str
@@ -124,8 +124,8 @@ class Modes(TellsKinds, StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of each frequency by the effects left out of the model, shape (m,)."""
-        # Imported here, as few calls ask for it.
+        """Changes of each frequency by each neglected effect, shape (m,)."""
+        # The import is inside the function because few calls need the module.
         from beamdyn.modes.model_error.left_out_changes import left_out_with_modes
 
         return left_out_with_modes(self.model, np.array([self.speed]), self.eigenvalue[None]).at(0)
@@ -133,7 +133,7 @@ class Modes(TellsKinds, StatesModelError):
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
         """Compute the mass-normalised modes' deflection at x [m] along the beam: shape (m, len(x)).
 
-        Direction 0 is that of the bending angle at the root, 1 the one across.
+        Direction 0 is the bending direction at the root, direction 1 is across.
         """
         equations = self.model.equations_at(self.speed)
         return self.vectors.T @ equations.deflection(self._over_length(x), direction=direction)
@@ -149,7 +149,7 @@ class Modes(TellsKinds, StatesModelError):
         return np.tensordot(self.vectors.T, equations.surface(self._over_length(x), np.asarray(eta)), 1)
 
     def mesh(self, along: int = 101, across: int = 21) -> Mesh | None:
-        """Compute shapes on a mesh over the strip, in its own axes: see `common.plots.export.write_shapes`.
+        """Compute mode shapes on a mesh over the strip, in its axes: see `common.plots.export.write_shapes`.
 
         Parameters
         ----------
@@ -163,11 +163,11 @@ class Modes(TellsKinds, StatesModelError):
         y : ndarray, shape (n, k)
             Positions across the strip [m], ascending.
         shapes : ndarray, shape (m, n, k)
-            Deflections in the direction of bending, real.
+            Deflections in the direction of bending, real numbers.
         across : ndarray, shape (m, n)
             Deflections in the direction across, which is -y.
 
-        None where the sections keep their shape, or their width is not known.
+        None if the sections keep their shape, or if their width is not known.
         """
         places = self.model.over_strip(along, across)
         if places is None:
@@ -183,7 +183,7 @@ class Modes(TellsKinds, StatesModelError):
         return np.minimum(xi, 1.0)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the mode shapes; a strip that twists or cambers is seen from above."""
+        """Draw the mode shapes; a strip that twists or cambers is drawn in top view."""
         if (mesh := self.mesh()) is not None:
             return plot_surfaces(*mesh, self.labels(), ax, self.display_units)
         x = np.linspace(0, self.scene.beam.length, 201)
@@ -224,7 +224,7 @@ class Modes(TellsKinds, StatesModelError):
 
 
 def drawn_order(scene: Scene) -> tuple[tuple[int, int], tuple[str, str]]:
-    """Return the directions that are drawn solid and dashed, and their names."""
+    """Return the directions that are drawn with solid and dashed lines, and their names."""
     solid, names = first_drawn(scene), name_directions(scene)
     return (solid, 1 - solid), (names[solid][0], names[1 - solid][0])
 
@@ -251,8 +251,8 @@ def natural_modes(
         Assumed modes or finite elements, as large as needed; or a `Ritz` or `Fem` of given size.
     tolerance : float, optional
         Allowed relative error, from 1e-14 to 0.1: the smallest model that meets it is chosen.  By default
-        models are chosen for 1e-11, two digits beyond the promised 1e-9; for 1e-4 where a rectangular
-        section cambers or twists, as convergence at the corners of its clamp is algebraic.
+        models are chosen for 1e-11, two digits beyond the promised 1e-9; for 1e-4 if a rectangular section
+        cambers or twists, as convergence at the corners of the clamp is algebraic.
 
     Returns
     -------
@@ -285,7 +285,7 @@ def natural_modes(
         None if tolerance is None else within("tolerance", tolerance, *discretization_choice.TOLERANCES)
     )
     if scene.chooses_physics:
-        # Imported here, as few calls need it.
+        # The import is inside the function because few calls need the module.
         from beamdyn.modes.model_error.effect_choice import choose_physics
 
         scene = choose_physics(scene, speeds, modes, tolerance)
@@ -327,7 +327,7 @@ def natural_modes(
 def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | None) -> np.ndarray:
     """Scale modes (n, m) by signs or phases that make the larger tip deflection real and positive.
 
-    For sections that twist or camber, the deflection at the tip's corner in the direction across counts.
+    If sections twist or camber, the deflection of the tip's corner in the direction across is used.
     """
     tips = equations.tips @ vectors
     larger = tips[np.abs(tips).argmax(axis=0), np.arange(tips.shape[1])]
@@ -370,7 +370,7 @@ def warn_of_modes(
         yield Statement(*said, kind=GROWING, **rate)
     yield from warn_of_strain(strain.max(initial=0))
     if scene.physics.large_deflection:
-        # Imported here, because the import takes long.
+        # The import is inside the function because importing takes long.
         from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 
         bending = partial(model.bent.curvature, model.deflected.equilibria(speeds))
@@ -387,6 +387,6 @@ def warn_of_modes(
 
 
 def provenance_of(solution: EstimatedModes, start: float) -> Provenance:
-    """Build the provenance of modes, with the time since a start by `perf_counter` [s]."""
+    """Build the provenance record of modes, with the time since a start by `perf_counter` [s]."""
     names = str(solution.model.discretization), str(solution.model.compared.discretization)
     return Provenance.since(start, *names)

@@ -1,4 +1,4 @@
-"""Separation of two uncoupled planes of bending into scenes in one plane each."""
+"""Separation of two uncoupled planes of bending into scenes with one plane each."""
 
 from __future__ import annotations
 
@@ -16,20 +16,22 @@ _QUARTER = math.pi / 2
 
 
 def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
-    """Split a scene into scenes of slender beams in one plane each.
+    """Split a scene into scenes of slender beams with one plane each.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     spinning : bool
-        Whether the carrier turns; if it does not, no bending angle couples the planes of a straight section.
+        Whether the carrier rotates; if not, the bending angle does not couple the planes of a straight
+        section.
 
     Returns
     -------
     tuple of Scene
-        The scene itself if its beam is slender and in one plane.  For two uncoupled planes of a slender beam,
-        a scene for the direction of bending at the root, and one for the direction across; else empty.
+        The scene itself, if its beam is slender and modelled in one plane.  For two uncoupled planes of a
+        slender beam, a scene for the direction of bending at the root, and one for the direction across;
+        otherwise empty.
     """
     if scene.is_slender_beam_in_one_plane:
         return (scene,)
@@ -44,7 +46,7 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
     properties = ("bending_stiffness", "shear_stiffness", "rotary_inertia")
     unread = (*(f"second_{name}" for name in properties), *properties[1:], "twist")
     first = replace(beam, **dict.fromkeys(unread))
-    if tip is not None:  # the tip body turns about another axis in the second direction
+    if tip is not None:  # in the second direction, the tip body rotates about another axis
         moments = tip.inertia_about_bending_direction, tip.inertia, tip.axial_inertia
         tip = TipMass(tip.mass, tip.offset, *moments)
     second = replace(first, bending_stiffness=beam.second_bending_stiffness, tip=tip, outer_fibre=None)
@@ -60,7 +62,7 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
 
 
 def refuse_uncovered(scene: Scene, speed: float) -> None:
-    """Refuse a scene with features, named in the message, that `beamdyn.modes.bounds` does not cover.
+    """Raise an error for a scene with features that `beamdyn.modes.bounds` does not cover.
 
     Raises
     ------
@@ -83,18 +85,18 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
             raise InvalidValue(name, value, bound, "leave it out", "N m/rad")
     lumps = scene.beam.point_masses
     if lumps and scene.physics.planes == 2 and not separate_planes(scene, spinning=bool(speed)):
-        of_lumps = "bounds of two planes that twist or bending angle couples are known without point masses"
+        of_lumps = (
+            "bounds for two planes that twist or bending angle couples are known only without point masses"
+        )
         raise InvalidValue("point_masses", len(lumps), of_lumps, "leave them out, or model one plane")
     if scene.physics.planes == 2 and speed and scene.mount.precone:
-        gyroscopic = (
-            "it couples the velocities of two planes, and bounds are of equations without such forces"
-        )
+        gyroscopic = "it couples the velocities of two planes, but bounds need equations without such forces"
         remedy = "give 0, or speed = 0, or model one plane"
         raise InvalidValue("precone", scene.mount.precone, gyroscopic, remedy, "rad")
 
 
 def _quarter_turns(beam: Beam) -> int | None:
-    """Return the number of quarter turns by which all sections are turned; None if it is not whole."""
+    """Return the number of 90 degree turns by which all sections are rotated; None if it is not whole."""
     if beam.twist is None:
         return 0
     if any(any(row[1:]) for row in beam.twist.coefficients):

@@ -1,4 +1,4 @@
-"""Model errors of results, found by repeating the analysis with each effect that the model leaves out."""
+"""Model errors of results, computed by repeating the analysis with each effect that the model neglects."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ Arguments = ParamSpec("Arguments")
 Answer = TypeVar("Answer")
 
 BY_FREQUENCY = "by the first frequency"
-_LOADED = "it, or what it was made of, was loaded from a file without it: ask for it before saving"
-_NOTHING = "there is no value that it could change"
-# Number of lowest modes, and relative change of their frequencies up to which nothing is repeated.
+_LOADED = "the result or its source was loaded from a file without model error: compute it before saving"
+_NOTHING = "there is no value that the effect could change"
+# Number of lowest modes, and relative change of their frequencies below which nothing is repeated.
 _LOWEST, _SMALL = 2, 1e-5
 
 
 class JudgedByRepeating(StatesModelError):
-    """Base class of results whose model error is found by repeating the analysis with each effect.
+    """Base class of results whose model error is computed by repeating the analysis with each effect.
 
     A subclass implements `judged`.  The analysis is decorated by `repeatable`, or sets `again`.
 
@@ -42,8 +42,8 @@ class JudgedByRepeating(StatesModelError):
         Function that repeats the analysis with the same arguments for another scene; None in a result that
         was loaded from a file without its model error.
     follows_stiffness : bool
-        Whether values grow as the compliance of the first mode does, so that their change by large deflection
-        can be estimated where the analysis is for straight beams.
+        Whether the values are proportional to the first mode's compliance, so that their change by large
+        deflection can be estimated if the analysis supports only straight beams.
     """
 
     judged_by_solving = True
@@ -51,12 +51,12 @@ class JudgedByRepeating(StatesModelError):
     follows_stiffness: ClassVar[bool] = True
 
     def judged(self, found: Any) -> np.ndarray:
-        """Select the values of a result of this kind whose model error is stated."""
+        """Return the values of a result of this class for which the model error is stated."""
         raise NotImplementedError
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """Arguments that limit a repeated analysis to the values whose model error is stated."""
+        """Arguments that restrict a repeated analysis to the values for which the model error is stated."""
         return {}
 
     @property
@@ -66,16 +66,16 @@ class JudgedByRepeating(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the values selected by `judged` by the effects left out of the model."""
+        """Changes of the values returned by `judged` by each neglected effect."""
         if self.again is None or not np.isfinite(self.judged(self)).any():
             return nothing_known(self.scene, _LOADED if self.again is None else _NOTHING)
         found, name = left_out_by_solving(self.scene, self.solve), LARGE_DEFLECTION.name
-        if reason := found.not_known.get(name):  # not known in two planes, or at an oblique angle
+        if reason := found.not_known.get(name):  # not known for two planes, or at an oblique angle
             found = _with_change(found, name, self.judged(self), self.bent_values(self.judged(self), reason))
         return replace(found, counted=self.counted or found.counted)
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Solve a scene with the named effect; large deflection only as far as the analysis allows."""
+        """Solve a scene with the named effect; with large deflection only if the analysis supports it."""
         own = self.judged(self)
         if scene == self.scene or self.again is None:
             return SolvedValues(own)
@@ -89,7 +89,7 @@ class JudgedByRepeating(StatesModelError):
         except InvalidValue as refusal:
             if name == LARGE_DEFLECTION.name:
                 return self.bent_values(self.solve(scene.straightened, "").values, refusal.bound)
-            if scene.models_width and name == CAMBER.name:  # sections that camber nowhere bound the change
+            if scene.models_width and name == CAMBER.name:  # sections that cannot camber bound the change
                 held_flat = without_camber(replace(scene, physics=self.scene.physics))
                 return self.solve(held_flat, name)._replace(assumed=MOST_CAMBER)
             return SolvedValues(np.full(own.shape, np.nan), refusal.bound)
@@ -102,9 +102,9 @@ class JudgedByRepeating(StatesModelError):
         return {name: float(each[0]) for name, each in small.items() if name != LARGE_DEFLECTION.name}
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate the values with large deflection from the first frequency; nan, and why, if impossible.
+        """Estimate values with large deflection from the first frequency; nan, and why, if impossible.
 
-        The values are those of the straight beam where rotation does not bend it.
+        If rotation does not bend the beam, they are those of the straight beam.
         """
         effects = left_out_of_frequencies(self.scene, self.bending_speed, 1)
         name = LARGE_DEFLECTION.name
@@ -116,7 +116,7 @@ class JudgedByRepeating(StatesModelError):
 
 
 def _with_change(found: LeftOutEffects, name: str, own: np.ndarray, bent: SolvedValues) -> LeftOutEffects:
-    """Add the change by an effect to the others, if it was unknown before and is known now."""
+    """Add the change by an effect to the others, if it was unknown before and now is known."""
     with np.errstate(divide="ignore", invalid="ignore"):
         change = bent.values / own - 1
     if not np.isfinite(change).all():
@@ -127,13 +127,13 @@ def _with_change(found: LeftOutEffects, name: str, own: np.ndarray, bent: Solved
 
 
 def left_out_of_frequencies(scene: Scene, speed: float, modes: int) -> LeftOutEffects:
-    """Find changes of the lowest natural frequencies at a speed by the effects left out: shape (m,)."""
+    """Compute changes of the lowest natural frequencies at a speed by neglected effects: shape (m,)."""
     with unannounced():
         return natural_modes(scene, speed, modes).left_out_effects
 
 
 def repeatable(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
-    """Make an analysis of a scene, or of a repeatable result, keep in its result how to repeat it."""
+    """Decorate an analysis of a scene, or of a repeatable result: its result records how to repeat it."""
     signature = inspect.signature(analysis)
 
     @functools.wraps(analysis)
@@ -142,7 +142,7 @@ def repeatable(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Ans
         (_, source), *others = signature.bind(*given, **named).arguments.items()
         options = dict(others)
         options |= options.pop("options", {})  # options of `solve_ivp`
-        # The function with all its decorators, found by name where it is unpickled.
+        # Function with all its decorators, which pickle finds by its name.
         public = vars(sys.modules[analysis.__module__])[analysis.__name__]
         # Results loaded from files cannot be repeated.
         if isinstance(source, Scene) or getattr(source, "again", None) is not None:
@@ -155,8 +155,8 @@ def repeatable(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Ans
 def _repeat(
     analysis: Callable[..., Any], source: Any, options: dict[str, Any], scene: Scene, **others: Any
 ) -> Any:
-    """Repeat an analysis for another scene, with some options changed.
+    """Repeat an analysis for another scene, with some arguments changed.
 
-    If the analysis takes the result of another one, that one is repeated for the scene first.
+    If its argument is the result of another analysis, that analysis is repeated for the scene first.
     """
     return analysis(scene if isinstance(source, Scene) else source.again(scene), **options | others)

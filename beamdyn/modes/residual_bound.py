@@ -1,6 +1,7 @@
-"""Guaranteed bounds of eigenvalues of bending: from a Ritz part, and the residual of all other functions.
+"""Guaranteed bounds of eigenvalues of bending, from a Ritz basis and the residual of all other functions.
 
-All quantities are nondimensional: x is x/L, mass and stiffness are relative to the segment at the root.
+All quantities are nondimensional: x stands for x/L; mass and stiffness are relative to those of the segment
+at the root.
 
 **The problem.**  With a(u, v) = int EI u'' v'' and four positive semidefinite forms
 
@@ -77,19 +78,21 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import tip_inertia
 
 _EPS = float(np.finfo(float).eps)
-_MOST_STEPS = 12  # largest number of steps of the search for z from a Ritz value
-_LARGEST_STEP = 10.0  # largest step of the search for z, over 1 + |z|: a bound beyond it would be useless
+# Largest number of steps in the search for an eigenvalue bound z, which starts from a Ritz value.
+_MOST_STEPS = 12
+# Largest step of the search for z, over 1 + |z|: a larger one would give a useless bound.
+_LARGEST_STEP = 10.0
 
 
 class Enclosure(ABC):
-    """Bounds of the lowest eigenvalues z of one problem, from its Ritz part and bounds of the tail.
+    """Bounds of the lowest eigenvalues of one problem, from a Ritz basis and bounds for all other functions.
 
     Parameters
     ----------
     speed : float
         Nondimensional speed.
     stiffness : ndarray, shape (n, n)
-        Energies a of pairs of functions of the Ritz part.
+        Elastic energies a of pairs of functions of the Ritz basis (Ritz part).
     forms : ndarray, shape (m, n, n)
         The forms P_j on the Ritz part.
     spin, mass : ndarray, shape (m,)
@@ -110,25 +113,25 @@ class Enclosure(ABC):
 
     @abstractmethod
     def _tail(self, coefficients: np.ndarray, terms: np.ndarray) -> float:
-        """Bound how far the forms lower `a` on the tail, relative to `a`, with rounding.
+        """Bound how much the forms P_j (see module) reduce the energy of functions outside the Ritz basis.
 
-        In the docstring of this module it is 1 - q.
+        In the module's docstring it is 1 - q.  The bound includes rounding.
         """
 
     @abstractmethod
     def _residual(self, coefficients: np.ndarray) -> np.ndarray:
-        """Compute the residual R of this module (n, n) for loads with coefficients c_j of the forms."""
+        """Compute the residual R (see module), (n, n), of loads with coefficients c_j of the forms."""
 
     @abstractmethod
     def _residual_allowance(self, terms: np.ndarray) -> float:
-        """Bound the rounding error of the residual R of this module: products, and moments."""
+        """Bound the rounding error of the residual R (see module): of products, and of moments."""
 
     @abstractmethod
     def _sizes(self) -> np.ndarray:
-        """Compute the traces of the absolute terms of the forms on the Ritz part, shape (m,)."""
+        """Compute traces (m,), on the Ritz basis, of the forms with all terms taken as absolute values."""
 
     def bounds(self, modes: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute lower and upper bounds of the lowest eigenvalues z = lambda^2, (modes,) each."""
+        """Compute lower and upper bounds of the lowest eigenvalues z (squared frequencies), (modes,) each."""
         mass = self._sum(self.mass)
         starts = -np.real(self._solver.solve(np.array([self.speed]), modes).eigenvalue[0] ** 2)
         lower, upper = (
@@ -139,18 +142,18 @@ class Enclosure(ABC):
 
     @cached_property
     def ritz_critical_speed(self) -> float:
-        """Critical speed in the space of the Ritz part, an upper bound of the exact one to rounding."""
+        """Critical speed computed in the Ritz basis: an upper bound of the exact one, except for rounding."""
         return self._solver.critical_speed
 
     @cached_property
     def _solver(self) -> Solver:
-        """Solver of the eigenproblem on the Ritz part, whose Ritz values start the search."""
+        """Solver of the eigenproblem in the Ritz basis, whose Ritz values start the search for bounds."""
         mass = self._sum(self.mass)
         zero = np.zeros_like(mass)
         return Solver(SteadyPencil(mass, zero, zero, self.stiffness, self._sum(self.spin), zero[0]))
 
     def upper_form(self, z: float) -> np.ndarray:
-        """Compute this module's form Q_z on the Ritz part, plus rounding.
+        """Compute the form Q_z (see module) on the Ritz basis, plus an allowance for rounding.
 
         If k + 1 of its eigenvalues are at most 0, mode k (from 0) has an eigenvalue of at most z.
         """
@@ -158,20 +161,20 @@ class Enclosure(ABC):
         return self.stiffness + self._sum(coefficients) + self._allowance(terms) * np.eye(len(self.stiffness))
 
     def lower_form(self, z: float) -> np.ndarray | None:
-        """Compute Q_z - R/q of this module, less rounding; None where there is no bound.
+        """Compute Q_z - R/q (see module), minus an allowance for rounding; None if there is no bound.
 
         If at most k of its eigenvalues are negative, mode k (from 0) has an eigenvalue of at least z.
         """
         return self._lower_form(*self._coefficients(z))
 
     def stiffness_form(self, squared_speed: float) -> np.ndarray | None:
-        """Compute the lower form at z = 0: without eigenvalues < 0, no slower speed is critical."""
+        """Compute the form Q_z - R/q (see module) at z = 0: if positive, no lower speed is critical."""
         return self._lower_form(squared_speed * self.spin, squared_speed * self.spin_terms)
 
     def _lower_form(self, coefficients: np.ndarray, terms: np.ndarray) -> np.ndarray | None:
-        """Compute Q - R/q of this module less rounding, from coefficients c_j and their terms.
+        """Compute Q - R/q (see module) minus rounding, from coefficients c_j and their terms.
 
-        For each coefficient, `terms` is the sum of its terms' absolute values.
+        For each coefficient, `terms` is the sum of the absolute values of its terms.
         """
         tail = self._tail(coefficients, terms)
         if tail >= 1:
@@ -182,12 +185,12 @@ class Enclosure(ABC):
         return self.stiffness + self._sum(coefficients) - R / (1 - tail) - allowance * np.eye(len(R))
 
     def _coefficients(self, z: float) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the coefficients c_j(z) of this module's forms, and sums of absolute terms."""
+        """Compute the coefficients c_j(z) of the forms (see module), and sums of absolute terms."""
         squared = self.speed**2
         return squared * self.spin - z * self.mass, squared * self.spin_terms + abs(z) * self.mass
 
     def _allowance(self, terms: np.ndarray) -> float:
-        """Bound the rounding error of the form Q of this module, from the coefficients' absolute terms.
+        """Bound the rounding error of the form Q (see module), from the absolute terms of the coefficients.
 
         For an entry of a Gram matrix of a form P it is at most unit sqrt(P_ii P_jj).
         """
@@ -205,7 +208,7 @@ class PlaneEnclosure(Enclosure):
     scene : Scene
         A nondimensional scene.
     functions : int
-        Number n of functions of the Ritz part, or on each segment, if segments have their own.
+        Number n of functions of the Ritz basis, or on each segment if each has separate functions.
     speed : float
         Nondimensional speed.
     flexibility : Profile or None
@@ -216,7 +219,7 @@ class PlaneEnclosure(Enclosure):
         self.scene, self.speed, self.flexibility = scene, speed, flexibility
         self.part = PlaneRitzPart(scene.beam, functions)
         self.stiffness, self.forms = self.part.stiffness, self.part.forms
-        # Coefficients of the forms, and their terms' absolute values.
+        # Coefficients of the forms, and the absolute values of their terms.
         tip, psi = scene.beam.tip or TipMass(0.0), scene.mount.bending_angle
         tension, turning = (v**2 for v in exact_cos_sin(scene.mount.precone))
         root = float(root_motion(scene.mount, UNIT_SPEED).root_axial)
@@ -227,8 +230,8 @@ class PlaneEnclosure(Enclosure):
         self.spin = np.array([tension, -root, -(cos(psi) ** 2 + turning * sin(psi) ** 2), ends.sum()])
         self.spin_terms = np.append(np.abs(self.spin[:3]), np.abs(ends).sum())
         self.mass = np.array([0.0, 0.0, 1.0, tip.inertia])
-        # Rounding error of a sum of as many products as the rule has points, relative to its terms: doubled
-        # for the factors, and again for the eigensolution.
+        # Rounding error of a sum with as many products as the Gauss rule has points, relative to its terms:
+        # doubled for the factors, and again for the eigensolution.
         self.unit = 4 * _EPS * (self.part.quadrature.xi.size + len(self.stiffness))
 
     def _tail(self, coefficients: np.ndarray, terms: np.ndarray) -> float:
@@ -241,7 +244,7 @@ class PlaneEnclosure(Enclosure):
 
     @cached_property
     def _residuals(self) -> tuple[np.ndarray, float]:
-        """Integrals of products of unbalanced moments, and an upper bound of ratios of EI within a cell."""
+        """Integrals of products of unbalanced moments, and upper bounds of the ratio of EI within a cell."""
         assert self.flexibility is not None
         compliance = bound_on_cells(self.flexibility, self.part.ends)
         stiffness = bound_on_cells(self.scene.beam.bending_stiffness, self.part.ends)
@@ -249,16 +252,16 @@ class PlaneEnclosure(Enclosure):
 
     @cached_property
     def _traces(self) -> np.ndarray:
-        """Upper bounds of the traces of the four forms P_j relative to the strain energy a: shape (4,).
+        """Upper bounds of the traces of the four forms P_j (see module) over the elastic energy: shape (4,).
 
-        They are traces on all functions, of the Ritz part and of the tail together.
+        The traces are over all functions, those of the Ritz basis and those of the tail.
         """
         assert self.flexibility is not None
         return bound_traces(self.scene.beam, self.flexibility)
 
     @cached_property
     def tails(self) -> np.ndarray:
-        """Upper bounds of the four forms on the tail, relative to the strain energy a, shape (4,)."""
+        """Upper bounds (4,) of the forms P_j over the energy, for functions outside the Ritz basis."""
         head = [np.trace(np.linalg.solve(self.stiffness, form)) for form in self.forms]
         return np.maximum(self._traces - head, 0) + self.unit * self._traces
 
@@ -284,7 +287,7 @@ class CoupledEnclosure(Enclosure):
     scene : Scene
         A nondimensional scene in two planes without precone.
     moments : int
-        Number of bending moments of the Ritz part in each direction.
+        Number of bending moments of the Ritz basis in each direction.
     speed : float
         Nondimensional speed.
     flexibility : tuple of Profile
@@ -301,7 +304,7 @@ class CoupledEnclosure(Enclosure):
         root = float(root_motion(scene.mount, UNIT_SPEED).root_axial)
         tilting, body = tip_inertia(tip, beam.tip_twist)
         self.spin = np.array([1.0, -root, 0.0, -1.0, 1.0, 0.0, -float(d @ body @ n)])
-        # Tensors T of the slope at the tip (2, 2), per squared speed and per -z, and their absolute terms.
+        # Tensors T (2, 2) of the slope at the tip, per squared speed and per -z, and their absolute terms.
         pull = tip.mass * tip.offset * (1 + tip.offset - root)
         spin = pull * np.eye(2) + (np.outer(n, body @ n) + np.outer(body @ n, n)) / 2
         self._tensors = spin, tilting
@@ -316,24 +319,24 @@ class CoupledEnclosure(Enclosure):
         products = 2 * self.part.quadrature.xi.size
         self.unit = 4 * _EPS * (products + len(self.stiffness)) + self.part.misfit
 
-    # Bounds on the tail -----------------------------------------------------------------------------
+    # Bounds on the tail (all functions orthogonal to the Ritz basis) ------------------------------------
 
     @cached_property
     def _traces(self) -> np.ndarray:
-        """Upper bounds of the traces of tensions, mass and slope at the tip on all functions: shape (4,)."""
+        """Upper bounds of the traces of tensions, mass and tip slope over all functions: shape (4,)."""
         first, second = (bound_traces(self.scene.beam, flexibility) for flexibility in self.flexibility)
         return first + second
 
     @cached_property
     def tails(self) -> np.ndarray:
-        """Upper bounds of the forms of tensions, mass and slope at the tip on the tail, relative to a."""
+        """Upper bounds of tension, mass, tip-slope forms over energy, for functions outside the basis."""
         forms = [*self.forms[:3], self._slope @ self._slope.T]
         head = [np.trace(np.linalg.solve(self.stiffness, form)) for form in forms]
         return np.maximum(self._traces - head, 0) + self.unit * self._traces
 
     @cached_property
     def _twisting_tail(self) -> float:
-        """Upper bound of twisting by inertia on the tail, relative to a, from the norm of its kernel."""
+        """Upper bound of the form of twisting by inertia over the energy, for functions outside the basis."""
         slope = self._slope
         flexibility = slope.T @ np.linalg.solve(self.stiffness, slope) + self.tails[3] * np.eye(2)
         total = np.linalg.det(flexibility) / 2
@@ -353,9 +356,9 @@ class CoupledEnclosure(Enclosure):
 
     @cached_property
     def _residuals(self) -> np.ndarray:
-        """Integrals of products of moments that the Ritz part leaves unbalanced.
+        """Integrals of products of moments that the response of the Ritz basis leaves unbalanced.
 
-        Shape (2, n, 2, n): moments by the squared speed, and by -z.
+        The shape is (2, n, 2, n), for moments by the squared speed (softening) and by -z (mass).
         """
         n, d, (spin, inertia) = len(self.stiffness), self._direction, self._tensors
         of_spin = self.spin[:2], -np.outer(d, d), spin, self.spin[6]
@@ -377,7 +380,7 @@ class CoupledEnclosure(Enclosure):
         return self.unit * products**2 + variation * len(self.stiffness) * moments**2
 
     def _of_all(self, traces: np.ndarray, twisting: float) -> np.ndarray:
-        """Combine sizes of four forms' absolute terms (4,) and of twisting to those of all seven (7,)."""
+        """Combine the sizes of four forms (4,) and the twisting form to sizes of all seven forms (7,)."""
         return np.array([*traces[:3], traces[2], *(self._tensor_terms * traces[3]), twisting])
 
     def _sizes(self) -> np.ndarray:
@@ -386,7 +389,7 @@ class CoupledEnclosure(Enclosure):
 
 
 def _search_bound(form: Callable, mass: np.ndarray, k: int, z: float, side: int) -> float:
-    """Move z until the k-th eigenvalue (from 0) of form(z) proves a lower (side -1) or upper (1) bound."""
+    """Change z until the k-th eigenvalue (from 0) of form(z) proves a lower (side -1) or upper (1) bound."""
     step = 0.0
     for _ in range(_MOST_STEPS):
         matrix = form(z)

@@ -1,17 +1,17 @@
-"""Trial functions with exactly known residuals, for the theorem of `beamdyn.modes.residual_bound`.
+"""Trial functions with exactly known residuals, for the theorem in `beamdyn.modes.residual_bound`.
 
-Their curvatures are piecewise polynomials on cells: polynomials on each segment of a beam of few segments,
-bending moments over the stiffness on a beam of many or where it almost vanishes.  So are all moments that
-their loads cause; products of these with the properties are integrated exactly.  In the energy a the
-functions are orthonormal, whatever the stiffness, so that rounding has the size of the eigenvalues and not of
-the largest stiffness over the least.
+Their curvatures are piecewise polynomials on cells: polynomials on each segment of a beam with few segments;
+bending moments divided by the stiffness for many segments, or if the stiffness almost vanishes.  All moments
+by their loads are piecewise polynomials, too; products of these with the properties are integrated exactly.
+The functions are orthonormal in the energy a, whatever the stiffness, so that rounding errors are relative to
+the eigenvalues and not to the largest stiffness.
 
 **Two planes** that the twist or the mount couples: the curvature is a vector and the stiffness D(x) a tensor
-that the twist beta(x) turns.  On cells the curvatures *in the axes of the section* are polynomials, so that
-the energy and the moments D p need no cosine of the twist.  Only the curvatures along the fixed directions
-e1, e2 do, and moments in the axes of the section.  There cosine and sine stand for polynomials of such a
-degree that the beam for which they are exact has a stiffness within (1 -+ `misfit`) D(x): see `twist_degree`.
-An array (n, 2, N) has components along e1, e2 or, where it says so, in the axes of the section.
+that is rotated by the twist beta(x).  On cells the curvatures *in the axes of the section* are polynomials,
+so that the energy and the moments D p contain no cosine of the twist.  Only curvatures along the fixed
+directions e1, e2, and moments in the axes of the section, contain it.  Polynomials replace its cosine and
+sine; they are exact for a beam whose stiffness is within (1 -+ `misfit`) D(x): see `twist_degree`. An array
+(n, 2, N) has components along e1, e2 or, where it says so, in the axes of the section.
 """
 
 from __future__ import annotations
@@ -34,21 +34,23 @@ from beamdyn.modes.flexibility import bound_on_cells
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import ONE, Profile
 
-MOST_MOMENTS = 100  # largest number of moments in each of two coupled directions: two seconds of a core
-_FEW_SEGMENTS = 6  # segments up to which polynomials on each need fewer functions than moments over the beam
-_SAMPLES = 32  # samples of the stiffness on a segment, which only decide about the basis
-_STEEP = 300.0  # ratio of two samples of the stiffness beyond which cells must be graded
-# Largest number of functions on all segments together: solving their eigenproblem takes a tenth of a second.
+# Largest number of moments in each of two coupled directions: two seconds of computing time.
+MOST_MOMENTS = 100
+# Number of segments up to which piecewise polynomials need fewer functions than moments over the beam.
+_FEW_SEGMENTS = 6
+_SAMPLES = 32  # number of stiffness samples on a segment, used only for the choice of the basis
+_STEEP = 300.0  # ratio of two stiffness samples above which cells must be graded
+# Largest number of functions on all segments together: their eigenproblem takes a tenth of a second.
 _MOST_IN_ALL = 500
-_LARGEST_TURN = 0.25  # largest turn of a section from the middle of its cell [rad]
-_MISFIT = 1e-14  # relative error of the stiffness when polynomials replace cosine and sine of the twist
-_MOST_DEGREE = 40  # highest degree of the polynomials, in the twist, that replace its cosine and sine
+_LARGEST_TURN = 0.25  # largest rotation of a section relative to the middle of its cell [rad]
+_MISFIT = 1e-14  # relative error of the stiffness if polynomials replace cosine and sine of the twist
+_MOST_DEGREE = 40  # highest degree of the polynomials that replace cosine and sine of the twist
 
 _CONDITIONS = CLAMPED._replace(stiffness="bending_stiffness")
 
 
 class RitzPart(ABC):
-    """Trial functions on a clamped beam, orthonormal in energy, in one plane (n, N) or two (n, 2, N).
+    """Trial functions on a clamped beam, orthonormal in elastic energy, in one plane (n, N) or two (n, 2, N).
 
     Subclasses define the nondimensional `beam`.
     """
@@ -63,15 +65,15 @@ class RitzPart(ABC):
     @cached_property
     @abstractmethod
     def quadrature(self) -> ArcQuadrature:
-        """Gauss rule that is exact for products of two moments, and for lower products with properties."""
+        """Gauss rule, exact for products of two moments and of lower-degree polynomials with properties."""
 
     @cached_property
     @abstractmethod
     def bending(self) -> np.ndarray:
-        """Curvatures of the functions at the points of the rule, along fixed directions."""
+        """Curvatures of the functions at the Gauss points, along fixed directions."""
 
     def at(self, profile: Profile, rule: ArcQuadrature | None = None) -> np.ndarray:
-        """Evaluate a property at the points of the quadrature, or of another rule on the cells: (N,)."""
+        """Evaluate a property at the Gauss points of `quadrature`, or of another rule on the cells: (N,)."""
         points = (rule or self.quadrature).cells.points
         return profile.split(self.ends.tolist()).at_points(points).ravel()
 
@@ -82,22 +84,22 @@ class RitzPart(ABC):
 
     @cached_property
     def slope(self) -> np.ndarray:
-        """Slopes of the functions at the points and at the tip: shape (..., N + 1)."""
+        """Slopes of the functions at the Gauss points and at the tip: shape (..., N + 1)."""
         return self.quadrature.integrate(self.bending)
 
     @cached_property
     def deflection(self) -> np.ndarray:
-        """Deflections of the functions at the points and at the tip: shape (..., N + 1)."""
+        """Deflections of the functions at the Gauss points and at the tip: shape (..., N + 1)."""
         return self.quadrature.integrate(self.slope[..., :-1])
 
     @cached_property
     def centre(self) -> np.ndarray:
-        """Deflections of the tip body's centre of mass, per function."""
+        """Deflections of the tip body's centre of mass, for each function."""
         return self.deflection[..., -1] + self.tip.offset * self.slope[..., -1]
 
     @cached_property
     def loads(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Tension per squared speed, per root acceleration, and mass per length at the points of the rule."""
+        """Tension per squared speed, per root acceleration, and mass per length at the Gauss points."""
         n_a, n_b = axial_tension(self.beam)
         return self.at(n_b), self.at(n_a), self.at(self.beam.mass_per_length)
 
@@ -108,7 +110,7 @@ class RitzPart(ABC):
         return (flat * scale) @ flat.T
 
     def from_tip(self, values: np.ndarray, rule: ArcQuadrature | None = None) -> np.ndarray:
-        """Integrate from each point to the tip, keeping the digits of small values there: shape (..., N)."""
+        """Integrate from each point to the tip, with small relative errors also near the tip: (..., N)."""
         cells = (rule or self.quadrature).cells
         inwards = ArcQuadrature(Cells(-cells.ends[::-1], cells.points))
         return inwards.integrate(values[..., ::-1])[..., -2::-1]
@@ -118,23 +120,23 @@ class RitzPart(ABC):
 
 
 def most_functions(beam: Beam) -> int:
-    """Return the largest number of functions of a Ritz part: polynomials per segment, or moments in all."""
+    """Return the largest number of functions of a basis: polynomials per segment, or moments in total."""
     most = MOST_FUNCTIONS - _extra_degrees(beam)
     return most if _bends_by_moments(beam) else min(most, _MOST_IN_ALL // segments_with_functions(beam))
 
 
 def segments_with_functions(beam: Beam) -> int:
-    """Count the segments that have functions of their own."""
+    """Count the segments that have separate functions."""
     return 1 if _bends_by_moments(beam) else len(beam.breakpoints) - 1
 
 
 def basis(beam: Beam, functions: int) -> Ritz:
-    """Choose the assumed modes of a Ritz part with a number of functions, per segment or of moments."""
+    """Choose the basis with a number of functions: per segment, or in total for bending moments."""
     return Ritz(functions, "moments" if _bends_by_moments(beam) else "legendre")
 
 
 def _bends_by_moments(beam: Beam) -> bool:
-    """Whether moments serve better than polynomial curvatures: many segments, or very small stiffness."""
+    """Return whether moments suit a beam better than polynomials: many segments, or very small stiffness."""
     if len(beam.breakpoints) - 1 > _FEW_SEGMENTS:
         return True
     stiffness = beam.bending_stiffness.at_points(_SAMPLES)
@@ -142,7 +144,7 @@ def _bends_by_moments(beam: Beam) -> bool:
 
 
 def _extra_degrees(beam: Beam) -> int:
-    """Find the degree by which moments, of loads or of the curvature, exceed the curvature's polynomials."""
+    """Find the excess of the polynomial degree of moments over the degree of the curvature."""
     return max(beam.mass_per_length.degree + 4, beam.bending_stiffness.degree)
 
 
@@ -180,12 +182,12 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def quadrature(self) -> ArcQuadrature:
-        """Gauss rule that is exact for products of two moments, and for lower products with properties."""
+        """Gauss rule, exact for products of two moments and of lower-degree polynomials with properties."""
         return ArcQuadrature(Cells(self.ends, self._degree + _extra_degrees(self.beam) + 1))
 
     @cached_property
     def bending(self) -> np.ndarray:
-        """Curvatures of the functions at the points, shape (n, N)."""
+        """Curvatures of the functions at the Gauss points, shape (n, N)."""
         given = self._ritz.spaces(self.beam).functions(_CONDITIONS).samples[2]
         on_cells = given.reshape(len(given), len(self.ends) - 1, -1)
         series = on_cells @ legendre_series(on_cells.shape[-1])[: self._degree + 1].T
@@ -203,12 +205,12 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """Energies of pairs of functions, shape (n, n): the unit matrix to rounding."""
+        """Elastic energies of pairs of functions, shape (n, n): the unit matrix up to rounding."""
         return self.gram(self.bending, self.at(self.beam.bending_stiffness))
 
     @cached_property
     def forms(self) -> np.ndarray:
-        """Matrices of the four forms, shape (4, n, n)."""
+        """Matrices of the four forms (tension by speed, by root acceleration, mass, tip slope): (4, n, n)."""
         tension_b, tension_a, mass = self.loads
         slope, at_tip, centre = self.slope[:, :-1], self.slope[:, -1], self.centre
         inertia = self.gram(self.deflection[:, :-1], mass) + self.tip.mass * np.outer(centre, centre)
@@ -218,7 +220,7 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """Bending moments at the points by the four loads of each function, shape (4, n, N)."""
+        """Bending moments at the Gauss points by the four loads of each function, shape (4, n, N)."""
         tension_b, tension_a, mass = self.loads
         slope, (xi, lumped) = self.slope[:, :-1], self.beam.lumps
         inertia = self.from_tip(self.from_tip(mass * self.deflection[:, :-1]))
@@ -228,7 +230,7 @@ class PlaneRitzPart(RitzPart):
         return np.array([*by_tension, inertia, np.broadcast_to(self.slope[:, -1:], slope.shape)])
 
     def residuals(self, compliance: np.ndarray) -> np.ndarray:
-        """Integrate products of unbalanced moments with a compliance of cells (c,): shape (4, n, 4, n).
+        """Integrate products of unbalanced moments, weighted by a compliance of cells (c,): (4, n, 4, n).
 
         The moment for the load j of the function i is F_ji - EI p, where p is the curvature of the Ritz
         response to the load, by functions that are orthonormal in energy.
@@ -244,7 +246,7 @@ class PlaneRitzPart(RitzPart):
 
 @dataclass(frozen=True)
 class CoupledRitzPart(RitzPart):
-    """Trial functions in two planes, orthonormal in energy to interpolation errors.
+    """Trial functions in two planes, orthonormal in elastic energy up to interpolation errors.
 
     Curvatures are caused by smooth bending moments in either direction.
 
@@ -283,7 +285,7 @@ class CoupledRitzPart(RitzPart):
         return ends
 
     def _turns(self, ends: np.ndarray) -> np.ndarray:
-        """Bound the angles by which sections are turned from the middle of their cell, shape (c,)."""
+        """Bound the angles by which sections are rotated relative to the middle of their cell, shape (c,)."""
         parts = self._twist.split(ends.tolist())
         varying = tuple((0.0, *row[1:]) for row in parts.coefficients)
         return bound_on_cells(Profile(parts.breakpoints, varying), ends)
@@ -310,7 +312,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def _nodes(self) -> ArcQuadrature:
-        """Nodes through which curvatures are interpolated."""
+        """Nodes at which curvatures are interpolated."""
         return ArcQuadrature(Cells(self.ends, NODES))
 
     @cached_property
@@ -322,11 +324,11 @@ class CoupledRitzPart(RitzPart):
         return ArcQuadrature(Cells(self.ends, NODES - 1 + max(of_loads, of_stiffness) + 1))
 
     def _both_at(self, rule: ArcQuadrature) -> np.ndarray:
-        """Evaluate both bending stiffnesses at the points of a rule, shape (2, N)."""
+        """Evaluate both bending stiffnesses at the points of a Gauss rule, shape (2, N)."""
         return np.array([self.at(p, rule) for p in self.stiffnesses])
 
     def _turned(self, values: np.ndarray, rule: ArcQuadrature, sign: int) -> np.ndarray:
-        """Turn components (n, 2, N) into the axes of the section (sign -1), or from there (1)."""
+        """Transform components (n, 2, N) to the axes of the section (sign -1), or back to fixed axes (1)."""
         beta = self.at(self._twist, rule)
         c, s = np.cos(beta), sign * np.sin(beta)
         first, second = values[:, 0], values[:, 1]
@@ -336,7 +338,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def curvature(self) -> np.ndarray:
-        """Curvatures of the functions in the axes of the section at the points, shape (n, 2, N)."""
+        """Curvatures of the functions in the axes of the section at the Gauss points, shape (n, 2, N)."""
         nodes = self._nodes
         moments = self._all_moments
         given = self._turned(moments, nodes, -1) / self._both_at(nodes)
@@ -348,9 +350,9 @@ class CoupledRitzPart(RitzPart):
 
     @property
     def _all_moments(self) -> np.ndarray:
-        """Bending moments along e1, e2 at the nodes (m, 2, N): polynomials, and moments that these cause.
+        """Bending moments along e1, e2 at the nodes (m, 2, N): polynomials, and by inertia and tension.
 
-        The latter are by inertia and by tension of a beam that vibrates in the first polynomials' shapes.
+        The latter act in a beam that vibrates in the shapes caused by the first polynomials.
         """
         first, nodes = self.number // 3, self._nodes
         count = self.number - 2 * first
@@ -366,18 +368,18 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def bending(self) -> np.ndarray:
-        """Curvatures of the functions along e1, e2 at the points, shape (n, 2, N)."""
+        """Curvatures of the functions along e1, e2 at the Gauss points, shape (n, 2, N)."""
         return self._turned(self.curvature, self.quadrature, 1)
 
     # Forms and loads ------------------------------------------------------------------------------
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """Energies of pairs of functions, (n, n): the unit matrix to interpolation and rounding errors."""
+        """Elastic energies of pairs of functions, (n, n): the unit matrix up to small errors."""
         return self.gram(self.curvature, self._both_at(self.quadrature))
 
     def forms(self, direction: np.ndarray) -> np.ndarray:
-        """Build the forms of tensions N_B, N_A, mass, and mass along a direction (2,): (4, n, n)."""
+        """Build the forms of tension by speed, by root acceleration, mass, directed mass: (4, n, n)."""
         tension_b, tension_a, mass = self.loads
         slope, along = self.slope[..., :-1], direction @ self.deflection
         inertia = self.gram(self.deflection[..., :-1], mass) + self.tip.mass * self.centre @ self.centre.T
@@ -387,14 +389,14 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def twisting(self) -> np.ndarray:
-        """Matrix of the form of twisting by inertia, int (v' w'' - v'' w'), shape (n, n)."""
+        """Matrix of the form of twisting by inertia, int (v' w'' - v'' w') dx, shape (n, n)."""
         across = np.stack([-self.bending[:, 1], self.bending[:, 0]], axis=1)
         form = -np.tensordot(self.slope[..., :-1] * self.quadrature.weights, across, ((1, 2), (1, 2)))
         return (form + form.T) / 2
 
     @cached_property
     def twisting_size(self) -> float:
-        """Norm of all functions' slopes times the norm of their curvatures, a size for rounding errors."""
+        """Norm of all slopes times the norm of all curvatures, to which rounding errors are relative."""
         sizes = (np.sqrt(np.trace(self.gram(u, np.ones(1)))) for u in (self.slope[..., :-1], self.bending))
         return float(math.prod(sizes))
 
@@ -403,9 +405,9 @@ class CoupledRitzPart(RitzPart):
     ) -> np.ndarray:
         """Compute bending moments by loads minus those by the Ritz response, in section axes: (n, 2, N).
 
-        Loads are parts of the tensions N_B, N_A (2,), a tensor (2, 2) times the mass, another times the slope
-        at the tip, and a part of the twisting by inertia.  Row i of `answer` (n, n) has the coefficients of
-        the functions in the response to the loads of function i.
+        Loads are multiples of the tensions N_B, N_A (2,), a tensor (2, 2) times the mass, another one times
+        the slope at the tip, and a multiple of the twisting by inertia.  Row i of `answer` (n, n) contains
+        the coefficients of the response to the loads of function i.
         """
         (tension_b, tension_a, mass), rule, at_tip = self.loads, self.quadrature, self.slope[..., -1]
         shear = self.from_tip(mass * (inertia @ self.deflection[..., :-1]))
@@ -419,17 +421,17 @@ class CoupledRitzPart(RitzPart):
         return self._turned(fixed, rule, -1) - np.tensordot(answer, own, 1)
 
     def residuals(self, unbalanced: np.ndarray) -> np.ndarray:
-        """Integrate products of moments (m, 2, N) with the upper bounds of the compliance."""
+        """Integrate products of moments (m, 2, N), weighted by the upper bounds of the compliance."""
         return self.gram(unbalanced, np.repeat(self.compliance, self.quadrature.cells.points, axis=1))
 
 
 def twist_degree(turn: float, ratio: float) -> tuple[int, float]:
-    """Find the degree of polynomials for cosine and sine of the twist, and their error of the stiffness.
+    """Find the degree of polynomials for cosine and sine of the twist, and the error of the stiffness.
 
     For an angle of at most `turn` from the middle of its range, interpolation in Chebyshev points has an
-    error of at most e = turn^(m+1) / (2^m (m+1)!) in each.  The matrix that turns curvatures is then
-    R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy
-    E grows at most by the root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
+    error of at most e = turn^(m+1) / (2^m (m+1)!) in each. The matrix that rotates curvatures is then R (1 +
+    E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy E grows at
+    most by the root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
     """
     for degree in range(_MOST_DEGREE):
         error = turn ** (degree + 1) / (2**degree * math.factorial(degree + 1))

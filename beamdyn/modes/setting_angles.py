@@ -1,4 +1,4 @@
-"""Setting angles at which the first frequency's locus over speed changes between falling and rising."""
+"""Setting angles at which the trend of the first frequency over speed changes between falling and rising."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 
-_LINEAR = "the limits are of linear theory: of a bent beam the loci have another shape at every angle"
+_LINEAR = "the limits are those of linear theory: of a bent beam the loci have another shape at every angle"
 # Rounding error of an angle [rad]: the cosine of a limit is a quotient of small differences.
 _ROUNDING = 1e-12
 
@@ -35,16 +35,16 @@ _ROUNDING = 1e-12
 class SettingAngleLimits(JudgedByRepeating):
     """Setting angles between which the first frequency rises and then falls with speed (unpacks as two).
 
-    Below `first` the frequency falls from rest on; between both it rises and then falls below the top speed;
-    above `second` it rises up to the top speed.
+    Below `first` the frequency falls from speed 0 on; between both angles it rises and then falls before the
+    top speed; above `second` it rises up to the top speed.
 
-    `model_error` (2,) and `left_out`, computed when asked for, are what the physics left out would change in
-    the two angles.
+    `model_error` (2,) and `left_out`, computed at their first use, estimate how much neglected physical
+    effects change the two angles.
 
     Parameters
     ----------
     first, second : float
-        The limits [rad]; nan where there is none.
+        The limits [rad]; nan if there is none.
     error : float
         Estimated error of both angles [rad].
     top_speed : float
@@ -78,7 +78,7 @@ class SettingAngleLimits(JudgedByRepeating):
     counted = "limit"
 
     def judged(self, found: SettingAngleLimits) -> np.ndarray:
-        """Select the two angles whose model error is stated: shape (2,)."""
+        """Return the two angles for which the model error is stated: shape (2,)."""
         return np.array([*found])
 
     @property
@@ -103,15 +103,15 @@ def setting_angle_limits(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> SettingAngleLimits:
-    """Compute setting angles past which the first frequency stops falling, and past which it only rises.
+    """Compute the setting angles above which the first frequency stops falling with speed, and only rises.
 
     Parameters
     ----------
     scene : Scene
-        The scene; its setting angle, motion, damping and stretch are not used.  In two planes the first
-        frequency is the lowest of both.
+        The scene; its setting angle, motion, damping and stretch are not used.  With two planes, the first
+        frequency is the lower one.
     top_speed : float
-        Top speed [rad/s]; inf only with a basis of given size, because the limits then depend on it.
+        Top speed [rad/s]; inf only with a basis of given size, because the limits then depend on the basis.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     tolerance : float, optional
@@ -124,11 +124,11 @@ def setting_angle_limits(
     Raises
     ------
     ValueError
-        If the top speed is not positive, or infinite without a basis of given size, or the root is a hinge.
+        If the top speed is not positive, or infinite without a basis of given size, or if the root is hinged.
 
     References
     ----------
-    Lee and Yoo (2019), section 3.3; by the slopes of Southwell (1921), as docs/conventions.md has them.
+    Lee and Yoo (2019), section 3.3; with slopes by Southwell (1921), see docs/conventions.md.
 
     Examples
     --------
@@ -148,7 +148,7 @@ def setting_angle_limits(
             bound = "the first frequency of a beam on a hinge is 0 at rest, and neither rises nor falls"
             raise InvalidValue(name, 0.0, bound, "give a spring", "N m/rad")
     if scene.mount.precone:
-        bound = "only a beam that points outward has a precone, and the limits are setting angles of others"
+        bound = "only an outward beam has a precone, but the limits are setting angles of other beams"
         raise InvalidValue("precone", scene.mount.precone, bound, "leave it out", "rad")
     bounded = isinstance(discretization, str) or not isinstance(top_speed, float) or top_speed != np.inf
     if bounded:
@@ -163,12 +163,12 @@ def setting_angle_limits(
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
     model = model_to_tolerance(tangential, discretization, speeds, 1, tolerance)
     first, second = _limits(model, top_speed)
-    error, coarse = _ROUNDING, model.coarser  # at infinite speed the limits are those of the given basis
+    error, coarse = _ROUNDING, model.coarser  # at infinite speed the limits are exact for the given basis
     if bounded:
         of_coarse, of_coarsest = (np.array(_limits(each, top_speed)) for each in (coarse, coarse.coarser))
         errors = error_of_finest(THREE_DISCRETIZATIONS, (first, second) - of_coarse, of_coarse - of_coarsest)
         error += float(np.nanmax([*errors, 0.0]))
-    deflection = np.nan  # deflection over the length, at the second limit
+    deflection = np.nan  # ratio of deflection to length, at the second limit
     if bounded and not np.isnan(second):
         mounted = replace(scene, mount=replace(scene.mount, setting_angle=second))
         tip, _ = static_load(Model(mounted, model.discretization), speeds)
@@ -186,13 +186,13 @@ def setting_angle_limits(
 
 
 def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
-    """Compute both limits [rad] from the matrix that multiplies the squared speed, A - cos(setting angle) B.
+    """Compute both limits [rad] from the matrix A - cos(setting angle) B that multiplies the squared speed.
 
-    B is the radius of the root times the stiffness by the tension that a unit acceleration of the root
-    causes.
+    B is the radius of the root times the stiffness due to the tension by a unit root acceleration.
     """
     pencil, stiffness = tangential.solver.pencil, tangential.equations.matrices[0]
-    by_tension = stiffness.get("root_axial", np.zeros_like(pencil.K2))  # the matrix "root_axial" is minus KGA
+    # The matrix "root_axial" is minus K_GA, the stiffness by tension.
+    by_tension = stiffness.get("root_axial", np.zeros_like(pencil.K2))
     A, B = pencil.K2, -tangential.scene.mount.radius * by_tension
     v = tangential.solver.solve(np.zeros(1), 1).vector[0, :, 0]
     first = _arccos(float(v @ A @ v), float(v @ B @ v))
@@ -200,7 +200,7 @@ def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
         return first, _arccos(float(eigh(A, B, eigvals_only=True)[0]), 1.0) if B.any() else np.nan
 
     def slope(phi: float) -> float:
-        """Compute the slope of the first squared frequency over squared speed, at the top speed."""
+        """Compute the derivative of the first squared frequency by the squared speed, at the top speed."""
         K2 = A - np.cos(phi) * B
         v = Solver(replace(pencil, K2=K2)).solve(np.array([top_speed]), 1).vector[0, :, 0]
         return float(v @ K2 @ v)

@@ -1,1 +1,1 @@
-"""Studies: answers of many designs at once, over all combinations of inputs of a scene."""
+"""Studies: results for many designs at once, such as all combinations of given inputs of a scene."""

@@ -1,4 +1,4 @@
-"""Answers of many designs as arrays, put together from parts that are computed in any order."""
+"""Results (answers) of many designs as arrays, assembled from parts that are computed in any order."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ import numpy as np
 
 from beamdyn.common.results.statements import after
 
-REFUSED = "refused"  # status of a design without an answer
+REFUSED = "refused"  # status of a design without a result
 NO_ANSWERS = (
     *(REFUSED, "failed", "not found", "divergence", "flutter"),
     *("parametric instability", "past the critical speed", "turns freely about the root"),
-)  # statuses that mean that there is no answer
+)  # statuses of designs without a result
 
 
 @dataclass(frozen=True)
 class Caution:
-    """A caution about the answers of some designs, worded for the worst of them.
+    """Warning about the results of some designs, formulated for the worst of them.
 
     Parameters
     ----------
     kind : str
-        Subject: cautions of one kind are put together.
+        Subject; warnings of one kind are merged.
     count : int
         Number of designs.
     weight : float
-        Size by which the worst of the cautions of one kind is chosen.
+        Severity, by which the worst of the warnings of one kind is chosen.
     said : str
-        What is said of the worst design, after the number of designs; a statement where programs may ask for
-        its kind.
+        Text about the worst design, which follows the number of designs; a statement object if programs may
+        query its kind.
     """
 
     kind: str
@@ -42,18 +42,18 @@ class Caution:
 
 @dataclass(frozen=True)
 class DesignAnswers:
-    """Answers of R designs at S speeds each, with k numbers per answer.
+    """Results of R designs at S speeds each, with k numbers per result.
 
     Parameters
     ----------
     value, error : ndarray, shape (R, S, k)
-        Answers, nan where there is none, and their estimated relative errors.
+        Results, nan where there is none, and their estimated relative errors.
     status : ndarray of str, shape (R, S, k)
-        Status of each answer.
+        Status of each result.
     cautions : tuple of Caution
-        Limits of the answers.
+        Warnings about the results.
     method : str
-        Method by which the answers were found.
+        Method of computation.
     """
 
     value: np.ndarray
@@ -63,12 +63,12 @@ class DesignAnswers:
     method: str
 
 
-Place = tuple[slice, slice]  # rows of designs and columns of speeds that a part fills
+Place = tuple[slice, slice]  # rows (designs) and columns (speeds) that a part of the results fills
 
 
 @dataclass
 class AnswerArrays:
-    """Answers of all N designs at S speeds each; `put` takes them part by part.
+    """Results of all N designs at S speeds each; `put` stores them part by part.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class AnswerArrays:
     Attributes
     ----------
     value, error : ndarray, shape (N, S, k)
-        Answers and their estimated relative errors, as in `DesignAnswers`.
+        Results and their estimated relative errors, as in `DesignAnswers`.
     """
 
     shape: tuple[int, int, int]
@@ -89,11 +89,11 @@ class AnswerArrays:
 
     def __post_init__(self) -> None:
         self.value, self.error = np.full(self.shape, np.nan), np.full(self.shape, np.inf)
-        # Index of each answer's status: the text itself would take forty times the memory.
+        # Index of each result's status: the text itself would take forty times the memory.
         self._codes = np.zeros(self.shape, dtype=np.uint8)
 
     def put(self, place: Place, part: DesignAnswers) -> None:
-        """Store the answers of one part at its place in the arrays."""
+        """Store one part of the results at its rows and columns in the arrays."""
         self.value[place], self.error[place] = part.value, part.error
         words, codes = np.unique(part.status, return_inverse=True)
         numbers = np.array([self._words.setdefault(word, len(self._words)) for word in words.tolist()])
@@ -102,7 +102,8 @@ class AnswerArrays:
             self._methods.get(part.method, 0) + part.value.shape[0] * part.value.shape[1]
         )
         for caution in part.cautions:
-            # Cautions of one kind are counted together; the worst is kept, and of equally bad ones the first.
+            # Warnings of one kind are counted together; only the worst is kept, or the first of equally bad
+            # ones.
             noted = self._cautions.setdefault(caution.kind, [])
             noted.append((place[0].start, place[1].start, caution))
             worst = min(noted, key=lambda each: (-each[2].weight, *each[:2]))
@@ -111,29 +112,29 @@ class AnswerArrays:
 
     @property
     def status(self) -> np.ndarray:
-        """Statuses of all answers, as text: shape (N, S, k)."""
+        """Statuses of all results, as text: shape (N, S, k)."""
         return np.array([*self._words] or [""])[self._codes]
 
     def count(self, word: str) -> int:
-        """Return the number of answers that have a given status."""
+        """Return the number of results that have a given status."""
         return int((self._codes == self._words[word]).sum()) if word in self._words else 0
 
     @property
     def method(self) -> str:
-        """The methods by which answers were found, separated by semicolons, the most frequent first."""
+        """Methods of computation, separated by semicolons, the most frequent first."""
         return "; ".join(sorted(self._methods, key=lambda method: (-self._methods[method], method)))
 
     def warnings(self) -> Iterator[str]:
-        """Yield a sentence for each kind of caution: how many designs it concerns, and the worst of them."""
+        """Yield a sentence for each kind of warning, with the number of designs and the worst of them."""
         total = self.shape[0] * self.shape[1]
         for kind in sorted(self._cautions):
             yield after(f"at {self._counts[kind]} of {total} designs", self._cautions[kind][0][2].said)
 
 
 def caution_where(which: Any, kind: str, size: np.ndarray | float, said: str) -> Iterable[Caution]:
-    """Make a caution for the selected designs and speeds (R, S), with the largest `size` among them.
+    """Build a warning about the selected designs and speeds (R, S), with the largest `size` among them.
 
-    Nothing is yielded if none is selected.
+    Nothing is yielded if no design is selected.
     """
     if which.any():
         yield Caution(kind, int(which.sum()), float(np.max(np.broadcast_to(size, which.shape)[which])), said)

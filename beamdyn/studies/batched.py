@@ -1,7 +1,7 @@
 """Frequencies and critical speeds of many similar designs, by batched eigenproblems.
 
-Designs are solved together in bases of growing size: each in the smallest basis that a call for that design
-alone would choose.
+Designs are solved together in bases of increasing size; each design in the smallest basis that would be
+chosen if it were solved alone.
 """
 
 from __future__ import annotations
@@ -29,35 +29,35 @@ from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, warn_of_stati
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
 from beamdyn.studies.similar import PencilFamily, SimilarDesigns
 
-# Target of the error with a body at the tip: with a looser one, bases miss modes with thin boundary layers.
+# Error target for beams with a tip body: with a larger one, bases miss modes with thin boundary layers.
 _WITH_TIP_BODY = 1e-7
-# Most entries of matrices solved in one batch, so that they fit into the processor's cache.
+# Largest number of matrix entries solved in one batch, so that they fit into the processor's cache.
 _ENTRIES = 300_000
 
 
 @dataclass(frozen=True)
 class BasisAnswers:
-    """Answers of R designs in one basis, and whether they are accurate enough.
+    """Results of R designs in one basis, and whether they are accurate enough.
 
     Parameters
     ----------
     arrays : tuple of ndarray, shape (R, ...)
-        The answers.
+        The results.
     met : ndarray of bool, shape (R,)
-        Whether each design's errors meet the target, or are those of rounding.
+        Whether each design's errors meet the target, or are rounding errors.
     """
 
     arrays: tuple[np.ndarray, ...]
     met: np.ndarray
 
 
-# A function that solves the designs of given rows (R,) in a basis.
+# Function that solves the designs with given indices (R,) in a basis.
 Solve = Callable[[np.ndarray, Discretization], BasisAnswers]
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """The sequence of bases in which designs are solved until they are accurate enough.
+    """Sequence of bases in which designs are solved until the results are accurate enough.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Refinement:
 
     @property
     def _target(self) -> float:
-        """Relative error to aim at; with a body at the tip, small enough to resolve its boundary layer."""
+        """Relative error to be reached; with a tip body, small enough to resolve its boundary layer."""
         target = DEFAULT_TARGET if self.tolerance is None else self.tolerance
         return target if self.reference.beam.tip is None else min(target, _WITH_TIP_BODY)
 
@@ -98,19 +98,19 @@ class Refinement:
         return self.discretization == "ritz" or isinstance(self.discretization, Ritz)
 
     def solve(self, count: int, speeds: int, solve: Solve) -> tuple[list[np.ndarray], int]:
-        """Solve designs at a number of speeds each, in finer and finer bases until all meet the target.
+        """Solve designs at several speeds each, in finer and finer bases until all meet the target.
 
         Returns
         -------
         answers : list of ndarray, shape (N, ...)
-            Answers of each design in the last basis that has any; nan where none has.
+            Results of each design in the last basis that gives any; nan if none does.
         functions : int
             Largest number of functions that was needed.
         """
         bases, answers, functions = self.bases(), list[np.ndarray](), 0
 
         def solve_finer(pending: np.ndarray) -> np.ndarray | None:
-            """Solve the pending designs in the next basis.
+            """Solve the designs that are not accurate yet in the next basis.
 
             Return the designs that miss the target, or None after the last basis.
             """
@@ -139,7 +139,7 @@ def _solve_or_halve(
 ) -> Iterator[tuple[np.ndarray, BasisAnswers]]:
     """Yield solved designs.
 
-    Leave out those whose matrices rounding makes singular, found by halving batches.
+    Designs whose matrices are singular by rounding are omitted; they are found by halving batches.
     """
     try:
         yield batch, solve(batch, basis)
@@ -167,11 +167,12 @@ class SolvedDesigns:
     Parameters
     ----------
     eigenvalue : ndarray of complex, shape (R, S, k)
-        s in exp(s t) [1/s]; nan where there are none.
+        Exponent s of the motion exp(s t) [1/s]; nan where there is none.
     error : ndarray, shape (R, S, k)
         Estimated relative error of the frequencies.
     deflection : ndarray, shape (R, S)
-        Magnitude of the static tip deflection by rotation, over the length; nan from the critical speed on.
+        Magnitude of the static tip deflection by rotation, over the length; nan at and above the critical
+        speed.
     functions : int
         Largest number of functions that was needed.
     """
@@ -185,7 +186,7 @@ class SolvedDesigns:
 def solve_frequencies(
     designs: SimilarDesigns, refinement: Refinement, speeds: np.ndarray, ratio: np.ndarray | None = None
 ) -> SolvedDesigns:
-    """Compute the eigenvalues of similar designs, each in the smallest basis that a single call would choose.
+    """Compute the eigenvalues of similar designs, each in the smallest basis it would get if solved alone.
 
     Parameters
     ----------
@@ -221,9 +222,9 @@ def solve_frequencies(
 def frequencies_of(
     designs: SimilarDesigns, refinement: Refinement, speeds: np.ndarray, ratio: np.ndarray | None
 ) -> DesignAnswers:
-    """Compute the frequencies of similar designs, with their statuses and cautions.
+    """Compute the frequencies of similar designs, with statuses and warnings.
 
-    See `solve_frequencies`.
+    For the parameters see `solve_frequencies`.
     """
     found = solve_frequencies(designs, refinement, speeds, ratio)
     s = found.eigenvalue
@@ -243,7 +244,7 @@ def frequencies_of(
 def _cautions_of_theory(
     designs: SimilarDesigns, speeds: np.ndarray, deflection: np.ndarray, status: np.ndarray
 ) -> Iterator[Caution]:
-    """Yield cautions about designs beyond linear theory, for the reasons of which `natural_modes` warns."""
+    """Yield warnings about designs beyond linear theory, for the same reasons as `natural_modes` does."""
     unstable = np.isin(status, ("divergence", "flutter")).any(axis=2)
     diverges = Statement(": the beam diverges; see status", kind=GROWING)
     yield from caution_where(unstable, "a", 0.0, diverges)
@@ -259,16 +260,16 @@ def _cautions_of_theory(
 
 
 def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
-    """Make a caution about designs that have no answer (R, S, k) because of rounding.
+    """Build a warning about designs without a result (R, S, k) because of rounding.
 
-    Nothing is yielded if all have one.
+    Nothing is yielded if all designs have a result.
     """
     said = Statement(" there is no answer: rounding of the matrices leaves no correct digit", kind=NO_ANSWER)
     return caution_where((status == REFUSED).any(axis=2), "d", 0.0, said)
 
 
 def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Caution]:
-    """Yield a caution about errors (R, S, k) above the tolerance, or above 1e-6 if none is given."""
+    """Yield a warning about errors (R, S, k) above the tolerance, or above 1e-6 if none is given."""
     worst, limit = error.max(axis=2), _LARGE_ERROR if tolerance is None else tolerance
     said: str = Statement(f" the estimated relative error is above {limit:g}: see error", kind=TOLERANCE)
     if tolerance is not None and worst.max() > tolerance:
@@ -279,7 +280,7 @@ def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Ca
 def stacks_of(
     designs: SimilarDesigns, rows: np.ndarray, basis: Discretization
 ) -> tuple[PencilStack, PencilStack, PencilFamily, np.ndarray]:
-    """Return the matrices of designs in a basis and the coarser one, their `PencilFamily` and weights."""
+    """Return the matrices of designs in a basis and in the coarser one, their `PencilFamily`, and weights."""
     family, weights = designs.family(basis), designs.weights(rows)
     stack = family.stack(weights)
     if family.coarse is not None:
@@ -291,8 +292,8 @@ def stacks_of(
 
 
 BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND = "buckles", "does not buckle", "not found"
-_SIZED_FOR = 5  # number of modes by which the first basis is sized, as for a single design
-_TO_HALF = 4  # number of steps in a sequence of bases from one to another of about half its size
+_SIZED_FOR = 5  # number of modes for which the first basis is chosen, as for a single design
+_TO_HALF = 4  # number of steps in a sequence of bases from one basis to another of about half the size
 _ROUNDING = 64 * float(np.finfo(float).eps)  # rounding error of a sum, relative to the sizes of its terms
 _BENT = "rotation bends the beam at every speed, so that it does not buckle as a straight one does"
 
@@ -300,7 +301,7 @@ _BENT = "rotation bends the beam at every speed, so that it does not buckle as a
 def critical_speeds_of(
     designs: SimilarDesigns, refinement: Refinement, single: Callable[[np.ndarray], DesignAnswers]
 ) -> DesignAnswers:
-    """Compute the critical speeds of similar designs, with their statuses and cautions.
+    """Compute the critical speeds of similar designs, with statuses and warnings.
 
     Parameters
     ----------
@@ -309,7 +310,7 @@ def critical_speeds_of(
     refinement : Refinement
         The bases; its number of modes is not used.
     single : callable
-        Function that answers designs of given rows one by one, where no proof and no basis has decided.
+        Function that solves designs with given indices one by one, if neither a proof nor a basis decides.
     """
     shape = designs.count, 1, 1
     value, error, status = np.full(shape, np.inf), np.zeros(shape), np.full(shape, DOES_NOT_BUCKLE)
@@ -333,9 +334,9 @@ def critical_speeds_of(
 def _search(
     designs: SimilarDesigns, refinement: Refinement, rows: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return critical speeds, their errors, and whether these meet the target, (R,), for given rows.
+    """Return critical speeds, their errors, and whether these meet the target, (R,), for given designs.
 
-    A basis is compared with one of about half its size, as for a single design.
+    Each basis is compared with a basis of about half the size, as for a single design.
     """
 
     def solve(batch: np.ndarray, basis: Discretization) -> BasisAnswers:
@@ -348,7 +349,7 @@ def _search(
         found = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top, designs.estimate(basis))
         speed, error, rounding = (values[:, 0, 0] for values in found)
         met = np.isfinite(speed) & (error <= np.maximum(refinement.target_of(basis), 3 * rounding))
-        # Where the beam does not buckle in this basis, `single` decides whether it ever does.
+        # If the beam does not buckle in this basis, `single` decides whether it buckles at all.
         return BasisAnswers((speed / time, error, met.astype(float)), met | np.isinf(speed))
 
     speed, error, met = refinement.solve(len(rows), 1, solve)[0] or [np.full(len(rows), np.nan)] * 3
@@ -356,29 +357,31 @@ def _search(
 
 
 def _stiffened(designs: SimilarDesigns) -> np.ndarray:
-    """Tell for which designs (N,) it is proven that rotation stiffens them against every deflection."""
+    """Return for which designs (N,) a proof exists that rotation stiffens them against every deflection."""
     two = designs.reference.physics.planes == 2
     with_inertia = [designs.tip[name] != 0 for name in ("transverse_inertia", "axial_inertia")]
     if designs.reference.beam.point_masses:
-        return np.zeros(designs.count, dtype=bool)  # single calls find out whether such a beam is stiffened
+        # Single solutions determine whether such a beam is stiffened.
+        return np.zeros(designs.count, dtype=bool)
     tilting = designs.tip["transverse_inertia"] - designs.tip["axial_inertia"]
     if not two:
         return _is_stiffened(designs, designs.in_plane, tilting)
-    apart = ~np.any(with_inertia, axis=0)  # bodies with inertia are not covered in two planes
+    # For two planes, the proof does not cover bodies with moments of inertia.
+    apart = ~np.any(with_inertia, axis=0)
     return apart & np.all([_is_stiffened(designs, np.array(c2), np.array(0.0)) for c2 in (0.0, 1.0)], axis=0)
 
 
 def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray) -> np.ndarray:
-    """Tell whether F of `beamdyn.modes.buckling` is positive without its first integral: (N,).
+    """Return whether the form F of `beamdyn.modes.buckling` is positive without its first integral: (N,).
 
     Parameters
     ----------
     designs : SimilarDesigns
         N designs.
     cos2 : ndarray
-        Squared cosine of the angle of bending from the plane of rotation.
+        Squared cosine of the angle between the bending direction and the plane of rotation.
     tilting : ndarray
-        J_e - J_1 of the tip body [kg m2].
+        Difference J_e - J_1 of the tip body's moments of inertia [kg m2].
     """
     L, a, sin2 = designs.reference.beam.length, designs.axial, 1 - cos2
     m, eps = designs.tip["mass"], designs.tip["offset"]
@@ -396,6 +399,6 @@ def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray
 
 
 def _sum(*terms: np.ndarray | float) -> np.ndarray:
-    """Add terms; return 0 where the sum is within their rounding errors."""
+    """Add terms; return 0 if the sum is within their rounding errors."""
     total, size = np.asarray(sum(terms)), np.asarray(sum(map(np.abs, terms)))
     return np.where(np.abs(total) > _ROUNDING * size, total, 0.0)

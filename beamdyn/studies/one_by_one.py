@@ -1,6 +1,6 @@
-"""Answers of designs that are analysed one at a time, and what effects left out would change in them.
+"""Results of designs that are analysed one at a time, and the changes by neglected effects.
 
-For steady responses all speeds of a design are solved at once.
+For steady responses, all speeds of a design are solved at once.
 """
 
 from __future__ import annotations
@@ -42,10 +42,10 @@ _FAILURES = (ValueError, ArithmeticError)
 
 
 class SpeedAnswer(NamedTuple):
-    """Answer of one design at S speeds: values, errors and statuses (S, k), and its warnings.
+    """Result of one design at S speeds: values, errors and statuses (S, k), and warnings.
 
-    `warned` tells at which speeds the warnings hold; at all if it is None.  `refusals` say why there is no
-    answer; `effects` returns the changes of the answer at the first speed by effects left out.
+    `warned` marks the speeds of the warnings; None means all speeds.  `refusals` state why there is no
+    result; `effects` returns the changes of the result at the first speed by neglected effects.
     """
 
     value: np.ndarray
@@ -70,11 +70,11 @@ class SingleDesigns(FieldsOnly):
     Parameters
     ----------
     question : StudyQuestion
-        Question that is asked of the designs.
+        Question that the study asks of each design.
     columns : mapping of str to ndarray, shape (N,)
         Inputs of the designs, except the speed.
     speeds : ndarray, shape (N, S)
-        Speeds of each design [rad/s]; (N, 1), and not used, where the answer belongs to no speed.
+        Speeds of each design [rad/s]; (N, 1), and not used, if the result does not depend on a speed.
     """
 
     question: StudyQuestion
@@ -82,12 +82,12 @@ class SingleDesigns(FieldsOnly):
     speeds: np.ndarray
 
     def answers(self) -> DesignAnswers:
-        """Compute the answers of the designs; a design that is refused has the reason as a caution."""
+        """Compute the results of the designs; if a design is refused, a warning gives the reason."""
         designs = rows_of(dict(self.columns)) if self.columns else [{}]
         with statements.unannounced():
             found = [_answer(self.question, *each) for each in zip(designs, self.speeds, strict=True)]
         value, error, status = (np.array([answer[i] for answer in found]) for i in range(3))
-        # Count the answers that are refused and those with warnings; the first of each is worded.
+        # Count refused results and results with warnings; only the first of each is quoted.
         refused = [int((answer.status[:, 0] == REFUSED).sum()) for answer in found]
         warned = [int(answer.is_warned.sum()) for answer in found]
         without = _caution("there is no answer", designs, refused, [answer.refusals for answer in found])
@@ -101,7 +101,7 @@ def _caution(
     counts: Sequence[int],
     reasons: Sequence[tuple[str, ...]],
 ) -> Iterator[Caution]:
-    """Yield a caution with the number of answers it concerns, the first such design, and its reason."""
+    """Yield a warning with the number of results concerned, the first such design, and the reason."""
     if any(counts):
         first = next(i for i, count in enumerate(counts) if count)
         at = statements.joined(
@@ -114,7 +114,7 @@ def _caution(
 
 
 def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
-    """Answer one design at all its speeds at once, or at one after the other where that is refused."""
+    """Compute the result of one design at all speeds together, or one by one if that is refused."""
     try:
         return _ANALYSES[question.what](question, with_numbers(question.scene, design), speeds)
     except _FAILURES as error:
@@ -158,10 +158,10 @@ def _answer_critical_speed(question: StudyQuestion, scene: Scene, _: np.ndarray)
 
 
 def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> SpeedAnswer:
-    """Find the lowest crossing of each mode with each line."""
+    """Find the lowest crossing of each mode with each excitation line."""
     found = resonance_speeds(scene, question.speed, question.modes, 1, question.discretization)
     keys, lowest = [crossing_key(each) for each in found], dict[Any, Any]()
-    for key, crossing in zip(keys, found, strict=True):  # crossings ascend in speed
+    for key, crossing in zip(keys, found, strict=True):  # crossings are in the order of ascending speed
         lowest.setdefault(key, crossing)
     there = {line_key(*each) for each in lines_of(scene, question.speed)}
     shape = 1, question.numbers
@@ -182,7 +182,7 @@ def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> S
     ]
 
     def effects() -> LeftOutEffects:
-        """Return the changes of the crossings by effects left out; nan where there is no crossing."""
+        """Return the changes of the crossings by neglected effects; nan if there is no crossing."""
         places = [keys.index(each.key) if each.key in keys else -1 for each in question.resonances]
         known = found.left_out_effects
         changes = {name: np.append(change, np.nan)[places] for name, change in known.changes.items()}
@@ -193,14 +193,14 @@ def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> S
 
 def _answer_amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
     found = steady_response(scene, np.unique(speeds), **_options_of_responses(question))
-    # The errors are relative to `bound`: convert them to absolute ones.
+    # The errors are relative to `bound`; convert them to absolute errors.
     error = (found.error + found.mode_error) * found.bound
     warned = found.is_warned if found.warnings else None
     return _at_each(speeds, found, (found.amplitude, error, np.asarray(found.status)), warned)
 
 
 def _answer_strain(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
-    """Find the largest strain in steady response: of a harvester's layers, or of the beam's stations."""
+    """Find the largest strain in steady response: of a harvester's layers, or along the beam."""
     if scene.beam.electrodes is not None:
         found = harvest(scene, np.unique(speeds), **_options_of_responses(question))
         return _at_each(speeds, found, (found.strain, found.strain_error, np.asarray(found.status)), None)
@@ -240,7 +240,7 @@ def _at_each(
     warned: np.ndarray | None,
     failed: tuple[str, ...] = (),
 ) -> SpeedAnswer:
-    """Return the answer at each given speed, from values, errors and statuses at distinct speeds."""
+    """Return the result at each given speed, from values, errors and statuses at distinct speeds."""
     order = np.unique(speeds, return_inverse=True)[1]
     value, error, status = answer
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -262,13 +262,13 @@ _ANALYSES: dict[str, Callable[[StudyQuestion, Scene, np.ndarray], SpeedAnswer]] 
 }
 
 
-# Effects left out ---------------------------------------------------------------------------------
+# Neglected effects ----------------------------------------------------------------------------------
 
 
 def left_out_of_design(
     question: StudyQuestion, scene: Scene, design: Mapping[str, float]
 ) -> LeftOutEffects | None:
-    """Find how much effects left out would change the answer of a design.
+    """Compute how much neglected effects change the result of a design.
 
     Parameters
     ----------
@@ -282,20 +282,20 @@ def left_out_of_design(
     Returns
     -------
     LeftOutEffects or None
-        Relative changes (m,) of its m numbers; None if it has no answer.
+        Relative changes (m,) of the m numbers of the result; None if there is no result.
     """
     speeds = np.array([design.get(SPEED, question.speed)])
     try:
-        with statements.unannounced():  # without warnings: the study has given them
+        with statements.unannounced():  # without warnings, as the study has issued them already
             return _ANALYSES[question.what](question, scene, speeds).effects()
     except _FAILURES:
         return None
 
 
 def join_effects(each: Sequence[LeftOutEffects | None], numbers: int) -> LeftOutEffects:
-    """Join the effects of p designs with m numbers each to one of shape (p, m).
+    """Join the changes by effects for p designs with m numbers each to arrays (p, m).
 
-    Changes are nan where a design has no effects.
+    The changes are nan if a design has none.
     """
     known = [effects for effects in each if effects is not None]
     names = dict.fromkeys(name for effects in known for name in effects.changes)

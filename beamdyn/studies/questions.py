@@ -1,4 +1,4 @@
-"""Questions that a study answers: kinds of answers, their units and options."""
+"""Questions that a study answers: kinds of results, their units and options."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from beamdyn.studies.resonance_speeds import PossibleCrossing
 
 OF_RESPONSES = 1e-5  # default tolerance of `steady_response` and `sweep`
 MODES = 3  # default number of modes for frequencies and crossings
-WINDOW = (20.0, 30.0)  # default window of time for peaks [s]
+WINDOW = (20.0, 30.0)  # default time window for peaks [s]
 
 
 What: TypeAlias = Literal[
@@ -23,20 +23,20 @@ What: TypeAlias = Literal[
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of answer that a study may give, such as natural frequencies.
+    """Kind of result that a study can compute, such as natural frequencies.
 
     Parameters
     ----------
     word : str
-        Name of one number of the answer, such as "frequency".
+        Name of one number of the result, such as "frequency".
     unit : str
-        Its unit.
+        Unit of the numbers.
     has_speed : bool
-        Whether the answer belongs to a speed, which may be varied.
+        Whether the result depends on a speed, which may be varied.
     options : tuple of str
-        Those of the options "speed", "modes" and "window" on which the answer depends.
+        Options on which the result depends, out of "speed", "modes" and "window".
     needs_motion : bool
-        Whether the answer depends on the scene's motion.
+        Whether the result depends on the scene's motion.
     """
 
     word: str
@@ -60,24 +60,24 @@ OPTIONS = {what: kind.options for what, kind in KINDS.items()}
 
 @dataclass(frozen=True)
 class StudyQuestion:
-    """The question that a study asks of every design.
+    """Question that a study asks of every design.
 
     Parameters
     ----------
     scene : Scene
-        The scene, of which inputs are replaced.
+        The scene, whose inputs are varied.
     what : str
-        Name of the answer in `KINDS`.
+        Name of the result in `KINDS`.
     speed : float
-        Speed of designs without one of their own, top speed of crossings [rad/s].
+        Speed of designs that do not vary it, and top speed of crossings [rad/s].
     modes : int
         Number of modes.
     discretization, tolerance
         As for `natural_modes`; the tolerance of responses and peaks as for `steady_response` and `sweep`.
     window : tuple of float
-        Window of time of a peak [s].
+        Time window of a peak [s].
     resonances : sequence of PossibleCrossing
-        The crossings whose speeds are the numbers of an answer, in this order.
+        Crossings whose speeds are the numbers of a result, in this order.
     """
 
     scene: Scene
@@ -91,21 +91,21 @@ class StudyQuestion:
 
     @property
     def kind(self) -> Kind:
-        """The kind of the answer, from `KINDS`."""
+        """Kind of the result, from `KINDS`."""
         return KINDS[self.what]
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """Names of the numbers of one answer, if it has several; else empty."""
+        """Names of the numbers of one result, if it has several; otherwise empty."""
         if self.what == "crossings":
             return tuple(each.label for each in self.resonances)
         return tuple(f"mode {i + 1}" for i in range(self.modes)) if self.what == "frequencies" else ()
 
     def refinement(self, reference: Scene) -> Refinement:
-        """Return the bases in which designs that are similar to a reference are solved."""
+        """Return the bases in which designs that are similar to a reference design are solved."""
         return Refinement(reference, self.modes, self.discretization, self.tolerance)
 
     @property
     def numbers(self) -> int:
-        """Number of numbers in the answer of a design."""
+        """Number of numbers in the result of a design."""
         return len(self.labels) if self.what in ("frequencies", "crossings") else 1

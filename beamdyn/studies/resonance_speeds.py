@@ -28,31 +28,31 @@ from beamdyn.studies.similar import SimilarDesigns
 
 RESONATES, NO_RESONANCE, NO_LINE = "resonates", "none up to the top speed", "not excited"
 _NOTHING_EXCITES = Statement(" nothing excites the beam", kind=EXCITATION)
-_FEW = Ritz(6)  # small basis with which a scene's excitation lines are found: they do not depend on the basis
-_PROBED = 16  # number of designs, beside the extremes, whose lines are looked for
-_MOST_EXTREMES = 4  # largest number of inputs of which all combinations of extremes are looked at
+_FEW = Ritz(6)  # small basis for finding a scene's excitation lines, which do not depend on the basis
+_PROBED = 16  # number of designs, in addition to the extremes, whose excitation lines are computed
+_MOST_EXTREMES = 4  # largest number of inputs of which all combinations of extremes are considered
 
 
 def line_key(kind: str, line: Line) -> tuple[str, float]:
-    """Return the key of a line of a kind; lines whose multiples differ by rounding have one key."""
+    """Return a sort key for a line of a kind; lines whose multiples differ by rounding share a key."""
     return kind, round(line.multiple, 9)
 
 
 def crossing_key(crossing: Crossing | PossibleCrossing) -> tuple[str, float, int]:
-    """Return the key of a crossing, found or possible: its line and its mode."""
+    """Return the key of a crossing, found or possible: line and mode."""
     return *line_key(crossing.kind, crossing.line), crossing.mode
 
 
 @dataclass(frozen=True)
 class PossibleCrossing:
-    """A mode and an excitation line that it may meet.
+    """Mode and excitation line that may cross.
 
     Parameters
     ----------
     kind : {"forced", "parametric"}
-        Kind, as of `Crossing`.
+        Kind of excitation, as for `Crossing`.
     line : Line
-        The line.
+        Excitation line.
     mode : int
         Number of the mode, from 1.
     """
@@ -63,7 +63,7 @@ class PossibleCrossing:
 
     @property
     def label(self) -> str:
-        """Label of the crossing in tables and pictures."""
+        """Label of the crossing in tables and plots."""
         return label_crossing(self.line, self.kind, self.mode)
 
     @property
@@ -79,19 +79,19 @@ class PossibleCrossing:
 
 @lru_cache(maxsize=64)
 def lines_of(scene: Scene, top: float) -> tuple[tuple[str, Line], ...]:
-    """Return kind and line of each excitation of first order of a scene, up to a top speed [rad/s]."""
+    """Return kind and line of each first-order excitation of a scene, up to a top speed [rad/s]."""
     system = periodic_system(Model(scene, _FEW).equations, scene.motion, np.array([top]))
     kinds = zip(("forced", "parametric"), excitation_lines(system, scene.motion, 1), strict=True)
     return tuple((kind, line) for kind, lines in kinds for line in lines)
 
 
 def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> tuple[PossibleCrossing, ...]:
-    """List the resonances that may occur in the designs, from the extremes and others spread evenly.
+    """List the resonances that may occur in the designs, judged by extreme and evenly spread designs.
 
     Raises
     ------
     InvalidValue
-        If nothing excites the beam in any of them.
+        If nothing excites the beam in any of these designs.
     """
     rows = np.unique([*evenly_spread(designs.count, _PROBED), *_ends_of_columns(designs)])
     probed = rows_of(designs.columns(rows)) if designs.inputs else [{}]
@@ -109,7 +109,7 @@ def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> t
 
 
 def _ends_of_columns(designs: Designs) -> list[int]:
-    """Return rows of the smallest and the largest value of each input, if inputs are varied together."""
+    """Return indices of the smallest and largest value of each input, if inputs are varied together."""
     if designs.combine == "product":
         return []
     return [int(end(each.values)) for each in designs.inputs for end in (np.argmin, np.argmax)]
@@ -122,7 +122,7 @@ def crossings_of(
     resonances: Sequence[PossibleCrossing],
     top: float,
 ) -> DesignAnswers:
-    """Compute the resonance speeds (N, 1, c) of similar designs, with their statuses and cautions.
+    """Compute the resonance speeds (N, 1, c) of similar designs, with statuses and warnings.
 
     Parameters
     ----------
@@ -131,9 +131,9 @@ def crossings_of(
     refinement : Refinement
         The bases, and the number of modes.
     scene : Scene
-        The scene that is varied: its motion and gravity excite the beam.
+        The scene that is varied; its motion and gravity excite the beam.
     resonances : sequence of PossibleCrossing
-        The c crossings that are sought.
+        The c crossings to be computed.
     top : float
         Top speed [rad/s].
     """
@@ -144,7 +144,7 @@ def crossings_of(
         time, estimate = designs.time[rows], designs.estimate(basis)
         speed, error, rounding = speeds_of_meeting(stack, coarse, multiples, modes, top * time, estimate)
         critical = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top * time, estimate)[0]
-        speed = np.where(speed < critical, speed, np.inf)  # beyond its critical speed a beam does not vibrate
+        speed = np.where(speed < critical, speed, np.inf)  # above its critical speed a beam does not vibrate
         met = np.isinf(speed) | (error <= np.maximum(refinement.target_of(basis), 3 * rounding))
         return batched.BasisAnswers((speed / time[:, None, None], error), np.all(met, axis=(1, 2)))
 
@@ -170,7 +170,7 @@ def _excited(
 ) -> np.ndarray:
     """Decide which of the resonances (N, c) have an excitation line in each design.
 
-    The lines depend on whether the load has a component in the direction of bending, and on gravity.
+    That depends on gravity, and on whether the load has a component in the direction of bending.
     """
 
     def have_line(design: Mapping[str, float]) -> np.ndarray:
@@ -187,7 +187,7 @@ def _excited(
 
 
 def _kind_of(name: str, values: np.ndarray) -> np.ndarray:
-    """Classify values (N,) of an angle or of gravity by which of their components vanish."""
+    """Classify values (N,) of an angle or of gravity by which components are zero."""
     if name == "model.gravity":
         return values != 0
     return (np.abs(np.cos(values)) > 1e-15) * 2 + (np.abs(np.sin(values)) > 1e-15)

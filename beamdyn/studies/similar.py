@@ -1,19 +1,20 @@
-"""Designs of one shape: one reference beam with other tip bodies, springs, radii, angles and speeds.
+"""Similar designs: a reference beam with different tip bodies, springs, radii, angles and speeds.
 
-Beams of one shape, whose mass per length, stiffness and length are s_m, s_k and s_L times a reference's,
-vibrate as the reference does with the tip body's mass over s_m s_L, its moments of inertia over s_m s_L^3,
-offset and radius over s_L, springs at the root times s_L/s_k, and the speed times
+Similar beams have mass per length, stiffness and length s_m, s_k and s_L times those of a reference.  They
+vibrate like the reference beam if its tip mass is divided by s_m s_L, its moments of inertia by s_m s_L^3,
+offset and radius by s_L, root springs are multiplied by s_L/s_k, and the speed by
 
     T = sqrt(s_m s_L^4 / s_k);
 
-the reference's frequencies over T are those of the beams.  Its matrices are polynomials of few quantities.
-In one plane of bending they are linear in the mass of the body, its inertia J_n, (J_e - J_1)/J_n, in
-r cos(phi), in the squared cosine of the bending angle and in the spring, quadratic in the offset.  In two
-planes they are linear in the moments of inertia, in the springs, and in the stiffness in the second direction
-over that in the first, and combinations of 1, cos(2 psi) and sin(2 psi) of the bending angle psi.  They are
-interpolated between the extremes of all designs.  Any mixture of the extremes must be a scene, but a mixed
-moment of inertia could exceed the sum of the other two.  So the body's second moments of mass are mixed
-instead: the moments of inertia are sums of two of them, and any that are not negative are those of a body.
+the frequencies of the reference, divided by T, are those of the beams.  The reference's matrices are
+polynomials of few quantities. In one plane of bending they are linear in the mass of the body, its inertia
+J_n, (J_e - J_1)/J_n, in r cos(phi), in the squared cosine of the bending angle and in the spring, quadratic
+in the offset.  In two planes they are linear in the moments of inertia, in the springs, and in the stiffness
+in the second direction over that in the first, and combinations of 1, cos(2 psi) and sin(2 psi) of the
+bending angle psi.  They are interpolated between the extremes of all designs.  Every combination of extremes
+must be a valid scene, but a moment of inertia could then exceed the sum of the other two.  So the tip body's
+second moments of mass are combined instead: moments of inertia are sums of two of them, and any nonnegative
+values belong to a possible body.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from beamdyn.scene.numbers import SCALE
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
-# Powers of an input in mass per length, bending stiffness, axial stiffness and second bending stiffness.
+# Exponents of each input in mass per length, bending, axial and second bending stiffness.
 POWERS = {
     "beam.width": (1, 1, 1, 3),
     "beam.thickness": (1, 3, 1, 1),
@@ -59,53 +60,54 @@ POWERS |= {
 _OF_TIP = ("mass", "offset", "inertia", "transverse_inertia", "axial_inertia")
 _OF_MOUNT = ("radius", "setting_angle", "bending_angle")
 _SPRINGS = ("root_stiffness", "second_root_stiffness")
-_WITHOUT_EFFECT = {"model.gravity"}  # inputs without effect on modes at a constant speed
+_WITHOUT_EFFECT = {"model.gravity"}  # inputs without effect on modes at constant speed
 SIMILAR = {
     *POWERS,
     *(f"beam.tip.{name}" for name in _OF_TIP),
     *(f"mount.{name}" for name in (*_OF_MOUNT, *_SPRINGS)),
     *_WITHOUT_EFFECT,
 }
-# Quantities on which the matrices depend as polynomials, with the degrees; on "angle" as trigonometric ones.
+# Quantities on which the matrices depend as polynomials, with the degrees; on "angle" as trigonometric
+# polynomials.
 _DEGREES = {
     **{"mass": 1, "offset": 2, "inertia": 1, "tilt": 1, "axial": 1, "in_plane": 1, "spring": 1},
     **{"along_beam": 1, "along_bending": 1, "along_axis": 1},
     **{"second_spring": 1, "second_stiffness": 1, "angle": 2},
 }
 _ANGLES = np.array([0.0, 1.0, 2.0]) * math.pi / 3  # nodes of the trigonometric interpolation [rad]
-_MOST_NODES = 512  # largest number of scenes that are assembled, which takes some seconds
-_NODES_EACH = 8  # largest number of scenes per answer: with more, single calls are as fast
-# Ratios of rounding errors to those of one clamped plane of bending, as for single scenes.
+_MOST_NODES = 512  # largest number of scenes to be assembled, which takes some seconds
+_NODES_EACH = 8  # largest number of assembled scenes per result: with more, single analyses are as fast
+# Ratios of rounding errors to those of a clamped beam in one plane, as for single scenes.
 _ROUNDING_ON_SPRINGS, _ROUNDING_OF_PLANES = 2.0, 3.0
 
 Nodes = tuple[tuple[str, tuple[float, ...]], ...]
 
 
 def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
-    """Tell whether designs of a study over some inputs are beams of one shape, to be solved in one basis."""
+    """Return whether designs of a study over some inputs are similar beams, to be solved in one basis."""
     plain = scene.physics in (Physics(), Physics(planes=2)) and not scene.chooses_physics
     lumped = bool(scene.beam.point_masses) and bool(names & POWERS.keys())
     apart = scene.physics.planes == 1 or scene.beam.second_bending_stiffness is not None
     beyond = scene.mount.precone or scene.beam.point_springs or scene.damping.damps
-    # The layers of a harvester follow the numbers of the beam, so that shapes differ.
+    # The layers of a harvester depend on the numbers of the beam, so that the designs are not similar.
     beyond = beyond or scene.beam.electrodes is not None
     return plain and apart and not beyond and not lumped and names <= SIMILAR
 
 
 @dataclass(frozen=True)
 class SimilarDesigns(FieldsOnly):
-    """N designs as one reference beam with other tip bodies, springs, radii, angles and speeds.
+    """N designs as a reference beam with different tip bodies, springs, radii, angles and speeds.
 
     Parameters
     ----------
     reference : Scene
-        The scene of a reference.
+        Scene with the reference beam.
     first : mapping of str to float
         Inputs of the reference.
     columns : mapping of str to ndarray, shape (N,)
         Inputs of each design.
     nodes : tuple of (str, tuple of float), optional
-        Values of each quantity between which the matrices are interpolated, if designs are part of a larger
+        Values of each quantity between which matrices are interpolated, if the designs belong to a larger
         set.
     """
 
@@ -126,7 +128,7 @@ class SimilarDesigns(FieldsOnly):
     # Similarity -----------------------------------------------------------------------------------
 
     def _scale(self, which: int) -> np.ndarray:
-        """Compute mass per length (0) or a stiffness (1, 2, 3) over the reference's, (N,): see `POWERS`."""
+        """Ratio of mass per length (0) or a stiffness (1, 2, 3) to the reference's, (N,): see `POWERS`."""
         scale = np.ones(self.count)
         for name, powers in POWERS.items():
             if name in self.columns:
@@ -135,24 +137,24 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def length(self) -> np.ndarray:
-        """Length of each design over the reference's, (N,)."""
+        """Ratio of the length of each design to that of the reference, (N,)."""
         given = self.columns.get("beam.length")
         return np.ones(self.count) if given is None else given / self.first["beam.length"]
 
     @cached_property
     def time(self) -> np.ndarray:
-        """Unit of time of each design over that of the reference, (N,).
+        """Ratio of the time unit of each design to that of the reference, (N,).
 
-        The reference turns at the speeds of a design times this.
+        The reference rotates at the speed of a design times this ratio.
         """
         return np.sqrt(self._scale(0) * self.length**4 / self._scale(1))
 
     @cached_property
     def strain(self) -> np.ndarray:
-        """Axial strain of each design over the reference's at the corresponding speed, (N,)."""
+        """Ratio of each design's axial strain to the reference's at the corresponding speed, (N,)."""
         return self._scale(1) / (self.length**2 * self._scale(2))
 
-    # Quantities of which the matrices are polynomials ---------------------------------------------
+    # Quantities on which the matrices depend as polynomials -------------------------------------------
 
     def _given(self, name: str, reference: float) -> np.ndarray:
         return np.asarray(self.columns.get(name, np.full(self.count, reference)), dtype=float)
@@ -162,7 +164,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def tip(self) -> dict[str, np.ndarray]:
-        """Properties (N,) of the tip body on the reference beam that represents each design, by name."""
+        """Properties (N,), by name, of the tip body on the reference beam that represents each design."""
         tip, mass = self.reference.beam.tip or TipMass(0.0), self._scale(0) * self.length
         given = {name: self._given(f"beam.tip.{name}", getattr(tip, name) or 0.0) for name in _OF_TIP}
         if tip.transverse_inertia is None:
@@ -172,9 +174,9 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def _springs(self) -> dict[str, np.ndarray]:
-        """Springs (N,) at the root of the reference beam that represents each design [N m/rad].
+        """Root springs (N,) of the reference beam that represents each design [N m/rad].
 
-        They are inf where the root is clamped.
+        They are inf if the root is clamped.
         """
         stiffer = self.length / self._scale(1)
         return {name: self._of_mount(name) * stiffer for name in _SPRINGS[: self._planes]}
@@ -185,7 +187,7 @@ class SimilarDesigns(FieldsOnly):
 
     @property
     def axial(self) -> np.ndarray:
-        """Distance of the root from the axis of rotation against the direction of the beam [m], (N,)."""
+        """Distance of the root from the rotation axis, against the direction of the beam [m], (N,)."""
         return self._radius * _cos(self._of_mount("setting_angle"), ROUNDED_ANGLE)
 
     @cached_property
@@ -208,7 +210,7 @@ class SimilarDesigns(FieldsOnly):
 
     @property
     def tilt(self) -> np.ndarray:
-        """Transverse less axial moment of inertia of the tip body over its `inertia`, (N,), from -1 to 1."""
+        """Transverse minus axial moment of inertia of the tip body over its `inertia`, (N,), -1 to 1."""
         inertia = self.tip["inertia"]
         difference = self.tip["transverse_inertia"] - self.tip["axial_inertia"]
         tilt = np.where(inertia == 0, 0.0, difference / np.where(inertia == 0, 1.0, inertia))
@@ -221,7 +223,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def across(self) -> np.ndarray:
-        """Acceleration of the root across the beam per squared speed [m] along e1 and e2, (N, planes)."""
+        """Acceleration of the root across the beam, over squared speed [m], along e1 and e2, (N, planes)."""
         size = self._radius * _cos(self._of_mount("setting_angle") - math.pi / 2, ROUNDED_ANGLE)
         angle = self._of_mount("bending_angle")
         each = (_cos(angle), -_cos(angle - math.pi / 2))[: self._planes]
@@ -234,13 +236,13 @@ class SimilarDesigns(FieldsOnly):
         return nodes_of([self]) if self.nodes is None else self.nodes
 
     def has_few_nodes(self, answers: int) -> bool:
-        """Tell whether few enough scenes have to be assembled for a number of answers."""
+        """Return whether the number of scenes to be assembled is small enough for a number of results."""
         most = min(_MOST_NODES, _NODES_EACH * answers)
         return math.prod(len(values) for _, values in self._nodes) <= most
 
     @property
     def can_be_solved(self) -> bool:
-        """Whether roots are clamped in all designs, or on finite springs in all."""
+        """Whether the roots of all designs are clamped, or all on finite springs."""
         return all(
             (v > 0).all() and (np.isfinite(v).all() or np.isinf(v).all()) for v in self._springs.values()
         )
@@ -248,12 +250,12 @@ class SimilarDesigns(FieldsOnly):
     def family(self, discretization: Discretization) -> PencilFamily:
         """Return the matrices of all designs in one basis.
 
-        They are kept for the next call, in each process.
+        Each process caches them for the next call.
         """
         return _family(self.reference, self._nodes, discretization)
 
     def estimate(self, discretization: Discretization) -> Estimate:
-        """Return how the errors of a basis are estimated."""
+        """Return the parameters of the error estimate for a basis."""
         on_springs = np.isfinite(self.reference.mount.root_stiffness)
         rounding = _ROUNDING_OF_PLANES if self._planes == 2 else _ROUNDING_ON_SPRINGS if on_springs else 1.0
         return Estimate(rounding == 1.0, parts_of_distances(self.reference, discretization), rounding)
@@ -278,7 +280,7 @@ class SimilarDesigns(FieldsOnly):
 
 
 def nodes_of(parts: Iterable[SimilarDesigns]) -> Nodes:
-    """Return the values of each quantity between which matrices of designs in parts are interpolated."""
+    """Return the values of each quantity between which matrices are interpolated, for designs in parts."""
     ends: dict[str, tuple[float, float]] = {}
     for part in parts:
         for name, values in part.quantities.items():
@@ -289,20 +291,20 @@ def nodes_of(parts: Iterable[SimilarDesigns]) -> Nodes:
 
 @dataclass(frozen=True)
 class PencilFamily:
-    """Matrices of T node scenes, between which those of designs are interpolated.
+    """Matrices of T node scenes, between which the matrices of designs are interpolated.
 
     Parameters
     ----------
     K0 : ndarray, shape (n, n) or (T, n, n)
-        Stiffness at rest: one matrix for all node scenes, or one of each.
+        Stiffness at rest, common to all node scenes or one for each.
     M, K2 : ndarray, shape (T, n, n)
-        Mass, and stiffness per squared speed.
+        Mass, and stiffness divided by the squared speed.
     loads : ndarray, shape (T, d, n)
         Loads under a unit acceleration of the root in the d directions of bending.
     tips : ndarray, shape (d, n)
-        Tip deflections in the directions of bending per coordinate.
+        Tip deflections in the directions of bending, per unit of each coordinate.
     coarse : ndarray of int, optional
-        Indices of the coordinates that the coarser basis has; None where it has other functions.
+        Indices of the coordinates that the coarser basis also has; None if it has different functions.
     """
 
     K0: np.ndarray
@@ -313,18 +315,18 @@ class PencilFamily:
     coarse: np.ndarray | None
 
     def stack(self, weights: np.ndarray) -> PencilStack:
-        """Interpolate the matrices of designs from weights (R, T)."""
+        """Interpolate the matrices of designs with weights (R, T)."""
         M, K2 = (np.tensordot(weights, A, axes=1) for A in (self.M, self.K2))
         K0 = self.K0 if self.K0.ndim == 2 else np.tensordot(weights, self.K0, axes=1)
         return PencilStack(K0, M, K2)
 
 
-# Scenes at the nodes, which each process assembles once ---------------------------------------------
+# Scenes at the nodes, assembled once in each process -----------------------------------------------
 
 
 @lru_cache(maxsize=8)
 def _node_scenes(reference: Scene, nodes: Nodes) -> list[Scene]:
-    """Make the reference beam for each combination of the values of the quantities."""
+    """Build the reference beam for each combination of the values of the quantities."""
     grids = np.meshgrid(*(values for _, values in nodes), indexing="ij")
     points = zip(*(grid.ravel().tolist() for grid in grids), strict=True)
     names = [name for name, _ in nodes]
@@ -332,7 +334,7 @@ def _node_scenes(reference: Scene, nodes: Nodes) -> list[Scene]:
 
 
 def _scene_at(reference: Scene, at: Mapping[str, float]) -> Scene:
-    """Make the reference beam with given values of the quantities."""
+    """Build the reference beam for given values of the quantities."""
     beam, axial = reference.beam, at["axial"]
     if "tilt" in at:
         inertia, angle = at["inertia"], math.acos(math.sqrt(at["in_plane"]))
@@ -369,7 +371,7 @@ def _family(reference: Scene, nodes: Nodes, discretization: Discretization) -> P
 
 @lru_cache(maxsize=8)
 def _forces(reference: Scene, nodes: Nodes) -> np.ndarray:
-    """Compute the axial strain of the node scenes per squared speed [s2], (T, points); nan if not known."""
+    """Compute the axial strain of the node scenes over squared speed [s2], (T, points); nan if unknown."""
     scenes, beam = _node_scenes(reference, nodes), reference.beam
     if beam.axial_stiffness is None:
         return np.full((len(scenes), 1), np.nan)
@@ -382,7 +384,7 @@ def _forces(reference: Scene, nodes: Nodes) -> np.ndarray:
 
 
 def _cos(angle: np.ndarray, least: float = RIGHT_ANGLE) -> np.ndarray:
-    """Compute cosines of angles [rad]; 0 where they are smaller in magnitude than `least`."""
+    """Compute cosines of angles [rad]; 0 if their magnitude is smaller than `least`."""
     c = np.cos(angle)
     return np.where(np.abs(c) < least, 0.0, c)
 
@@ -395,7 +397,7 @@ def _nodes_between(name: str, low: float, high: float) -> tuple[float, ...]:
 
 
 def _weights_of(name: str, nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Compute interpolation weights (R, p) at x (R,): functions that are 1 at one of p nodes, 0 at others."""
+    """Compute interpolation weights (R, p) at x (R,): functions that are 1 at one of p nodes, else 0."""
     if name == "angle" and len(nodes) > 1:
         return (1 + 2 * np.cos(2 * (x[:, None] - nodes))) / 3
     values = np.ones((len(x), len(nodes)))

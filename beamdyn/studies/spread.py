@@ -1,4 +1,4 @@
-"""Ranges of answers of a scene over tolerances of its inputs: first-order, worst-case and Monte Carlo."""
+"""Ranges of a scene's results over tolerances of its inputs: first-order, worst-case and Monte Carlo."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ from beamdyn.studies.sensitivities.sensitivity_result import numbers_of
 from beamdyn.studies.study import speed_of_study, study
 from beamdyn.studies.study_result import Study
 
-# Argument that the refusal of derivatives names for nonlinear equations.
+# Argument named in the error that refuses derivatives for nonlinear equations.
 _NONLINEAR = "physics.large_deflection"
 
 
 def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.SpreadInput]) -> KnownDerivatives:
-    """Compute the derivatives of an answer by inputs, as far as the equations of motion give them.
+    """Compute the derivatives of a result by inputs, where the equations of motion provide them.
 
     Parameters
     ----------
@@ -67,7 +67,8 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.Sprea
                 found = frequency_sensitivities(scene, *of_modes, tolerance=question.tolerance, **options)
     except ValueError as error:
         return KnownDerivatives(warnings=_said(error))
-    # Columns follow the order of the answers: nan for missing crossings, the lowest if there are several.
+    # Columns are in the order of the result: nan for missing crossings, the lowest crossing if there are
+    # several.
     none = np.full(len(found.inputs), np.nan)
     places = {name: k for k, name in reversed([*enumerate(found.answers)])}
     value, error = (
@@ -78,27 +79,27 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.Sprea
 
 
 def _said(refusal: ValueError) -> tuple[str, ...]:
-    """Say that all slopes come from differences of designs, and why the derivatives are refused.
+    """State that all slopes are by differences between designs, and why derivatives are not available.
 
-    Empty where the answer has no derivatives by its nature: the critical speed of a beam that does not
-    buckle, and large deflection.
+    Empty if the result cannot have derivatives: the critical speed of a beam that does not buckle, and large
+    deflection.
     """
     if isinstance(refusal, NoModelAnswer) or (
         isinstance(refusal, InvalidValue) and refusal.field == _NONLINEAR
     ):
         return ()
-    return (f"first order: its slopes are those of designs, as derivatives are refused: {refusal}",)
+    return (f"first order: slopes are differences between designs, as derivatives are refused: {refusal}",)
 
 
-# Ranges of answers of a scene over tolerances of its inputs ---------------------------------------
+# Ranges of a scene's results over tolerances of its inputs --------------------------------------------
 
 
 @dataclass(frozen=True)
 class SceneSpread(Spread, StatesModelError):
-    """Ranges of k answers of a scene over the tolerances of d inputs.
+    """Ranges of k results of a scene over the tolerances of d inputs.
 
-    The fields are those of `Spread`.  `model_error` (k,) and `left_out`, computed when asked for, are what
-    the physics left out would change in the answers of the nominal design.
+    The fields are as in `Spread`.  `model_error` (k,) and `left_out`, computed at their first use, estimate
+    how much neglected physical effects change the results of the nominal design.
     """
 
     question: StudyQuestion = field(repr=False)
@@ -109,17 +110,17 @@ class SceneSpread(Spread, StatesModelError):
 
     @property
     def scene(self) -> Scene:
-        """The scene with nominal values."""
+        """Scene with the nominal values of the inputs."""
         return self.question.scene
 
     @property
     def display_units(self) -> DisplayUnits:
-        """Units of tables and columns: SI, as for brakes, unless `in_units` gave others."""
+        """Units of tables and columns: SI, as for brakes, unless `in_units` has set others."""
         return vars(self).get("_display_units") or SI_UNITS
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the answers of the nominal design by the effects left out: shape (k,)."""
+        """Changes of the nominal design's results by each neglected effect: shape (k,)."""
         return left_out_of_design(self.question, self.scene, {}) or nothing_known(self.scene)
 
 
@@ -144,43 +145,44 @@ def spread(
     store: str | PathLike[str] | None = None,
     progress: Callable[[int, int], object] | None = None,
 ) -> SceneSpread:
-    """Find the ranges of an answer over tolerances of inputs, and the input that matters most.
+    """Compute the ranges of a result over tolerances of inputs, and the most important input.
 
-    Inputs are independent of each other.  Worst cases have each at the end of its tolerance that makes the
-    answer smallest or largest; random designs give mean, standard deviation, percentiles and Sobol' indices,
-    by `scipy.stats.sobol_indices`.  All designs are answered by `study`.
+    Inputs are independent of each other.  In worst cases each input is at the end of its tolerance that makes
+    the result smallest or largest; random designs give mean, standard deviation, percentiles and Sobol'
+    indices, by `scipy.stats.sobol_indices`.  All designs are computed by `study`.
 
     Parameters
     ----------
     scene : Scene
-        The scene: its own numbers are the nominal ones.
+        The scene with the nominal values.
     inputs : mapping of str to str, Uniform or Normal
-        The inputs that have a tolerance, by their names as of `study`, each with it: "+-2%" or "+1% -2%" of
-        the scene's value, within which all values are as likely; "sd 1%", normally distributed with this
+        Inputs with tolerances, by their names as in `study`, each with its tolerance: "+-2%" or "+1% -2%" of
+        the scene's value, within which all values are equally likely; "sd 1%", normally distributed with this
         standard deviation; without the percent sign numbers in SI, also "1.9e-4 to 2.1e-4"; or
         `Uniform(low, high)`, `Normal(mean, deviation)` in SI.
     what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain", "power"}
-        The answer, as of `study`.
+        Name of the result, as in `study`.
     samples : int
         Number n of designs in each of 2 + d random samples, d being the number of inputs: a power of two from
-        128, else the next is used.
+        128 on; otherwise the next one is used.
     seed : int
-        Seed from which the random designs follow.
+        Seed of the random designs.
     speed, modes, window, discretization, tolerance, workers, executor, store, progress
-        As for `study`; the total of the progress grows by the designs of worst cases, at most those before.
+        As for `study`; the total number in `progress` increases by the designs of the worst cases, at most to
+        twice.
 
     Returns
     -------
     Spread
-        With `model_error` and `left_out` of the nominal design, computed when asked for.
+        With `model_error` and `left_out` of the nominal design, computed at their first use.
 
     Raises
     ------
     ValueError
         If an argument is out of its range, a tolerance reaches values that an input cannot have, or no design
-        has an answer.
+        has a result.
     StudyInterrupted
-        If the executor breaks; finished parts are in the store.
+        If the executor fails; finished parts are in the store.
 
     References
     ----------
@@ -220,7 +222,7 @@ def spread(
 
 @dataclass
 class _StudyAnswers:
-    """Answers of designs by studies, with the same columns as the first study's answers."""
+    """Results of designs by studies, with the same columns as the first study."""
 
     scene: Scene
     what: Any
@@ -234,7 +236,7 @@ class _StudyAnswers:
         return self._studies[0]
 
     def __call__(self, columns: dict[str, np.ndarray]) -> SpreadAnswers:
-        """Answer designs that are given as columns of inputs."""
+        """Compute the results of designs that are given as columns of inputs."""
         options = {**self.options, "progress": self._progress}
         with unannounced():
             found = study(self.scene, columns, self.what, combine="zip", **options)
@@ -257,12 +259,12 @@ class _StudyAnswers:
 
     @property
     def _progress(self) -> Progress | None:
-        """Callback for progress over all designs so far: worst cases need a number not known in advance."""
+        """Callback for progress over all designs so far; the number of worst cases is not known before."""
         said, before = self.options["progress"], self._done
         return said if not before else said and (lambda done, total: said(before + done, before + total))
 
     def _in_order(self, found: Study, values: np.ndarray) -> np.ndarray:
-        """Order columns of answers by the labels of the first study; other designs may meet fewer lines."""
+        """Sort result columns by the labels of the first study; other designs may cross fewer lines."""
         if found.labels == self.first.labels:
             return values
         none = np.full(len(values), np.nan if values.dtype.kind == "f" else "not excited")
@@ -303,7 +305,7 @@ def check_tolerances(
 
 
 def nominal_value(scene: Scene, name: str, speed: float) -> float:
-    """Return the nominal value of an input, in SI; the speed is an argument, as it is no number of a scene.
+    """Return the nominal value of an input in SI; `speed` is an argument, as scenes have no such number.
 
     Raises
     ------
@@ -338,7 +340,7 @@ def _in_si(name: str, text: str, unit: str) -> tolerances.Convert:
 
 
 def check_reach(scene: Scene, given: tolerances.SpreadInput) -> None:
-    """Refuse a tolerance with an end at which the scene is not valid, other inputs being nominal."""
+    """Raise an error for a tolerance with an end that makes the scene invalid, other inputs nominal."""
     for end in given.distribution.reach:
         try:
             with_numbers(scene, {given.name: end})

@@ -1,4 +1,4 @@
-"""Studies: answers over all combinations of inputs, or for designs that are given one by one."""
+"""Studies: results over all combinations of inputs, or for designs that are given one by one."""
 
 from __future__ import annotations
 
@@ -38,16 +38,16 @@ VERSIONS = (
     __version__,
     np.__version__,
     scipy.__version__,
-)  # packages whose versions affect the bits of stored answers
+)  # packages whose versions affect the last bits of stored results
 _KIND = "beamdyn study"
-_BATCHED, _SINGLE = 1024, 16  # number of answers in a task, for designs solved in batches and one by one
+_BATCHED, _SINGLE = 1024, 16  # number of results per task, for designs solved in batches and one by one
 _AT_ONCE = 100_000  # number of designs whose quantities are compared at once
 # Largest number of inputs of which all combinations of smallest and largest values are checked first.
 _MOST_CORNERS = 10
 
 
 @announced
-@one_blas_thread()  # more threads would only wait for each other on small matrices
+@one_blas_thread()  # with small matrices, further threads only slow each other down
 def study(
     scene: Scene,
     vary: Mapping[str, Sequence[float] | np.ndarray],
@@ -64,12 +64,12 @@ def study(
     store: str | PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> Study:
-    """Answer a question of many designs: all combinations of inputs of a scene, or designs one by one.
+    """Compute one kind of result for many designs: all combinations of inputs, or designs one by one.
 
-    Frequencies, critical speeds and resonance speeds of slender beams are those of one beam with other tip
-    bodies, springs, radii, angles and speeds: one basis and batched eigenproblems serve all designs.  Steady
-    amplitudes and peaks are computed design by design, over all speeds at once, and so is everything else.
-    Either way the answers and their errors are those of single calls, within their stated errors.
+    For frequencies, critical speeds and resonance speeds of slender beams, all designs are represented by one
+    reference beam with different tip bodies, springs, radii, angles and speeds, and solved in one basis by
+    batched eigenproblems.  All other results are computed design by design; amplitudes and peaks over all
+    speeds at once.  Both ways give the results of single analyses, within the stated errors.
 
     Parameters
     ----------
@@ -79,30 +79,31 @@ def study(
         Values in SI of each input, by its name in scene files: "beam.thickness", "beam.tip.mass",
         "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; for
         amplitudes, peaks, strains and power also numbers of the motion, such as "motion.road.wavelength"; and
-        factors of properties that vary along the beam, such as "beam.scale.bending_stiffness".  Sides and
-        material are those of a rectangular section.
+        factors of properties that vary along the beam, such as "beam.scale.bending_stiffness".  Width,
+        thickness and material are those of a rectangular section.
     what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain", "power"}
-        The answer: natural frequencies; the speed at which the beam buckles; the speeds at which each mode
-        meets each line of the excitation; the steady amplitude of the tip; its largest deflection in a
-        window of time, of a run from rest; the largest strain along the span in steady motion, of the
-        layers where the beam carries a harvester; or the mean power that these harvest.
+        The result: natural frequencies; the speed at which the beam buckles; the speeds at which each mode
+        meets each excitation line; the steady amplitude of the tip; its largest deflection in a time window
+        of a transient from rest; the largest strain along the span in steady motion (of the layers, if the
+        beam carries a harvester); or the mean power of the harvester.
     speed : float, optional
-        Speed of frequencies, amplitudes and peaks where it is not varied, and top speed of crossings
-        [rad/s]; if not given, 0 for frequencies, else the final speed of the motion.
+        Speed of frequencies, amplitudes and peaks if it is not varied, and top speed of crossings [rad/s]; by
+        default 0 for frequencies, otherwise the final speed of the motion.
     modes : int, optional
         Number of modes of frequencies and crossings; 3 if not given.
     window : tuple of float, optional
-        Beginning and end of the window of peaks [s], whose end is that of each run; 20 to 30 s if not given.
+        Beginning and end of the time window for peaks [s], at whose end each transient ends; 20 to 30 s by
+        default.
     combine : {"product", "zip"}
         Combine each value with each of the other inputs, or take the first of all, the second of all, ...
     discretization, tolerance
         As for `natural_modes`; the tolerance of amplitudes and peaks as for `steady_response` and `sweep`.
     workers : int
-        Number of processes; the answer is the same to the bit for any.
+        Number of processes; the result is bitwise the same for any number.
     executor : Executor, optional
         Any of `concurrent.futures`, in place of workers.
     store : str or Path, optional
-        Folder in which finished parts are kept; those found there are not computed again.
+        Folder in which finished parts are saved; parts found there are not computed again.
     progress : callable, optional
         Called as progress(done, total) with the numbers of designs.
 
@@ -113,10 +114,9 @@ def study(
     Raises
     ------
     ValueError
-        If an argument is out of its range or given to an answer that does not depend on it, or no design has
-        an answer.
+        If an argument is out of its range or the result does not depend on it, or if no design has a result.
     StudyInterrupted
-        If the executor breaks; finished parts are in the store.
+        If the executor fails; finished parts are in the store.
 
     Examples
     --------
@@ -141,7 +141,7 @@ def study(
         )
     modes = checks.count("modes", MODES if modes is None else modes)
     tolerance = None if tolerance is None else checks.within("tolerance", tolerance, *TOLERANCES)
-    # Only answers that need a motion depend on the motion's numbers.
+    # Only results that need a motion depend on the motion's numbers.
     of_motion = (each.name for each in designs.inputs if is_of_motion(each.name))
     if not KINDS[what].needs_motion and (name := next(of_motion, None)):
         bound = (
@@ -195,9 +195,9 @@ def _check_inputs(vary: Any) -> tuple[VariedInput, ...]:
 
 
 def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -> float:
-    """Return the speed [rad/s] of designs without one of their own.
+    """Return the speed [rad/s] of designs that do not vary it.
 
-    Refuse the speed where the answer cannot have it.
+    Raise an error if a speed is given for a result that does not depend on it.
 
     Parameters
     ----------
@@ -225,7 +225,7 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
 
 
 def check_window(window: tuple[float, float]) -> tuple[float, float]:
-    """Check a window of time, and return its beginning and end [s]."""
+    """Check a time window, and return its beginning and end [s]."""
     ends = checks.as_floats(window)
     if ends is None or ends.shape != (2,) or not (0 <= ends[0] < ends[1] < np.inf):
         bound = "give its beginning and its end [s], two ascending numbers such as (20.0, 30.0)"
@@ -234,7 +234,7 @@ def check_window(window: tuple[float, float]) -> tuple[float, float]:
 
 
 def _check_scenes(scene: Scene, designs: Designs) -> None:
-    """Check that all designs are valid scenes, by extreme values only: bounds are monotone in each input."""
+    """Check that all designs are valid scenes, by extreme values: bounds are monotone in each input."""
     few = len(designs.inputs) <= _MOST_CORNERS
     try:
         for design in designs.extremes() if few else ():
@@ -253,18 +253,18 @@ def _check_scenes(scene: Scene, designs: Designs) -> None:
 
 
 def _answer(task: SimilarTask | SingleDesigns) -> DesignAnswers:
-    """Answer the designs of a task; a function at module level, so that worker processes can run it."""
+    """Compute the results of a task; defined at module level so that worker processes can call it."""
     return task.answers()
 
 
 @dataclass(frozen=True)
 class SimilarTask:
-    """A task of a study: similar designs that are solved together.
+    """Task of a study: similar designs that are solved together.
 
     Parameters
     ----------
     question : StudyQuestion
-        Question that is asked of the designs.
+        Question that the study asks of each design.
     designs : SimilarDesigns
         N designs.
     columns : mapping of str to ndarray, shape (N,)
@@ -279,7 +279,7 @@ class SimilarTask:
     speeds: np.ndarray
 
     def answers(self) -> DesignAnswers:
-        """Compute the answers of the designs."""
+        """Compute the results of the designs."""
         question, designs = self.question, self.designs
         refinement = question.refinement(designs.reference)
         if question.what == "frequencies":
@@ -297,19 +297,19 @@ class SimilarTask:
 
 @dataclass(frozen=True)
 class _Request:
-    """The checked request of a study: a question, and the designs that it is asked of."""
+    """Checked request of a study: a question, and the designs for which it is to be answered."""
 
     question: StudyQuestion
     designs: Designs
 
     @cached_property
     def others(self) -> Designs:
-        """The designs without the speed as an input."""
+        """Designs without the speed as an input."""
         return self.designs.without(SPEED)
 
     @cached_property
     def own_speeds(self) -> np.ndarray | None:
-        """Speeds that are varied [rad/s]; None if the speed is none of the inputs."""
+        """Speeds that are varied [rad/s]; None if the speed is not an input."""
         return next((each.values for each in self.designs.inputs if each.name == SPEED), None)
 
     @property
@@ -323,20 +323,18 @@ class _Request:
         return 1 if self.together or self.own_speeds is None else len(self.own_speeds)
 
     def check(self) -> None:
-        """Refuse the request if any design is no valid scene, before anything is computed."""
+        """Raise an error if any design is not a valid scene, before anything is computed."""
         if self.own_speeds is not None:
             check_speeds(self.own_speeds, SPEED)
         if self.others.inputs:
             _check_scenes(self.question.scene, self.others)
         question = self.question
         if question.what == "crossings" and question.tolerance is not None and not self.is_similar:
-            bound = (
-                "crossings of these designs are found one by one, each as exactly as resonance_speeds does"
-            )
+            bound = "crossings of these designs are computed one by one, each as by resonance_speeds"
             raise checks.InvalidValue("tolerance", question.tolerance, bound, "leave it out")
 
     def solve(self, run: TaskRunner) -> AnswerArrays:
-        """Compute the answers: in one basis where designs are beams of one shape, else one by one.
+        """Compute the results: in one basis if the designs are similar beams, otherwise one by one.
 
         The size of tasks follows from the request alone; a response is solved at all speeds at once.
         """
@@ -358,7 +356,7 @@ class _Request:
         return found
 
     def _task(self, rows: slice, at: slice) -> SimilarTask | SingleDesigns:
-        """Make a task of some designs, each with some of its speeds (R, S) [rad/s]."""
+        """Build a task for some designs, each with some of its speeds (R, S) [rad/s]."""
         columns = self._columns(rows)
         if self.together:
             assert self.own_speeds is not None
@@ -374,17 +372,17 @@ class _Request:
     def _columns(self, rows: slice) -> dict[str, np.ndarray]:
         return self.others.columns(rows) if self.others.inputs else {}
 
-    # All in one basis -------------------------------------------------------------------------------
+    # All designs in one basis --------------------------------------------------------------------------
 
     @cached_property
     def is_similar(self) -> bool:
-        """Whether designs are beams of one shape, so that one basis serves all."""
+        """Whether the designs are similar beams, so that one basis suffices for all."""
         question, names = self.question, {each.name for each in self.others.inputs}
         scene, is_batched = question.scene, question.what in _BATCHED_KINDS
         if not is_batched or not differ_in_numbers_only(scene, names - {"model.damping_ratio"}):
             return False
         if question.what == "crossings" and scene.physics.planes == 2:
-            return False  # each plane of bending has excitation lines of its own
+            return False  # each plane of bending has its own excitation lines
         return (
             question.refinement(self._reference).can_be_batched
             and all(self._similar(rows).can_be_solved for rows in self.others.chunks(_AT_ONCE))
@@ -397,7 +395,7 @@ class _Request:
 
     @cached_property
     def _reference(self) -> Scene:
-        """The scene of the first design, without damping and motion, which do not affect its modes."""
+        """Scene of the first design, without damping and motion, which do not affect its modes."""
         return replace(with_numbers(self.question.scene, self._first).undamped, motion=None)
 
     @cached_property
@@ -410,7 +408,7 @@ class _Request:
     # Results ----------------------------------------------------------------------------------------
 
     def in_order(self, values: np.ndarray) -> np.ndarray:
-        """Arrange answers (N, S, k) in the order of the inputs."""
+        """Arrange results (N, S, k) in the order of the inputs."""
         if self.own_speeds is None or self.designs.combine == "zip":
             return values
         place = [each.name for each in self.designs.inputs].index(SPEED)

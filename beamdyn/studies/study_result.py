@@ -1,4 +1,4 @@
-"""The result of a study: one kind of answer over combinations of inputs."""
+"""Result of a study: one kind of quantity over combinations of inputs."""
 
 from __future__ import annotations
 
@@ -27,50 +27,50 @@ from beamdyn.studies.one_by_one import join_effects, left_out_of_design
 from beamdyn.studies.questions import StudyQuestion
 from beamdyn.studies.resonance_speeds import lines_of
 
-_JUDGED = 8  # number of designs at which the model error is computed, beside the extremes
-_DIGITS = 4  # significant digits of a design's inputs in sentences
+_JUDGED = 8  # number of designs, in addition to the extremes, at which the model error is computed
+_DIGITS = 4  # number of significant digits of a design's inputs in sentences
 _MOST_AXES = 3  # largest number of inputs of which all extremes are combined
 
 
 @dataclass(frozen=True)
 class Study(StatesModelError):
-    """An answer over combinations of inputs; made by `study`.
+    """Results over combinations of inputs; computed by `study`.
 
-    The shape (n1, ..., nd) has an axis for each input, in order, or one for all that are taken together.
-    `error` is the numerical error; `model_error` (p, m) and `left_out`, computed when asked for, are what the
-    physics left out would change at the p designs of `left_out_places`; `left_out_at` computes it for any
-    design.
+    The shape (n1, ..., nd) has an axis for each input, in order, or one axis for all inputs that are varied
+    together. `error` is the numerical error.  `model_error` (p, m) and `left_out`, computed at their first
+    use, estimate the changes by neglected physical effects at the p designs of `left_out_places`;
+    `left_out_at` does so for any design.
 
     Parameters
     ----------
     what : str
-        What was asked for: "frequencies", "critical_speed", "crossings", "amplitude", "peak",
+        Name of the result: "frequencies", "critical_speed", "crossings", "amplitude", "peak",
         "strain" or "power".
     unit : str
-        Unit of the answer.
+        Unit of the result.
     inputs : tuple of VariedInput
-        Each with its `name`, `unit` and `values` in SI.
+        The inputs, each with its `name`, `unit` and `values` in SI.
     combine : {"product", "zip"}
-        Whether the inputs are combined each with each, or taken together.
+        Whether all combinations of the inputs are computed, or the inputs are varied together.
     labels : tuple of str, length m
-        Names of the m numbers of a design's answer: its modes, or modes and the lines that they meet; empty
-        if it has one number.
+        Names of the m numbers of a design's result: modes, or modes and the lines that they meet; empty for a
+        single number.
     value : ndarray, shape (n1, ..., nd, m) or (n1, ..., nd)
-        Frequencies of m modes [Hz], nan where a mode does not vibrate; critical speeds [rad/s], inf where
-        the beam does not buckle; resonance speeds [rad/s], nan where a mode meets a line at none up to the
-        top speed; steady amplitudes or peaks [m], strains or power [W], nan where there is none.
+        Frequencies of m modes [Hz], nan if a mode does not vibrate; critical speeds [rad/s], inf if the beam
+        does not buckle; resonance speeds [rad/s], nan if a mode meets a line at no speed up to the top speed;
+        steady amplitudes or peaks [m], strains or power [W], nan if there is no result.
     error : ndarray, of the same shape
-        Estimated relative error; inf where unresolved.
+        Estimated relative error; inf if unresolved.
     status : ndarray of str, of the same shape
-        Of a mode as for `natural_modes`; "buckles", "does not buckle" or "not found"; "resonates", "none up
-        to the top speed" or "not excited"; of a response as for `steady_response`; of a peak "done" or
-        "failed"; "refused" where there is no answer.
+        For a mode as in `natural_modes`; for a critical speed "buckles", "does not buckle" or "not found";
+        for a resonance "resonates", "none up to the top speed" or "not excited"; for a response as in
+        `steady_response`; for a peak "done" or "failed"; "refused" if there is no result.
     warnings : tuple of str
-        Limits of the answers, and for how many designs each holds.
+        Limitations of the results, with the number of designs for which each holds.
     provenance : Provenance
-        How it was found.
+        How the result was computed.
     typed_units : mapping
-        By the name of an input: the unit in which its values were typed, for tables and pictures.
+        Unit in which the values of an input were typed, by its name; for tables and plots.
 
     Examples
     --------
@@ -99,7 +99,7 @@ class Study(StatesModelError):
     judged_by_solving: ClassVar[bool] = True
 
     def headline(self) -> Iterator[str]:
-        """Yield question, number of designs, range of the answer and error; see `Result.headline`."""
+        """Yield question, number of designs, range of the result and error; see `Result.headline`."""
         names = joined(", ", (InputName(each.name) for each in self.inputs))
         yield Words(f"{self.what} of {counted(self.designs.count, 'design')} over ", names)
         yield spanned(self.value, self.unit)
@@ -116,19 +116,19 @@ class Study(StatesModelError):
         return self.designs.shape
 
     def design(self, *place: int) -> dict[str, float]:
-        """Return the inputs of the design at a place (i1, ..., id): values in SI, by name."""
+        """Return the inputs of the design with indices (i1, ..., id): values in SI, by name."""
         return self.designs.at(*place)
 
     def scene_at(self, *place: int) -> Scene:
-        """Return the scene of the design at a place (i1, ..., id), for any other analysis."""
+        """Return the scene of the design with indices (i1, ..., id), for any other analysis."""
         return with_numbers(self.scene, self.design(*place))
 
     @property
     def answered(self) -> np.ndarray:
-        """Whether each design has an answer, shape (n1, ..., nd); no buckling or resonance is an answer, too.
+        """Whether each design has a result, shape (n1, ..., nd); no buckling or resonance is a result, too.
 
-        There is no answer for a design that is refused or unstable at its speed, or whose critical speed is
-        not found.
+        A design has no result if it is refused or unstable at its speed, or if its critical speed is not
+        found.
         """
         there = ~np.isin(self.status, NO_ANSWERS)
         return np.asarray(there.all(axis=-1)) if self.labels else there
@@ -137,15 +137,15 @@ class Study(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the answer by effects left out, at the designs of `left_out_places`: shape (p, m)."""
+        """Changes of the result by neglected effects, at the designs of `left_out_places`: shape (p, m)."""
         return join_effects([self.left_out_at(*place) for place in self.left_out_places], self._numbers)
 
     @cached_property
     def left_out_places(self) -> tuple[tuple[int, ...], ...]:
-        """Places of the designs at which the model error is computed: (p) tuples (i1, ..., id).
+        """Indices of the designs at which the model error is computed: p tuples (i1, ..., id).
 
-        These are the extremes of the inputs and others spread evenly; for amplitudes and peaks, which take
-        long, only the design with the largest answer.
+        These are the extremes of the inputs and other evenly spread designs; for amplitudes and peaks, which
+        take long to compute, only the design with the largest result.
         """
         if self.question.kind.needs_motion:
             known = np.isfinite(self.value)
@@ -159,7 +159,7 @@ class Study(StatesModelError):
         return tuple(tuple(map(int, np.unravel_index(i, self.shape))) for i in at)
 
     def left_out_at(self, *place: int) -> LeftOutEffects | None:
-        """Compute changes of the answer (m,) at a place by effects left out; None if it has no answer."""
+        """Compute changes of the result (m,) of a design by neglected effects; None if it has no result."""
         design = self.design(*place)
         return left_out_of_design(self.question, with_numbers(self.scene, design), design)
 
@@ -173,14 +173,14 @@ class Study(StatesModelError):
 
     @property
     def left_out_where(self) -> str:
-        """Give the inputs of the design of `left_out_places` at which the model error is largest."""
+        """Describe the design of `left_out_places` with the largest model error, by its inputs."""
         total = self.left_out_effects.total_of_known
         if not total.size:
             return ""
         return self._say_place(int(total.max(axis=1).argmax()))
 
     def _where_unknown(self, name: str) -> str:
-        """Give the inputs of the first design of `left_out_places` whose change by an effect is not known."""
+        """Give the inputs of the first design of `left_out_places` with an unknown change by an effect."""
         nothing = np.isnan(self.left_out_effects.changes[name]).any(axis=1)
         refused = [bool(np.all(self.status[place] == REFUSED)) for place in self.left_out_places]
         unknown = np.flatnonzero(nothing & ~np.array(refused))
@@ -195,18 +195,18 @@ class Study(StatesModelError):
         return Words("at ", joined(", ", each))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the result as plain numbers, lists and strings, with model error and effects left out."""
+        """Return the result as plain numbers, lists and strings, with model error and neglected effects."""
         return super().to_dict() | {"left_out_places": [*map(list, self.left_out_places)]}
 
-    # Pictures ---------------------------------------------------------------------------------------
+    # Plots -------------------------------------------------------------------------------------------
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw each answer over one input, or as a map over two with lines of equal value.
+        """Draw each result over one input, or as a map over two inputs with contour lines.
 
-        The scene's own values are marked.  Some values of a third input have maps of their own; further
-        inputs have their first value.  Where there is no answer the picture is hatched, and says why;
-        frequencies over speed have the lines that excite them.  Several answers over one input have a panel
-        each in a new figure; in given axes they are curves.
+        The scene's values are marked.  Some values of a third input have separate maps; further inputs have
+        their first value.  Areas without a result are hatched, with the reason; frequencies over speed are
+        drawn with the excitation lines.  Several results over one input are drawn in one panel each of a new
+        figure, or as curves in given axes.
         """
         inputs, answers = self._picture
         if ax is None or len(answers) == 1 or sum(len(each.values) > 1 for each in inputs) > 1:
@@ -214,7 +214,7 @@ class Study(StatesModelError):
         return self._plot_curves(ax, *self._picture)
 
     def _plot_curves(self, ax: Axes, inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> Axes:
-        """Draw each answer as a curve over the one input that varies, in axes that may have other curves."""
+        """Draw each result as a curve over the single varied input, in axes that may have other curves."""
         over = max(range(len(inputs)), key=lambda k: len(inputs[k].values))
         x = inputs[over].values
         order = np.argsort(x, kind="stable")
@@ -226,16 +226,16 @@ class Study(StatesModelError):
         return add_legend(ax)
 
     def plot_panels(self, ax: Axes) -> Axes:
-        """Draw the picture that `plot` makes in a new figure, in place of given axes."""
+        """Draw the plot of `plot` in a new figure, instead of given axes."""
         return plot_maps(*self._picture, ax)
 
     def picture_size(self, width: float | None = None) -> tuple[float, float]:
-        """Return width and height of the picture [inch], for a width if one is given."""
+        """Return width and height of the figure [inch], for a given width if there is one."""
         return map_size(*self._picture, width)
 
     @cached_property
     def _picture(self) -> tuple[list[MapInput], list[MapAnswer]]:
-        """Return the inputs and answers that the picture shows, in the units shown."""
+        """Return the inputs and results of the plot, in display units."""
         unit = self.unit_shown(self.unit, "mm")
         several = self.value if self.labels else self.value[..., None]
         status = self.status if self.labels else self.status[..., None]
@@ -254,7 +254,7 @@ class Study(StatesModelError):
         return self._inputs(), answers
 
     def _inputs(self) -> list[MapInput]:
-        """Return the inputs of the picture; inputs that are varied together are drawn over the first."""
+        """Return the inputs of the plot; inputs that are varied together are drawn over the first."""
         shown = []
         for each in self.inputs if self.combine == "product" else self.inputs[:1]:
             unit = self.typed_units.get(each.name) or self.unit_shown(each.unit, "m")
@@ -264,19 +264,19 @@ class Study(StatesModelError):
         return shown
 
     def in_own_words(self, part: Part) -> str | None:
-        """Format an input and its value in the unit in which it was typed; None for other parts of a text."""
+        """Format an input with its value in the unit that was typed; None for other parts of a text."""
         if not isinstance(part, InputValue) or part.name not in self.typed_units:
             return None
         return part.said(self.typed_units[part.name].say(part.value))
 
     def unit_shown(self, unit: str, usual_length: str) -> ShownUnit:
-        """Return the unit in which quantities of an SI unit are shown."""
+        """Return the display unit of quantities with a given SI unit."""
         units = self.display_units
         known = {"rad/s": units.speed_unit(), "m": units.length_unit(usual_length)}
         return known.get(unit, ShownUnit(unit, 1.0))
 
     def _lines(self) -> dict[str, np.ndarray]:
-        """Return frequencies [Hz] of the lines that excite the beam, if frequencies vary over speed."""
+        """Return frequencies [Hz] of the excitation lines, if natural frequencies over speed are drawn."""
         speeds = next((each.values for each in self.inputs if each.name == SPEED), None)
         if self.what != "frequencies" or speeds is None:
             return {}
@@ -287,7 +287,7 @@ class Study(StatesModelError):
 
 
 def _present(scene: Scene, name: str) -> float | None:
-    """Return the value of an input in the scene; None where it has none, or varies along the beam."""
+    """Return the value of an input in the scene; None if it has none, or if it varies along the beam."""
     if name == SPEED:
         value = None if scene.motion is None else scene.motion.final_speed
     else:
@@ -299,4 +299,4 @@ _REASONS = {
     "divergence": "buckles",
     "flutter": "flutters",
     "none up to the top speed": "no resonance up to the top speed",
-}  # words of a picture for statuses without a number
+}  # words in a plot for statuses without a number

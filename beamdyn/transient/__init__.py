@@ -1,1 +1,1 @@
-"""Transients: motion in time, with step sizes, integrators, errors, and sweeps over speeds."""
+"""Transient simulation: motion of the beam in time, with step sizes, integrators, errors, and sweeps."""

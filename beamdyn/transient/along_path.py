@@ -1,13 +1,13 @@
-"""Estimate of the change by further modes in a transient, along the computed path.
+"""Estimate how much further modes change a transient, along the motion that was computed without them.
 
-The motion q of a run, inserted in the equations of a larger model, leaves a residual R, which is
-known along the path.  The difference e of both motions obeys e'' + C e' + K(t) e = R.  It is found in the
-modes that the larger model has in each stretch of the run: the slow ones as oscillators whose frequency
-follows the stiffness, y = Im(exp(i theta) (a + int exp(-i theta) R / sqrt(w) dt)) / sqrt(w) with theta' = w
-(Liouville and Green); those too fast for the samples of the run follow the residual quasi-statically, and
-vibrate freely after its jumps.  So no step has to be solved again.  As the stiffness of a stretch departs
-from its mean, the modes are coupled: each feels a force by the motion of the others, which the pass before
-has found.
+The motion q of a run, inserted in the equations of a larger model, leaves a known residual R(t).  The
+difference e of both motions obeys e'' + C e' + K(t) e = R.  The run is divided into stretches, and e is
+computed in the larger model's modes in each stretch: the slow ones as oscillators whose frequency follows the
+stiffness, y = Im(exp(i theta) (a + int exp(-i theta) R / sqrt(w) dt)) / sqrt(w) with theta' = w (Liouville
+and Green); those too fast for the samples of the run follow the residual quasi-statically, and vibrate freely
+after its jumps. So no time step has to be solved again.  Where the stiffness of a stretch differs from its
+mean, the modes are coupled: the motion of all others exerts a force on each, which is taken from the previous
+pass.
 
 References
 ----------
@@ -31,40 +31,46 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import size_per_coordinate
 from beamdyn.transient.trajectory import SAMPLES, Trajectory, magnitude
 
-_MOST_PASSES = 4  # largest number of passes over the modes of a stretch, after a first without coupling
-# The passes end once one changes the difference from the larger model by at most this share of it.
+# Largest number of passes over the coupled modes of a stretch, after a first pass without coupling.
+_MOST_PASSES = 4
+# The passes end when a pass changes the difference from the larger model by at most this relative amount.
 _SETTLED = 0.1
-_STRETCHES, _OF_RECORD = 8, 32  # number of stretches of a segment of changing speed, and of a record
-_RESOLVED = 1.9  # phase from sample to sample [rad] up to which a mode is followed in time
-# Distance of the outer samples from the ends of a segment, over its length: loads may jump there.
+# Number of stretches in a segment of changing speed, and in a motion given by samples.
+_STRETCHES, _OF_RECORD = 8, 32
+_RESOLVED = 1.9  # phase advance between samples [rad] up to which a mode is integrated in time
+# Distance, as a fraction of a segment, between its ends and the outermost samples: loads may jump at the
+# ends.
 _INSIDE = 1e-9
-_CONTAINED = 1e-6  # relative distance of a shape from the larger model up to which it counts as contained
-_MOST_DECAY = 30.0  # largest exponent of the decay in a stretch: beyond, numbers overflow
-_BY_CHANCE = 3.0  # largest sum of many random contributions, over the root of their summed squares
-# Ratio of the amplitude of fast modes to the difference from the larger model, up to which amplitudes may be
-# added as random.
+# Relative distance of a mode shape from the larger model's functions up to which the model contains it.
+_CONTAINED = 1e-6
+_MOST_DECAY = 30.0  # largest exponent of the decay in a stretch: larger ones overflow
+# Assumed ratio of the largest sum of many random contributions to the root of the sum of their squares.
+_BY_CHANCE = 3.0
+# Largest ratio of the fast modes' amplitude to the difference from the larger model, for which amplitudes may
+# be added as random numbers.
 _MOST_RINGING = 0.1
-_MOST_GROWTH = 2.0  # growth of the deflection at steady speed beyond which the oscillators are not valid
+# Growth of the deflection at steady speed above which the oscillator equations are not valid.
+_MOST_GROWTH = 2.0
 
 
 @dataclass(frozen=True)
 class _Residual:
-    """Residual of a run's motion in the equations of a larger model, with these equations.
+    """Residual of a motion inserted in the equations of a larger model, together with these equations.
 
     Parameters
     ----------
     larger : ModalSystem
         The larger model, of n coordinates.
     quantities : tuple of str
-        Functions of time that multiply the stiffness matrices.
+        Names of the functions of time that multiply the stiffness matrices.
     stiffness : ndarray, shape (k, n, n)
-        Stiffness matrices of the quantities.
+        Stiffness matrix that each of these functions multiplies.
     damping : ndarray, shape (n, n)
         Damping matrix of the larger model.
     factors : ndarray, shape (l + k m + m, n)
-        Residual per unit of each of l loads, of each coordinate times each quantity, and of each velocity.
+        Residual per unit of each of l loads, of each coordinate times each function, and of each velocity.
     embedding : ndarray, shape (n, m)
-        Coordinates of the larger model by those of the run.
+        Matrix from the coordinates of the run to those of the larger model.
     """
 
     larger: ModalSystem
@@ -76,7 +82,7 @@ class _Residual:
 
     @classmethod
     def of(cls, system: ModalSystem, larger: ModalSystem) -> _Residual | None:
-        """Make the residual of a system's motion; None if `larger` lacks its modes or is gyroscopic."""
+        """Build the residual of a system's motion; None if `larger` lacks system modes or is gyroscopic."""
         few, many = (_shapes(each.equations) for each in (system, larger))
         stiffness, damping, _ = larger.equations.matrices
         if few.shape[0] != many.shape[0] or not set(damping) <= {"unity"}:
@@ -93,28 +99,31 @@ class _Residual:
         return cls(larger, tuple(stiffness), matrices, C, factors - factors @ X @ X.T, X)
 
     def mean_modes(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute squared frequencies (n,) and modes (n, n) of the mean stiffness for values (N, k)."""
+        """Compute squared frequencies (n,) and modes (n, n) of the mean stiffness.
+
+        The argument `values` (N, k) samples the functions of time that multiply the stiffness matrices.
+        """
         flat = self.stiffness.reshape(len(self.stiffness), -1)
         return np.linalg.eigh((values.mean(axis=0) @ flat).reshape(self.larger.size, -1))
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Evaluate the residual (N, n) at some times for coordinates and velocities (N, m) of the run."""
+        """Evaluate the residual (N, n) for N root motions, coordinates and velocities (N, m) of the run."""
         loads = [getattr(root, name)[:, None] for name in self.larger.equations.vectors]
         parts = [*loads, *(k[:, None] * q for k in self.values(root).T), v]
         return np.concatenate(parts, axis=1) @ self.factors
 
     def load(self, root: RootMotion) -> np.ndarray:
-        """Evaluate the residual of the run at rest at some times: shape (N, n)."""
+        """Evaluate the residual that the undeflected beam leaves under N root motions: shape (N, n)."""
         loads = np.stack([getattr(root, name) for name in self.larger.equations.vectors], axis=1)
         return loads @ self.factors[: loads.shape[1]]
 
     def values(self, root: RootMotion) -> np.ndarray:
-        """Evaluate the quantities that multiply stiffness matrices at some times: shape (N, k)."""
+        """Evaluate the functions of time that multiply the stiffness matrices at N times: shape (N, k)."""
         return np.stack([getattr(root, name) for name in self.quantities], axis=1)
 
 
 def _shapes(equations: Equations) -> np.ndarray:
-    """Express the coordinates of all fields of the discretization in those of the equations."""
+    """Compute the matrix from coordinates of reduced equations to those of their full discretization."""
     rows = []
     for shape in equations.shapes.values():
         rows.append(np.zeros((len(shape.matrix), equations.size)))
@@ -125,7 +134,7 @@ def _shapes(equations: Equations) -> np.ndarray:
 def distance_along_path(
     path: Trajectory, system: ModalSystem, larger: ModalSystem, y0: np.ndarray, y0_of_larger: np.ndarray
 ) -> float | None:
-    """Estimate the largest distance of the tip from that of a larger model [m] along the path.
+    """Estimate the largest distance of the tip deflection from that of a larger model [m] during a run.
 
     Parameters
     ----------
@@ -134,15 +143,15 @@ def distance_along_path(
     system, larger : ModalSystem
         Equations of the run and of the larger model, which contains its modes.
     y0, y0_of_larger : ndarray, shape (2 m,) and (2 n,)
-        Coordinates and velocities of both at time 0.
+        Coordinates and velocities of the run and of the larger model at time 0.
 
     Returns
     -------
     float or None
-        Distance [m]; None where oscillators do not suffice: gyroscopic coupling, coordinates that the larger
-        model does not contain, a mode that diverges or is heavily damped, coupling of modes that does not
-        settle, a motion that grows, and where ringing counts most: after an abrupt start in long steps, or
-        in a record that is rough from sample to sample.
+        Distance [m]; None where the estimate by oscillators is not valid: gyroscopic coupling, coordinates
+        that the larger model does not contain, a mode that diverges or is heavily damped, coupling of modes
+        that does not settle, a motion that grows, and where ringing counts most: after an abrupt start in
+        long steps, or in a record that is rough from sample to sample.
     """
     residual, start = _Residual.of(system, larger), max(system.motion.steady_start, path.start)
     times, coordinates, _ = path.samples
@@ -174,10 +183,10 @@ def distance_along_path(
 
 
 def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
-    """Estimate the tip's amplitude [m] by changes of the load's slope at samples, added as random.
+    """Estimate the tip's vibration amplitude [m] by jumps of the load's slope, added as random numbers.
 
-    A change of slope excites a mode of frequency w by the change over w^3.  A jump of the load, spread over
-    the time h between two samples, excites it by w h times as much.
+    A change of slope excites a mode of angular frequency w with the amplitude change / w^3.  A jump of the
+    load, spread over the time h between two samples, has w h times the effect.
     """
     middle = steps.piece_start + steps.piece_width / 2
     root = residual.larger.root(middle)
@@ -191,7 +200,7 @@ def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
 
 
 def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_start: float) -> Iterator[slice]:
-    """Yield slices of samples for the stretches of a segment, which share their end samples."""
+    """Yield slices of a segment's samples, one for each stretch; neighbours share their end samples."""
     steps, changing = len(segment.acceleration), segment.start < steady_start
     parts = (_OF_RECORD if isinstance(segment, RecordSegment) else _STRETCHES) if changing else 1
     decay = np.abs(residual.damping).sum(axis=0).max() / 2 * (segment.end - segment.start)
@@ -201,9 +210,9 @@ def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_sta
 
 
 class _Followed(NamedTuple):
-    """Difference in a stretch: largest at the tip, coordinates and rates (n,) at the end, and ringing.
+    """Difference from the larger model in a stretch: largest at the tip, final coordinates and rates (n,).
 
-    Ringing is the amplitude of the tip [m] by the fast modes, if the stretch begins with a jump.
+    `ringing` is the tip's amplitude [m] by the fast modes, if the stretch begins with a jump.
     """
 
     largest: float
@@ -215,7 +224,7 @@ class _Followed(NamedTuple):
 def _follow(
     residual: _Residual, t: np.ndarray, R: np.ndarray, values: np.ndarray, e: np.ndarray, rate: np.ndarray
 ) -> _Followed | None:
-    """Follow the difference through a stretch, in the modes of its mean stiffness; None if that fails."""
+    """Integrate the difference from the larger model over a stretch, mode by mode; None if that fails."""
     oscillators = _Oscillators.of(residual, t, values)
     if oscillators is None:
         return None
@@ -234,26 +243,26 @@ def _follow(
 
 @dataclass(frozen=True)
 class _Oscillators:
-    """Modes of the mean stiffness in a stretch, as oscillators.
+    """Modes of a stretch's mean stiffness, as oscillators with coupling forces.
 
     Parameters
     ----------
     t : ndarray, shape (N,)
         Times [s].
     values : ndarray, shape (N, k)
-        Values of the quantities that multiply the matrices of stiffness.
+        Values of the functions of time that multiply the stiffness matrices.
     modes : ndarray, shape (n, n)
         Modes of the mean stiffness, in columns.
     coupled : ndarray, shape (k, n, n)
-        Stiffness matrices in these modes, without their diagonals.
+        Stiffness matrices transformed to these modes, without their diagonals.
     stiff : ndarray, shape (N, n)
         Stiffness of each mode.
     decay : ndarray, shape (n,)
         Rate of decay of each mode [1/s].
     slow : ndarray of bool, shape (n,)
-        Whether the times resolve each mode.
+        Whether the sampled times resolve the vibration of each mode.
     root, turn : ndarray, shape (N, j)
-        Square roots of the resolved modes' frequencies, and their free motion as complex numbers.
+        Square roots of the resolved modes' angular frequencies, and their free vibration as complex phasors.
     """
 
     t: np.ndarray
@@ -268,7 +277,7 @@ class _Oscillators:
 
     @classmethod
     def of(cls, residual: _Residual, t: np.ndarray, values: np.ndarray) -> _Oscillators | None:
-        """Build the oscillators; None if one diverges or is heavily damped."""
+        """Build the oscillators; None if a mode diverges or is heavily damped."""
         squares, modes = residual.mean_modes(values)
         matrices = modes.T @ residual.stiffness @ modes
         diagonals = np.diagonal(matrices, axis1=1, axis2=2)
@@ -284,7 +293,7 @@ class _Oscillators:
         return cls(t, values, modes, coupled, stiff, decay, slow, np.sqrt(w), turn)
 
     def coupling(self, y: np.ndarray) -> np.ndarray:
-        """Compute the force on each mode by the motion y of the others: shape (N, n)."""
+        """Compute the force on each mode by the motion y (N, n) of the other modes: shape (N, n)."""
         each = (k[:, None] * (y @ K) for k, K in zip(self.values.T, self.coupled, strict=True))
         return sum(each, np.zeros_like(y))
 
@@ -293,7 +302,7 @@ class _Oscillators:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Compute the motion (N, n) of the modes under forces (N, n), and their velocities (n,) at the end.
 
-        Fast modes follow the forces without inertia: the third result (n,) is the size of their jumps from y0
+        Fast modes are computed quasi-statically: the third result (n,) is the size of their jumps from y0
         at the start.
         """
         y, slow = force / self.stiff, self.slow
@@ -309,6 +318,6 @@ class _Oscillators:
 
 
 def _cumulative(values: np.ndarray, dt: np.ndarray) -> np.ndarray:
-    """Integrate values from the first time to each by trapezoids of widths dt (N - 1, 1): shape (N, j)."""
+    """Integrate values from the first to each later time by trapezoids of widths dt (N - 1, 1): (N, j)."""
     parts = (values[1:] + values[:-1]) * (dt / 2)
     return np.concatenate([np.zeros_like(values[:1]), np.cumsum(parts, axis=0)])

@@ -1,4 +1,4 @@
-"""Equations of motion of a beam bent in space, in modal coordinates, evaluated at times for integrators."""
+"""Equations of motion of a beam in large three-dimensional bending, in modal coordinates, at given times."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
 from beamdyn.scene.motion import Motion
 from beamdyn.transient.system import ModalSystem
 
-_STEP = 1e-7  # relative step of differences by the coordinates
+_STEP = 1e-7  # relative step of finite differences with respect to the coordinates
 
 
 @dataclass(frozen=True)
 class BeamInSpaceSystem:
-    """Equations of motion of a beam that bends by any amount in space, at arrays of times.
+    """Equations of motion of a beam in large three-dimensional bending, evaluated at arrays of times.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class BeamInSpaceSystem:
     motion : Motion
         Motion of the root.
     branch : {"straight", "bent"}
-        Branch of the equilibrium in which a run begins, if it is to begin in equilibrium.
+        Equilibrium branch (undeflected or buckled) from which a run starts, if it starts in equilibrium.
     """
 
     elastica: RotatingBeam
@@ -41,14 +41,14 @@ class BeamInSpaceSystem:
 
     @classmethod
     def of_model(cls, model: Model, basis: ModalBasis, motion: Motion) -> Self:
-        """Build the equations of a model for large deflection in the coordinates of a modal basis."""
+        """Build the equations of a model with large deflection, in the coordinates of a modal basis."""
         bends = model.scene.bends_in_space
         modal = reduce_to_modes(model.bent.about_straight if bends else model.equations, basis)
         return cls(model.bent.reduced(modal), motion, model.scene.physics.branch)
 
     @property
     def equations(self) -> Equations:
-        """Equations in the same coordinates, linear about the straight beam."""
+        """Equations of motion in the same coordinates, linearized about the straight beam."""
         return self.elastica.linear
 
     @property
@@ -58,7 +58,7 @@ class BeamInSpaceSystem:
 
     @cached_property
     def straight(self) -> ModalSystem:
-        """Equations of motion in the same coordinates, linear about the straight beam."""
+        """Equations of motion in the same coordinates, linearized about the straight beam."""
         return ModalSystem(self.equations, self.motion)
 
     def root(self, t: np.ndarray) -> RootMotion:
@@ -66,19 +66,19 @@ class BeamInSpaceSystem:
         return self.equations.root(self.motion.at(t))
 
     def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Compute the deflection [m] over a strip of rigid sections at xi (k,) and eta (l,): (T, k, l)."""
+        """Compute the deflection [m] of a strip at xi = x/L (k,) and eta = 2 y/width (l,): (T, k, l)."""
         return np.repeat(self.shape(q, xi)[:, :, None], len(eta), axis=2)
 
     def carrier(self, root: RootMotion) -> Carrier:
-        """Compute the motion of the carrier that drives the equations."""
+        """Compute the motion of the rotating root frame that drives the equations."""
         return Carrier.of_root(self.elastica.axis, root)
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
+        """Compute y' for y = (q, q'), with the arguments of a right-hand side for `solve_ivp`."""
         return np.concatenate([y[self.size :], self._acceleration(t, y)])
 
     def _acceleration(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Compute the accelerations (n,) at a time [s], of which the residual is a linear function."""
+        """Solve the equations of motion at a time [s] for the accelerations (n,), which enter linearly."""
         q, v = np.split(y[None], 2, axis=1)
         a = self._steps(q)[2] * np.eye(self.size + 1, self.size, -1)
         still, *moved = self.residual(self.carrier(self.root(np.array([t]))), q, v + 0 * a, a)
@@ -95,7 +95,7 @@ class BeamInSpaceSystem:
 
     @cached_property
     def _unloaded(self) -> np.ndarray:
-        """Derivatives (3, N) of the unloaded axis' position by the arc length."""
+        """Derivatives (3, N) of the undeformed axis' position with respect to the arc length."""
         return self.elastica.beam.at(np.zeros(self.size)).tangents
 
     def deflections(self, q: np.ndarray) -> np.ndarray:
@@ -109,10 +109,10 @@ class BeamInSpaceSystem:
         return self.elastica.beam.stations.to_places(np.asarray(xi), moved)
 
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Compute the energy [J] at times t (T,): kinetic in rotating axes, elastic, and of the root.
+        """Compute the energy [J] at times t (T,): kinetic in the rotating frame, elastic, and root potential.
 
-        The last is the potential of the centrifugal forces and of the acceleration of the root (an
-        angular acceleration has none); it is 0 for the unloaded beam.
+        The root potential is that of the centrifugal forces and of the root's linear acceleration (an angular
+        acceleration has no potential); it is 0 for the undeformed beam.
         """
         carrier = self.carrier(self.root(t))
         return self._moving(carrier, q, v).energy - self._moving(carrier, 0 * q, 0 * v).energy
@@ -120,19 +120,20 @@ class BeamInSpaceSystem:
     # Evaluation of the equations ----------------------------------------------------------------------
 
     def _moving(self, carrier: Carrier, q: np.ndarray, v: np.ndarray) -> MovingBeam:
-        """Return the beam at coordinates and rates (..., n) on its carrier."""
+        """Build the beam with coordinates and rates (..., n) on its moving root."""
         return MovingBeam(self.elastica.beam.at(q), v, carrier, self.elastica.load)
 
     def residual(self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-        """Compute the residual of the equations of motion at s times, shape (..., s, n).
+        """Compute the residual of the equations of motion at s times: shape (..., s, n).
 
-        Rates v and accelerations a are of shape (..., s, n), coordinates q, too, or (s, n).
+        Rates v and accelerations a have the shape (..., s, n), coordinates q that or (s, n).
         """
         return self._moving(carrier, q, v).residual(a)
 
     def _steps(self, q: np.ndarray) -> np.ndarray:
-        """Choose changes of coordinates, rates and accelerations that change the shape as much."""
-        fastest = np.sqrt(np.diag(self.elastica.beam.stiffness).max()) or 1.0  # the mass at rest is 1
+        """Choose difference steps of coordinates, rates, accelerations that change the shape equally."""
+        # With a unit mass matrix at rest, stiffness entries are squared frequencies.
+        fastest = np.sqrt(np.diag(self.elastica.beam.stiffness).max()) or 1.0
         size = np.abs(q).max() + 1 / np.abs(self.elastica.beam.angles).max()
         return size * np.array([_STEP, fastest, fastest**2])
 
@@ -141,8 +142,9 @@ class BeamInSpaceSystem:
     ) -> np.ndarray:
         """Compute derivatives (3, s, n, n) of a residual (s, n) by coordinates, rates and accelerations.
 
-        By differences, which are exact for rates and accelerations: the residual is a quadratic function of
-        the former, and a linear one of the latter.  By coordinates they serve to guide Newton's method.
+        They are computed by finite differences, which are exact for rates and accelerations: the residual is
+        quadratic in the rates and linear in the accelerations.  For coordinates they are approximate, which
+        suffices for Newton's method.
         """
         dq, dv, da = self._steps(q)[:, None, None, None] * np.eye(self.size)[:, None]
         still = np.zeros_like(dq)

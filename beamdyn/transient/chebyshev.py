@@ -1,4 +1,4 @@
-"""Sums of Chebyshev polynomials over [-1, 1] or parts of it, with as few terms as an accuracy needs."""
+"""Sums of Chebyshev polynomials over [-1, 1] or a part of it, with as few terms as an accuracy needs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import cache, lru_cache
 
 import numpy as np
 
-NEGLIGIBLE = 1e-3  # fraction of an accuracy below which terms of a series are negligible
+NEGLIGIBLE = 1e-3  # fraction of the required accuracy below which terms of a series are negligible
 
 
 @dataclass(frozen=True)
@@ -21,7 +21,7 @@ class Polynomials:
     size : ndarray, shape (p,)
         Sizes of the coefficients.
     allowed : float
-        Total size of the terms that may be left out.
+        Largest total size of the terms that may be left out.
     """
 
     values: np.ndarray
@@ -29,14 +29,14 @@ class Polynomials:
     allowed: float
 
     def shortened(self, rough: bool) -> Polynomials:
-        """Drop last terms far below what may be left out; use single precision if `rough`."""
+        """Drop the last terms, if far below the size that may be left out; single precision if `rough`."""
         left_out = np.cumsum(self.size[::-1])[::-1]
         count = max(1, int((left_out > NEGLIGIBLE * self.allowed).sum()))
         values = self.values[:count]
         return replace(self, values=values.astype(np.float32) if rough else values, size=self.size[:count])
 
     def over(self, local: np.ndarray) -> np.ndarray:
-        """Compute coefficients (q, ...), q <= p, over a part of [-1, 1], by the matrix of `to_part`."""
+        """Compute coefficients (q, ...), q <= p, over a part of [-1, 1] by the matrix of `to_part`."""
         p = len(self.values)
         if p == 1:
             return self.values
@@ -48,13 +48,13 @@ class Polynomials:
 
 @lru_cache(maxsize=64)
 def to_part(count: int, start: float, end: float) -> np.ndarray:
-    """Build the matrix from `count` Chebyshev coefficients over [-1, 1] to those over a part of it."""
+    """Build the matrix from `count` Chebyshev coefficients over [-1, 1] to those over [start, end]."""
     T = polynomials(start + (end - start) * (1 + extrema(count)) / 2, count)
     return _to_coefficients(count) @ T
 
 
 def chebyshev_coefficients(values: np.ndarray) -> np.ndarray:
-    """Compute Chebyshev coefficients of functions from values at P extrema, along the first axis."""
+    """Compute Chebyshev coefficients of functions from their values at P extrema, along the first axis."""
     P = len(values)
     return values if P == 1 else (_to_coefficients(P) @ values.reshape(P, -1)).reshape(values.shape)
 
@@ -66,7 +66,7 @@ def _to_coefficients(points: int) -> np.ndarray:
 
 
 def extrema(points: int) -> np.ndarray:
-    """Compute the P extrema of a Chebyshev polynomial, from 1 to -1; 0 if there is one."""
+    """Compute the P extrema of a Chebyshev polynomial, from 1 to -1; the point 0 for P = 1."""
     return np.cos(np.pi * np.arange(points) / (points - 1)) if points > 1 else np.zeros(1)
 
 

@@ -1,4 +1,4 @@
-"""Cases of a sweep over speeds: the request, and the solution of one chunk of cases."""
+"""Request of a sweep over speeds, and the solution of one chunk (group) of its cases."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ DONE = "done"
 
 @dataclass(frozen=True)
 class SweepRequest(FieldsOnly):
-    """Checked arguments of `sweep` on which each case depends.
+    """Checked arguments of `sweep`, from which every case (one final speed) is computed.
 
-    All cases share the basis: modes at rest, or at the slowest and the fastest speed of all.  Where
-    `modes_at` gives the numbers of modes that some speeds [rad/s] need, ascending, each case uses the larger
-    number of its two neighbours.
+    All cases share the modal basis: modes at rest, or at the slowest and the fastest speed of all cases.
+    Where `modes_at` gives the numbers of modes that some speeds [rad/s] need, ascending, each case uses the
+    larger number of its two neighbours.
     """
 
     scene: Scene
@@ -44,13 +44,13 @@ class SweepRequest(FieldsOnly):
     modes_at: tuple[tuple[float, int], ...] = ()
 
     def transient_request(self, speed: float) -> TransientRequest:
-        """Build the request of the transient of one case, given by its final speed [rad/s]."""
+        """Build the request of one case's transient, given by its final speed [rad/s]."""
         scene, basis = replace(self.scene, motion=self.motion(speed)), self.basis_at(speed)
         how = "auto", self.discretization, "rest", None, {}
         return TransientRequest(scene, self.t_end, self.tolerance, *how, basis)
 
     def basis_at(self, speed: float) -> ModalBasis:
-        """Choose the modal basis of one case: as many modes as needed, at its slowest and fastest speed."""
+        """Choose the modal basis of one case: as many modes as needed at its slowest and fastest speed."""
         basis = self.basis
         if self.modes_at:
             speeds, modes = zip(*self.modes_at, strict=True)
@@ -76,7 +76,7 @@ class SweepRequest(FieldsOnly):
 
     @property
     def basis_name(self) -> str:
-        """Words for the modal bases of all cases."""
+        """Description of the modal bases of all cases, in words."""
         if self.basis.is_at_rest:
             return str(self.basis)
         fewest = min((modes for _, modes in self.modes_at), default=self.basis.modes)
@@ -113,7 +113,7 @@ def solve_chunk(request: SweepRequest, speeds: tuple[float, ...]) -> list[CaseRe
 
 
 def _solve(request: SweepRequest, speed: float) -> CaseResult:
-    """Solve one case as `simulate` does, but keep only the peaks of the tip."""
+    """Solve one case as `simulate` does, but keep only the peaks of the tip deflection."""
     reason = "not finite"
     try:
         if request.scene.physics.large_deflection:

@@ -1,4 +1,4 @@
-"""Motion at steady speed in closed form, as a sum of exponentials, instead of many time steps.
+"""Closed form of the motion at steady speed, as a sum of exponentials, in place of many time steps.
 
 The equations q'' + C q' + (K + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l have constant C and K, and e and g
 are sums of a few harmonics.  So the motion consists of a forced part, at sums of the loads' frequencies and
@@ -18,21 +18,23 @@ from beamdyn.transient import time_error
 from beamdyn.transient.gauss import interpolate, tableau
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 
-_WORTH_IT = 200  # number of steps of a segment below which stepping costs no more than the closed form
-_ORDERS = (3, 5)  # highest powers of e, the variation of the stiffness, that are tried in turn
+_WORTH_IT = 200  # number of steps of a segment below which time steps cost no more than the closed form
+_ORDERS = (3, 5)  # highest powers of the stiffness variation e that are tried in turn
 _FIT_TIMES = 8  # number of times, for each harmonic of e and g, at which these are fitted
-_GOLDEN = 0.6180339887498949  # reciprocal of the golden ratio: such spacing misses no period of the motion
+# Reciprocal of the golden ratio: spacing the sample times by it avoids coincidence with a period.
+_GOLDEN = 0.6180339887498949
 _FIT_ERROR = 1e-3  # error of e and g, relative to the accuracy
 _SAME = 1e-9  # relative difference of frequencies that count as equal
-_ABSENT = 1e-12  # factor of a line, over the largest, that is rounding error of the fit
+_ABSENT = 1e-12  # factor of a harmonic, over the largest, below which it is a rounding error of the fit
 _MOST_HARMONICS = 400
 _ITERATIONS = 30
 _CONVERGED = 1e-15
 _CHECKED = 64  # number of times at which the equations are checked
-_NEGLIGIBLE = 1e-2  # fraction of the accuracy for all small terms that are left out
-_RESOLVED = 12.0  # phase per step [rad] of the fastest terms that the nodes of a step resolve
+_NEGLIGIBLE = 1e-2  # fraction of the accuracy allowed for the sum of all neglected terms
+_RESOLVED = 12.0  # phase per step [rad] up to which the nodes of a step resolve an exponential
 _MOST_GROWTH = 20.0  # largest exponent by which the motion may grow over a segment
-_ROWS = 32  # number of steps whose exponentials are computed; its square is evaluated as one batch
+# number of steps in one batch of exponentials; batches of the squared number of steps are evaluated together
+_ROWS = 32
 
 
 @dataclass(frozen=True)
@@ -44,9 +46,9 @@ class _Harmonics:
     frequency : ndarray, shape (f,)
         Angular frequencies [rad/s], ascending, with their negatives.
     stiffness : ndarray, shape (f, n, n)
-        Factors of the varying stiffness; its part of frequency 0 is in `mean`.
+        Complex amplitudes of the varying stiffness; its constant part is in `mean`.
     load : ndarray, shape (f, n)
-        Factors of the loads.
+        Complex amplitudes of the loads.
     mean : ndarray, shape (n, n)
         Mean of the varying stiffness.
     """
@@ -58,9 +60,9 @@ class _Harmonics:
 
     @classmethod
     def fit(cls, system: ModulatedSystem, t0: float, t1: float, accuracy: float) -> _Harmonics | None:
-        """Fit the factors of stiffness e and loads g from t0 to t1 [s].
+        """Fit harmonics to the stiffness factors e and load factors g from t0 to t1 [s].
 
-        None if they contain other frequencies than the lines of the system.
+        None if e or g contain other frequencies than the known ones of the system.
         """
         lines = _distinct(np.concatenate([-system.lines, [0.0], system.lines]))
         count = _FIT_TIMES * len(lines)
@@ -79,7 +81,7 @@ class _Harmonics:
         return cls(lines, np.tensordot(found[:, :m], system.G, axes=1), load, mean)
 
     def sums(self, order: int) -> np.ndarray:
-        """List sums of up to `order` frequencies of the stiffness, ascending: shape (k,)."""
+        """List all sums of up to `order` frequencies of the varying stiffness, ascending: shape (k,)."""
         varying = self.frequency[np.abs(self.stiffness).any(axis=(1, 2))]
         found = np.zeros(1)
         for _ in range(order):
@@ -87,9 +89,10 @@ class _Harmonics:
         return found
 
     def coupling(self, sums: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-        """Make the function from a motion q (..., k, n) to forces (..., k, n) of the varying stiffness."""
+        """Build the function from a motion q (..., k, n) to forces (..., k, n) of the varying stiffness."""
         varying = np.abs(self.stiffness).any(axis=(1, 2))
-        # Index in `sums` of each sum minus each frequency of the stiffness; k where `sums` lacks it.
+        # Index in `sums` of each sum minus each frequency of the stiffness; k if the difference is not in
+        # `sums`.
         source = _places(sums, sums - self.frequency[varying, None])
         factors = self.stiffness[varying].swapaxes(1, 2)
 
@@ -101,14 +104,14 @@ class _Harmonics:
 
 
 def _distinct(frequencies: np.ndarray) -> np.ndarray:
-    """Sort frequencies, and leave out those that are equal to others."""
+    """Sort frequencies and remove repeated ones."""
     sorted_ = np.sort(frequencies)
     apart = np.diff(sorted_) > _SAME * max(abs(sorted_[0]), abs(sorted_[-1]))
     return sorted_[np.concatenate([[True], apart])]
 
 
 def _places(sums: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Find the indices of wanted frequencies among k ascending sums; k where none is equal."""
+    """Find the indices of wanted frequencies among k ascending ones (`sums`); k for one that is missing."""
     after = np.searchsorted(sums, wanted - 10 * _SAME * np.abs(sums).max())
     missing = np.abs(np.append(sums, np.inf)[after] - wanted) > 10 * _SAME * np.abs(sums).max()
     return np.where(missing, len(sums), after)
@@ -123,7 +126,7 @@ class _Exponentials:
     s : ndarray of complex, shape (k,)
         Exponents s_k [1/s].
     b : ndarray of complex, shape (k, n)
-        Factors b_k of the exponentials.
+        Complex amplitudes b_k of the exponentials.
     """
 
     s: np.ndarray
@@ -136,7 +139,7 @@ class _Exponentials:
 
 
 def _forced(harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int) -> _Exponentials | None:
-    """Find the motion that the loads force; None if the iteration fails."""
+    """Compute the forced motion under the harmonic loads; None if the iteration fails."""
     loaded = np.abs(harmonics.load).any(axis=1)
     if not loaded.any():
         return _Exponentials(np.zeros(0, complex), np.zeros((0, len(K)), complex))
@@ -168,16 +171,16 @@ def _stiffness(s: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
 def _free(
     harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Find exponents (n, k) and shapes (n, k, n) of the n free vibrations; None if the iteration fails.
+    """Compute exponents (n, k) and shapes (n, k, n) of the n free vibrations; None if the iteration fails.
 
-    Each vibration is corrected to satisfy the equations at all sums of frequencies, by Newton's method with
-    the inverses at the exponents without the varying stiffness; that of its own exponent is bordered by the
-    direction of the shape, in which the exponent changes instead.
+    Newton's method corrects each vibration until it satisfies the equations at all sums of frequencies.  It
+    keeps the inverse dynamic stiffness of the constant-coefficient equations; at the vibration's own exponent
+    this matrix is bordered by the mode shape, as the exponent is unknown there instead.
     """
     n, sums = len(K), harmonics.sums(order)
     values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
     upper = np.imag(values) > 0
-    # There is no result if a vibration does not oscillate, or there are too many terms.
+    # There is no result if a free vibration does not oscillate, or if there are too many terms.
     if upper.sum() != n or n * len(sums) > 4 * _MOST_HARMONICS:
         return None
     exponent, shape = values[upper], vectors[:n, upper].T
@@ -226,12 +229,12 @@ def propagate_in_closed_form(
     t0, t1, steps, q0, v0, stages
         As for `beamdyn.transient.gauss.propagate`, but the steps only sample the motion.
     accuracy : float
-        Largest error by the residual of the equations, relative to the largest coordinate.
+        Largest allowed error that the residual of the equations causes, relative to the largest coordinate.
 
     Returns
     -------
     SegmentWithError or None
-        None if the speed changes, e or g have other frequencies than the lines, or no order is accurate.
+        None if the speed changes, if e or g contain unknown frequencies, or if no order is accurate.
     """
     if not system.steady or steps < _WORTH_IT:
         return None
@@ -251,7 +254,7 @@ def propagate_in_closed_form(
         e, g = system.scalars(t0 + tau)
         q, v, a = motion.at(tau, 2)
         varying = (e[:, :, None] * (q @ system.G.swapaxes(1, 2)).swapaxes(0, 1)).sum(axis=1)
-        # The residual counts as if it were always in resonance.
+        # The error is bounded as if the residual always excited a resonance.
         missed = a + v @ C.T + q @ K.T + varying - g @ system.P
         error = (t1 - t0) * np.abs(missed).mean(axis=0) / np.sqrt(np.abs(np.diag(K)))
         if error.sum() <= accuracy * float(np.abs(q).max()):
@@ -262,7 +265,7 @@ def propagate_in_closed_form(
 def _solve(
     harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int, q0: np.ndarray, v0: np.ndarray
 ) -> _Exponentials | None:
-    """Solve forced motion plus the free vibrations that match the state q0, v0; None if not found."""
+    """Compute the forced motion plus free vibrations that match the state q0, v0; None if none is found."""
     forced, free = _forced(harmonics, C, K, order), _free(harmonics, C, K, order)
     if forced is None or free is None:
         return None
@@ -279,7 +282,7 @@ def _solve(
 def _sample(
     motion: _Exponentials, t0: float, h: float, steps: int, stages: int, accuracy: float, missed: np.ndarray
 ) -> time_error.SegmentWithError:
-    """Sample the motion at the ends and nodes of steps, without terms that are small or too fast."""
+    """Sample the motion at ends and nodes of steps, without terms that are small or too fast for steps."""
     growth = np.exp(np.maximum(np.real(motion.s), 0) * h * steps)
     size = np.abs(motion.b).max(axis=1) * growth
     rank = np.argsort(size)
@@ -299,7 +302,7 @@ def _sample(
 
 
 def _evaluate(motion: _Exponentials, h: float, steps: int, stages: int) -> tuple[np.ndarray, np.ndarray]:
-    """Evaluate augmented states (N + 1, 2 n + 1) at ends of steps, and accelerations (N, s, n) at nodes."""
+    """Evaluate augmented states (N + 1, 2 n + 1) at step ends, and accelerations (N, s, n) at nodes."""
     s, n = motion.s, motion.b.shape[1]
     nodes = np.exp(np.multiply.outer(s, h * tableau(stages).c))[:, :, None] * (s**2)[:, None, None]
     at_nodes = (nodes * motion.b[:, None]).reshape(len(s), stages * n)

@@ -1,12 +1,13 @@
-"""Time steps of bent beams, whose equations are nonlinear, by Gauss collocation; errors from a second run.
+"""Time steps for beams with large deflection, whose equations are nonlinear, by Gauss collocation.
 
 As in `beamdyn.transient.gauss`, the unknowns of a step are the accelerations a_i at its s nodes; rates and
 coordinates there are v + h sum A_ij a_j and q + c_i h v + h^2 sum A2_ij a_j.  Newton's method solves for them
 to rounding, with the derivatives of the equations at all nodes.  The method is symmetric in time and has no
 numerical damping, so that energy does not drift.
 
-The difference from a second run with two more stages in the same steps, of an order higher by four, is the
-first run's error, as it has accumulated.  The second run is the result: its own error is far smaller.
+A second run uses the same steps with two more stages, so that its order is higher by four.  The difference
+between the runs is the accumulated error of the first.  The second run is the result; its own error is far
+smaller.
 """
 
 from __future__ import annotations
@@ -45,20 +46,22 @@ from beamdyn.transient.trajectory import Trajectory
 
 _ITERATIONS = 30  # largest number of iterations of Newton's method in a step
 _CONVERGED = 1e-13  # relative error of the accelerations at which the iteration ends
-_LEAST_REDUCTION = 1e-3  # least reduction of the error by an iteration that is believed
+_LEAST_REDUCTION = 1e-3  # smallest reduction of the error by an iteration that is trusted
 _STALLED = 1e-9  # relative error of the accelerations below which a stalled iteration has converged
-# Residual over the elastic force below which a stalled iteration has converged, where accelerations are
+# Ratio of residual to elastic force below which a stalled iteration has converged, if accelerations are
 # small.
 _BALANCED = 1e-12
-_FAST = 0.1  # reduction of the error by an iteration up to which the derivatives are kept
-_FEW = 4  # number of iterations up to which the next step begins with the same derivatives
+_FAST = 0.1  # error reduction by an iteration up to which the Jacobian is reused
+_FEW = 4  # number of iterations up to which the next step starts with the same Jacobian
 _FINER = STAGES + 2  # number of stages of the second run
 _BALANCE = 1e-13  # residual in equilibrium, relative to the largest force or coordinate, that is rounding
 _TIMES_COMPARED = 257  # number of times at which forces are to be in equilibrium
-_SHORTER = 0.5  # ratio of the next step's phase angle to that of a step that was not solved
-_SHORT = 1.0  # phase angle of steps [rad] below which they resolve one more mode instead
-_MANY = 64  # number of pieces of a motion, such as a sampled one, above which no piece is divided further
-_CHECKED = 48  # number of steps of a segment at which the interpolation is checked
+_SHORTER = 0.5  # factor of the step's phase angle after a step that was not solved
+# Phase angle per step [rad] below which one more mode is resolved, rather than all steps shortened.
+_SHORT = 1.0
+# Number of smooth pieces of a motion, such as a sampled one, above which no piece is divided further.
+_MANY = 64
+_CHECKED = 48  # number of steps of a segment at which the interpolation error is measured
 
 
 def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
@@ -67,11 +70,12 @@ def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float)
     if system.motion.steady_start > 0 or v.any():
         return None
     still = np.zeros((_TIMES_COMPARED, system.size))
-    times = t_end * np.sqrt(np.linspace(0, 1, len(still)))  # unevenly spaced: no period has them in phase
+    # Times are unevenly spaced, so that they do not coincide with any period of the forces.
+    times = t_end * np.sqrt(np.linspace(0, 1, len(still)))
     carrier = system.carrier(system.root(times))
     force = system.residual(carrier, q, still, still)
     stiffness, size = np.abs(system.elastica.beam.stiffness), np.abs(q[0])
-    # Equilibria are known to rounding of their coordinates, which in a stiff mode is a large force.
+    # Equilibria are known up to rounding of the coordinates, which means a large force in a stiff mode.
     if (np.abs(force) > _BALANCE * ((stiffness @ size).max() + np.diag(stiffness) * size.max())).any():
         return None
     state = np.tile(np.append(1.0, y0), (2, 1))
@@ -83,8 +87,8 @@ def attempt_elastica(
 ) -> Attempt:
     """Integrate twice with equal steps in each segment, with 8 and 10 stages.
 
-    Steps that were not solved are shortened, finally until they resolve the vibration of all coordinates.
-    The last argument, an earlier attempt, is not used: an attempt takes nothing over from it.
+    Steps in which Newton's method failed are shortened, if necessary until they resolve the vibration of all
+    coordinates.  The last argument, an earlier attempt, is not used.
     """
     pieces = smooth_piece_ends(system.motion, t_end)
     edges = pieces if len(pieces) > _MANY else split_at_breakpoints(system.motion, t_end)
@@ -112,18 +116,18 @@ def attempt_elastica(
 
 
 def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
-    """Compute deflections of the tip (k, planes) at the ends of the steps [m]."""
+    """Compute tip deflections (k, planes) [m] at the ends of the steps of a segment."""
     return system.deflections(segment.state[:, 1 : system.size + 1])
 
 
 def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
-    """Estimate the error of the tip deflection: the distance of two runs, divided among coordinates."""
+    """Estimate the error of the tip deflection as the distance between two runs, split among coordinates."""
     straight, pairs = system.straight, [*zip(coarse, fine, strict=True)]
     change = np.max([np.abs(a.state - b.state).max(axis=0) for a, b in pairs], axis=0)[1 : system.size + 1]
     change *= np.abs(system.equations.tips).max(axis=0)
     tip = max(float(np.abs(_tips(system, a) - _tips(system, b)).max()) for a, b in pairs)
     modes = tip * change / max(change.sum(), 1e-300)
-    # The phase errors are those of a straight beam in the longest step.
+    # The phase errors are computed for the straight beam and the longest step.
     longest = max(fine, key=lambda segment: segment.h)
     starts = np.array([(longest.start + longest.end - longest.h) / 2])
     maps, finer = (step_maps(straight, starts, longest.h, tableau(s)).step for s in (STAGES, _FINER))
@@ -134,7 +138,7 @@ def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[S
 
 
 def _interpolation_error(system: BeamInSpaceSystem, segment: Segment) -> float:
-    """Estimate the tip deflection's largest error between step ends [m], by steps with more stages."""
+    """Estimate the largest interpolation error of the tip deflection [m], by steps with more stages."""
     error, h = 0.0, segment.h
     for k in np.unique(np.linspace(0, len(segment.acceleration) - 1, _CHECKED).astype(int)):
         state, acceleration = segment.state[k : k + 2], segment.acceleration[k : k + 1]
@@ -150,7 +154,7 @@ def _interpolation_error(system: BeamInSpaceSystem, segment: Segment) -> float:
 
 
 class StepNotSolved(ArithmeticError):
-    """Raised when Newton's method does not solve the equations of a step."""
+    """Raised when Newton's method cannot solve the equations of a time step."""
 
 
 def propagate_elastica(
@@ -163,7 +167,7 @@ def propagate_elastica(
     stages: int,
     like: Segment | None = None,
 ) -> Segment:
-    """Integrate over equal steps by Gauss collocation; like `beamdyn.transient.gauss.propagate`.
+    """Integrate over equal steps by Gauss collocation; nonlinear kin of `beamdyn.transient.gauss.propagate`.
 
     Parameters
     ----------
@@ -190,7 +194,8 @@ def propagate_elastica(
     state, acceleration = allocate_steps(steps, stages, q0, v0)
     guesses = [None] * steps if like is None else _at_nodes(stages, like.acceleration)
     q, v = q0, v0
-    with np.errstate(over="ignore", invalid="ignore"):  # a step that is too long overflows, and is refused
+    # A step that is too long overflows, and is then reported as not solved.
+    with np.errstate(over="ignore", invalid="ignore"):
         for first in range(0, steps, BLOCK):
             some = np.arange(first, min(first + BLOCK, steps))
             motion = system.carrier(system.root(t0 + h * (some[:, None] + step.table.c)))
@@ -201,22 +206,23 @@ def propagate_elastica(
 
 
 def _at_nodes(stages: int, values: np.ndarray) -> np.ndarray:
-    """Interpolate values (N, s, n) at the nodes of a Gauss rule to those of a rule with other stages."""
+    """Interpolate values (N, s, n) from the nodes of a Gauss rule to those of a rule with `stages` nodes."""
     given = values.shape[1]
     return legendre.legvander(gauss_rule(stages)[0], given - 1) @ legendre_series(given) @ values
 
 
-Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # factors of a matrix, and pivots
+Factors: TypeAlias = tuple[np.ndarray, np.ndarray]  # LU factors of a matrix, and pivots
 
 
 class _Step:
-    """Solver of steps of one length h [s] and one number of stages."""
+    """Solver for time steps of one length h [s] and one number of stages."""
 
     def __init__(self, system: BeamInSpaceSystem, h: float, table: Tableau) -> None:
         self.system, self.h, self.table = system, h, table
         self.drift, self.end_v, self.end_q = h * table.c[:, None], h * table.b, h**2 * table.b2
         self.to_motion = np.concatenate([h**2 * table.A2, h * table.A, np.eye(len(table.c))])
-        self.kept: tuple[np.ndarray, Factors] | None = None  # derivatives (3, n, n), and the step's factors
+        # Derivatives (3, n, n) and LU factors that are reused.
+        self.kept: tuple[np.ndarray, Factors] | None = None
 
     def advance(
         self, carrier: Carrier, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
@@ -224,12 +230,12 @@ class _Step:
         """Compute coordinates and rates at the end of a step, and accelerations at its nodes."""
         drift, middle = self.drift * v, len(self.table.c) // 2
         still = np.zeros_like(drift)
-        if self.kept is None:  # tangent at rest in these coordinates, the same for all nodes
+        if self.kept is None:  # Jacobian for all nodes: that of the beam at rest, in these coordinates
             here = carrier.at(slice(middle, middle + 1)), q[None], still[:1], still[:1]
             tangents = self.system.tangents(*here, self.system.residual(*here))
             self.kept = tangents[:, 0], self._factorize(tangents)
         (stiffness, damping, _), factors = self.kept
-        if guess is None:  # initial guess from equations linearized about the beginning of the step
+        if guess is None:  # initial guess from the equations linearized about the state at the step's start
             load = self.system.residual(carrier, still + q, still, still)
             guess = -_divide(factors, load + damping @ v + drift @ stiffness.T)
         a = self._solve(carrier, q + drift, v, guess, factors)
@@ -238,7 +244,7 @@ class _Step:
     def _solve(
         self, carrier: Carrier, drifted: np.ndarray, v: np.ndarray, a: np.ndarray, factors: Factors | None
     ) -> np.ndarray:
-        """Solve for accelerations (s, n) by Newton's method, keeping the factors while they serve."""
+        """Solve for accelerations (s, n) by Newton's method, reusing LU factors while it converges fast."""
         start, last = np.stack([drifted, np.broadcast_to(v, a.shape), np.zeros_like(a)]), np.inf
         for iteration in range(_ITERATIONS):
             motion = start + self.to_motion.dot(a).reshape(start.shape)
@@ -263,22 +269,22 @@ class _Step:
         raise StepNotSolved("the equations of a step were not solved: take shorter steps")
 
     def _balances(self, residual: np.ndarray, motion: np.ndarray) -> bool:
-        """Return whether a residual (s, n) is rounding beside the elastic forces."""
+        """Return whether a residual (s, n) is only rounding error of the elastic forces."""
         return _norm(residual) <= _BALANCED * _norm(motion[0] @ self.system.elastica.beam.stiffness)
 
     def _factorize(self, tangents: np.ndarray) -> Factors:
-        """Compute LU factors of the derivative of all residuals of a step by all accelerations."""
+        """Compute LU factors of the Jacobian of all residuals of a step with respect to all accelerations."""
         s, n = len(self.table.c), self.system.size
         matrix = (self.to_motion.reshape(3, s, 1, s, 1) * tangents[:, :, :, None]).sum(axis=0)
         return dgetrf(matrix.reshape(s * n, s * n))[:2]
 
 
 def _norm(values: np.ndarray) -> float:
-    """Compute the Euclidean norm of all values."""
+    """Compute the Euclidean norm of all elements of an array."""
     flat = values.ravel()
     return math.sqrt(flat.dot(flat))
 
 
 def _divide(factors: Factors, residual: np.ndarray) -> np.ndarray:
-    """Solve a linear system for accelerations by the factors of its matrix."""
+    """Solve a linear system for accelerations by the LU factors of its matrix."""
     return dgetrs(*factors, residual.ravel())[0].reshape(residual.shape)

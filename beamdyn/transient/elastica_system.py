@@ -1,8 +1,8 @@
-"""Equations of motion for large deflection in one plane, in modal coordinates, for the integrators.
+"""Equations of motion for large deflection in one plane, in modal coordinates, for time integrators.
 
-The equations are those of the beam in space with one curvature, in their cheapest form.  The positions p_i of
-masses m_i are sums over the slope angles theta_j, p_i = sum_j P_ji (cos theta_j, sin theta_j), so that the
-mass enters by one matrix H = P m P'.  The generalized forces on the angles are
+They are the equations of the beam in space with a single curvature, in a form that is cheap to evaluate.  The
+positions p_i of masses m_i are sums over the slope angles theta_j, p_i = sum_j P_ji (cos theta_j, sin
+theta_j), so that the mass enters by one matrix H = P m P'.  The generalized forces on the angles are
 
     F = -sin theta (H X + a_1 g) + cos theta (H Y + a_2 g) + (moments of inertia),   g = P m,
 
@@ -23,34 +23,36 @@ from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 class ElasticaSystem(BeamInSpaceSystem):
     """Equations of motion of a straight inextensible beam that bends by any angle in one plane.
 
-    Integrators evaluate them a million times, on small arrays, so that every operation counts: in one plane
-    this takes a tenth of the time in space.
+    An integrator evaluates them a million times: in one plane this takes a tenth of the time that the
+    equations in space need.
     """
 
     @cached_property
     def kernel_and_moments(self) -> np.ndarray:
-        """Matrix (N + 2, N + 1): the negative mass matrix over the slope angles, and below it moments.
+        """Matrix (N + 2, N + 1): minus the mass matrix of the slope angles, and below it two rows of moments.
 
-        The moments [kg m] act at the slope angles under a unit acceleration of the root.
+        A row of moments [kg m] has the generalized force on each slope angle by a unit acceleration of the
+        root.
         """
         stations, masses = self.elastica.beam.stations, self.elastica.beam.masses
-        positions = np.zeros((stations.sections, stations.count))  # by cosines or sines of slope angles
+        # Positions per unit of the cosine or sine of each slope angle.
+        positions = np.zeros((stations.sections, stations.count))
         positions[:-1] = stations.to_all(np.eye(stations.sections - 1))
         positions[:, : stations.sections] += np.diag(masses.centre[0])
         return np.vstack([-(positions * masses.mass) @ positions.T, positions @ masses.mass])
 
     @cached_property
     def conditions(self) -> tuple[bool, bool, bool]:
-        """Whether there are moments of inertia, damping, and rotation about an axis in the plane."""
+        """Whether the equations have moments of inertia, damping, and rotation about an axis in the plane."""
         beam = self.elastica.beam
         return bool(beam.masses.inertia.any()), bool(beam.damping.any()), bool(self.elastica.axis[1])
 
     def residual(self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-        """Compute the residual of the equations of motion, as for a beam in space.
+        """Compute the residual of the equations of motion, with arguments as for the beam in space.
 
-        In the plane of rotation, rate and acceleration of an angle as seen from the ground, w and w', leave
-        X = -w^2 cos theta - w' sin theta and Y = -w^2 sin theta + w' cos theta; out of it X has
-        -omega^2 cos theta, too.
+        If bending is in the plane of rotation, an absolute angular rate w and acceleration w' give X = -w^2
+        cos theta - w' sin theta and Y = -w^2 sin theta + w' cos theta; if it is out of this plane, X contains
+        -omega^2 cos theta in addition.
         """
         beam, (has_inertia, is_damped, is_tilted) = self.elastica.beam, self.conditions
         angles, of_mass, inertia = beam.angles, self.kernel_and_moments, beam.masses.inertia

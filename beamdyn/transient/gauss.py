@@ -21,7 +21,7 @@ from numpy.polynomial import legendre
 
 from beamdyn.common.inputs.checks import MOST
 
-BLOCK = 64  # number of steps solved as one batch, whose matrices fit the processor's cache
+BLOCK = 64  # number of steps solved as one batch, so that the matrices fit the processor's cache
 
 
 class LinearSystem(Protocol):
@@ -62,7 +62,7 @@ class Tableau:
 
     @property
     def A2(self) -> np.ndarray:
-        """Weights of the accelerations in the displacement at the nodes, shape (s, s).
+        """Weights A2 of the accelerations in the displacement at the nodes, shape (s, s).
 
         The square of A integrates the velocity's values at the nodes.  Integrating the polynomial of
         the acceleration twice instead would lose the A-stability of the first-order collocation.
@@ -93,9 +93,9 @@ class StepMaps:
     Parameters
     ----------
     step : ndarray, shape (N, 2 n, 2 n + 1)
-        From the state at the beginning to (q, v) at the end of the step.
+        Maps from the state at the beginning to (q, v) at the end of the step.
     acceleration : ndarray, shape (N, s, n, 2 n + 1)
-        From the state at the beginning to the accelerations at the nodes.
+        Maps from the state at the beginning to the accelerations at the nodes.
     step_extended : ndarray of longdouble, shape (2 n, 2 n + 1), optional
         Map to the end of every step, in extended precision, if all steps are equal.
     """
@@ -156,7 +156,8 @@ def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, ta
     a = np.linalg.solve(matrix, right)
     if not equal:
         return StepMaps(_maps_to_end(a, h, table), a.reshape(*f.shape, -1))
-    a = a.astype(np.longdouble)  # errors of the map grow with its powers, so it is refined by iteration
+    # Powers of the map magnify its errors, so the solution is refined by iteration.
+    a = a.astype(np.longdouble)
     for _ in range(2):
         a += np.linalg.solve(matrix, (right - matrix.astype(np.longdouble) @ a).astype(float))
     step, acceleration = _maps_to_end(a, h, table)[0], a.astype(float).reshape(*f.shape, -1)
@@ -168,12 +169,12 @@ def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, ta
 
 
 def _maps_to_end(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Compute maps (N, 2 n, 2 n + 1) to (q, v) at the ends of steps from maps to the accelerations."""
+    """Compute maps (N, 2 n, 2 n + 1) to (q, v) at step ends from maps `a` to accelerations at nodes."""
     return add_drift(increment(a, h, table), h, first=1)
 
 
 def increment(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Compute the increment (N, 2 n, m) of (q, v) over steps by the nodes' accelerations (N, s n, m)."""
+    """Compute the increment (N, 2 n, m) of (q, v) over steps from accelerations at nodes, a (N, s n, m)."""
     N, rows, columns = a.shape
     weights = np.stack([h**2 * table.b2, h * table.b])
     n = rows // len(table.c)
@@ -181,7 +182,7 @@ def increment(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
 
 
 def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
-    """Add the drift (q + h v, v), without acceleration, to maps whose columns from `first` on are q, v."""
+    """Add the state without acceleration, (q + h v, v), to maps whose columns from `first` on are q, v."""
     n = step.shape[1] // 2
     step[:, np.arange(2 * n), first + np.arange(2 * n)] += 1
     step[:, np.arange(n), first + n + np.arange(n)] += h
@@ -189,7 +190,7 @@ def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
 
 
 def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Build the matrix of the collocation equations for accelerations at all nodes: (N, s n, s n)."""
+    """Build the matrix of the collocation equations, (N, s n, s n), for the accelerations at all nodes."""
     N, s, n, _ = K.shape
     matrix = np.empty((N, s, n, s, n))
     np.multiply((h**2 * table.A2)[:, None, :, None], K[:, :, :, None, :], out=matrix)
@@ -213,7 +214,7 @@ def right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, tab
 
 
 def components(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Evaluate linear functions (d, n) of coordinates q (..., n): shape (..., d)."""
+    """Evaluate linear functions with coefficients `outputs` (d, n) of coordinates q (..., n): (..., d)."""
     return np.stack([q @ output for output in outputs], axis=-1)
 
 
@@ -249,13 +250,13 @@ class Segment:
         return self.start + self.h * len(self.acceleration)
 
     def projected(self, outputs: np.ndarray) -> Segment:
-        """Build the segment of d outputs in place of the n coordinates, by their matrix `outputs` (d, n)."""
+        """Replace the n coordinates by d linear functions of them with coefficients `outputs` (d, n)."""
         return replace(
             self, state=project(self.state, outputs), acceleration=components(self.acceleration, outputs)
         )
 
     def samples(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Sample times, displacements and velocities at `count` equal parts of each step, without its end."""
+        """Sample times, displacements, velocities at `count` equal parts of each step, without its end."""
         theta = np.arange(count) / count
         q, v = interpolate(self.h, self.state[:-1], self.acceleration, theta)
         t = self.start + self.h * (np.arange(len(q))[:, None] + theta)
@@ -289,7 +290,7 @@ def interpolate(
     Parameters
     ----------
     h : float or ndarray, shape (N, 1, 1)
-        Step size, or that of each step [s].
+        One step size, or the size of each step [s].
     state : ndarray, shape (N, 2 n + 1)
         Augmented states at the beginnings of the steps.
     acceleration : ndarray, shape (N, s, n)
@@ -308,7 +309,7 @@ def interpolate(
     both = weights @ table.A, weights
     if n > 1:
         dq, dv = (each @ acceleration for each in both)
-    else:  # for one function, a single product suffices
+    else:  # for one fraction, a single matrix product suffices
         dq, dv = ((acceleration[:, :, 0] @ each.T)[:, :, None] for each in both)
     return q + h * theta[:, None] * v + h**2 * dq, v + h * dv
 
@@ -349,7 +350,7 @@ def propagate(
 
 
 def growth_without_bound(how_far: str) -> ArithmeticError:
-    """Build the error for a motion that has no answer, because it grows without bound."""
+    """Build the error for a motion that grows without bound, so that it has no result."""
     return ArithmeticError(
         f"the motion grows without bound, {how_far}: the beam buckles under its weight, or it is "
         "parametrically unstable, and linear theory does not hold; lower gravity or the speed, or end the "
@@ -358,10 +359,10 @@ def growth_without_bound(how_far: str) -> ArithmeticError:
 
 
 def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
-    """Fill state[1:] from state[0]; for equal steps by powers of their map, which are returned."""
+    """Compute the states state[1:] from state[0]; equal steps use powers of one map, which are returned."""
     if maps.step_extended is not None:
         if powers is None or len(powers) < len(maps.step) or (powers[0] != maps.step[0]).any():
-            # One rounding error per block, instead of per step.
+            # Powers of the map cause one rounding error per block, instead of one per step.
             full = np.eye(state.shape[1], dtype=np.longdouble)
             full[1:] = maps.step_extended
             power, rows = full, []
@@ -376,7 +377,7 @@ def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None)
 
 
 def advance(steps: np.ndarray, state: np.ndarray) -> None:
-    """Fill the augmented states state[1:] from state[0] by affine maps, one after the other."""
+    """Compute the augmented states state[1:] from state[0] by applying affine maps one after the other."""
     for step, before, after in zip(steps, state[:-1], state[1:, 1:], strict=True):
         step.dot(before, out=after)
 

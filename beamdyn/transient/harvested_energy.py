@@ -1,4 +1,4 @@
-"""Yield of a harvester during a transient: voltage, current, power, energy and strain of its layers."""
+"""Energy harvested by piezoelectric layers during a transient, with voltage, current, power and strain."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from beamdyn.scene.scene import Scene
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.transient import Transient
 
-_POINTS = 4  # Gauss points between two samples of a run, of which each step has several
+_POINTS = 4  # number of Gauss points between two samples of a run; each time step has several samples
 
 
 @dataclass(frozen=True)
 class TransientHarvest(JudgedByRepeating):
-    """Yield of a harvester during a transient: voltage, current, power, energy and strain over time.
+    """Electrical output of a harvester during a transient: voltage, current, power, energy; and strain.
 
-    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
-    harvested energy.
+    `model_error` and `left_out`, computed at their first use, estimate how much the neglected physical
+    effects change the harvested energy.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class TransientHarvest(JudgedByRepeating):
     energy : ndarray, shape (T,)
         Energy harvested since the beginning [J].
     strain : ndarray, shape (T,)
-        Largest magnitude of the bending strain of the layers, over their length.
+        Largest bending strain (magnitude) along the piezoelectric layers.
     provenance : Provenance
         How the run was computed.
 
@@ -76,7 +76,7 @@ class TransientHarvest(JudgedByRepeating):
 
     @cached_property
     def energy_error(self) -> float:
-        """Estimated error of the harvested energy by modes left out [J], from a run with more modes."""
+        """Estimated error of the harvested energy [J] by neglected modes, from a run with more modes."""
         if self.run.refined is None:
             return float("inf")
         return 2 * abs(float(transient_harvest(self.run.refined).energy[-1] - self.energy[-1]))
@@ -92,7 +92,7 @@ class TransientHarvest(JudgedByRepeating):
         yield f"time {error_at_most(self.run.time_error / (self.run.largest or 1.0))}"
 
     def judged(self, found: TransientHarvest) -> np.ndarray:
-        """Select the harvested energy, whose model error is stated: shape ()."""
+        """Return the harvested energy, the quantity for which the model error is estimated: shape ()."""
         return np.array(found.energy[-1])
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -107,7 +107,7 @@ def transient_harvest(run: Transient) -> TransientHarvest:
     Parameters
     ----------
     run : Transient
-        The transient, of `simulate`, of a beam with the layers of a `Harvester`.
+        Result of `simulate` for a beam with the piezoelectric layers of a `Harvester`.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def transient_harvest(run: Transient) -> TransientHarvest:
     Raises
     ------
     ValueError
-        If the beam carries no layers, or the run is one with large deflection.
+        If the beam carries no piezoelectric layers, or the run has large deflection.
 
     References
     ----------
@@ -154,5 +154,5 @@ def transient_harvest(run: Transient) -> TransientHarvest:
 
 
 def _at(row: Voltage, run: Transient, t: np.ndarray) -> np.ndarray:
-    """Evaluate a quantity of the circuit at times t [s] (T,)."""
+    """Evaluate the quantity of the circuit given by the coefficients `row` at times t [s] (T,)."""
     return run.path.at(t)[row.order] @ row.row

@@ -1,7 +1,7 @@
-"""Time integration of a scene's equations to a tolerance: choose step sizes, estimate the error, refine.
+"""Time integration of a scene's equations to a tolerance: choice of step size, error estimate, refinement.
 
-A straight beam has linear equations, solved by maps of many steps at once; those of a bent beam
-(`elastica_steps`) are solved step by step.  The step size and its control are the same.
+A straight beam has linear equations, solved as affine maps of many steps at once; the nonlinear equations of
+large deflection (`elastica_steps`) are solved step by step.  Both use the same control of the step size.
 """
 
 from __future__ import annotations
@@ -32,19 +32,20 @@ from beamdyn.transient.time_error import ERROR_ORDER, STAGES, SegmentWithError, 
 from beamdyn.transient.trajectory import Trajectory, magnitude
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
-_WORTH_A_SEGMENT = 500  # number of steps that cost as much as the preparation of a segment
+_WORTH_A_SEGMENT = 500  # number of steps whose cost equals that of the preparation of a segment
 _TIMES_COMPARED = 257  # number of times at which the equations are compared with those at the start
-_BALANCE = 1e-13  # residual force in equilibrium, over the largest force, that is rounding error
-_SERIES_SHARE = 0.1  # fraction of the tolerance for the truncated series of weakly modulated steps
-_ORDER_ACROSS_SAMPLES = 3  # order of the error of steps within which the acceleration has kinks
-_FEW_STEPS = 4  # steps of more samples than this are cut to one sample before they are cut further
-_CEILED = 1.02  # factor of a step size: steps get shorter when their number, some hundreds, is rounded up
+_BALANCE = 1e-13  # residual force, over the largest force, below which it is a rounding error of equilibrium
+# Fraction of the tolerance allowed for truncating the series in steps with weakly varying stiffness.
+_SERIES_SHARE = 0.1
+_ORDER_ACROSS_SAMPLES = 3  # order of the error of steps across samples, where the acceleration has kinks
+_FEW_STEPS = 4  # ratio of step to sample spacing above which steps are first shortened to one sample
+_CEILED = 1.02  # margin of a step size, as rounding up the number of steps (some hundreds) shortens them
 
 
 def integrate(
     system: AnySystem, y0: np.ndarray, t_end: float, tolerance: float
 ) -> tuple[Trajectory, float, str]:
-    """Integrate with the step size of the tolerance, refined while the estimated error exceeds it.
+    """Integrate with the step size for the tolerance; use smaller steps while the estimated error exceeds it.
 
     Parameters
     ----------
@@ -86,7 +87,7 @@ def integrate(
 
 
 class _Start(NamedTuple):
-    """Start of a straight beam's run: equations, coordinates and velocities at time 0, end [s], tolerance."""
+    """Input of an integration: equations of a straight beam, initial coordinates and velocities, end [s]."""
 
     system: ModalSystem
     y0: np.ndarray
@@ -95,7 +96,7 @@ class _Start(NamedTuple):
 
 
 def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
-    """Build the path of a beam that stays at rest, if equations are constant and forces in equilibrium."""
+    """Build the path of a beam at rest, if the equations are constant and the forces in equilibrium."""
     system, y0, t_end, tolerance = start
     if system.motion.steady_start > 0:
         return None
@@ -112,8 +113,8 @@ def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
 def _attempt(start: _Start, step_size: StepSize, _: Attempt | None) -> Attempt:
     """Integrate with equal steps in each segment.
 
-    Neighbouring parts of one smooth piece are joined if equal steps cost fewer additional steps than
-    the preparation of another segment is worth.
+    Neighbouring parts of a smooth piece are joined if the additional steps cost less than the preparation of
+    another segment.
     """
     system, y0, t_end, tolerance = start
     breakpoints = set(record_steps.smooth_piece_ends(system.motion, t_end))
@@ -135,10 +136,10 @@ def _attempt(start: _Start, step_size: StepSize, _: Attempt | None) -> Attempt:
 
 
 def _attempt_record(start: _Start, step_size: StepSize, before: Attempt | None) -> Attempt:
-    """Integrate a motion given by samples, after another attempt if there was one.
+    """Integrate a motion given by samples; use the step size of the attempt `before`, if any.
 
-    Smooth loads are integrated so much better than loads with samples inside a step that one step between two
-    samples is tried after steps over many.  Each later attempt has at least one step more between samples.
+    Steps without a sample inside are far more accurate than steps across samples.  So after steps across many
+    samples, one step per sample interval is tried; each later attempt has more steps per interval.
     """
     system, y0, t_end, tolerance = start
     if before is not None:
@@ -160,7 +161,7 @@ def _attempt_record(start: _Start, step_size: StepSize, before: Attempt | None) 
 
 
 def _judged(system: ModalSystem, step_size: StepSize, path: Trajectory, order: int) -> Attempt:
-    """Add to a run its error, the largest deflection at the ends of steps, and its method's name."""
+    """Build an attempt from a path: error estimate, largest deflection at step ends, name of the method."""
     error = estimate_time_error(system, path.segments, system.tips)
     largest = max(float(magnitude(s.state[:, 1 : system.size + 1], system.tips).max()) for s in path.segments)
     steps = sum(len(s.acceleration) for s in path.segments)
@@ -171,16 +172,16 @@ def _judged(system: ModalSystem, step_size: StepSize, path: Trajectory, order: i
 def follow_steps(
     path: Trajectory, system: ModalSystem, y0: np.ndarray, tolerance: float
 ) -> tuple[Trajectory, float]:
-    """Integrate a system with the steps that were found for another one: those of its trajectory `path`.
+    """Integrate a system with the time steps of a trajectory `path` that was computed for another system.
 
-    Other parameters, and errors raised: see `integrate`.
+    Other parameters and errors raised: see `integrate`.
 
     Returns
     -------
     path : Trajectory
     error : float
         Estimated error of the tip deflection [m], from segments that are solved by series or in closed form;
-        that of other segments is not estimated.
+        the error of other segments is not estimated.
     """
     steps = [len(segment.acceleration) for segment in path.segments]
     check_number_of_steps(sum(steps), system.size, path.end)

@@ -1,9 +1,9 @@
-"""Changes of a transient's largest deflection by the effects that its model leaves out.
+"""Changes of a transient's largest deflection by physical effects that its model neglects.
 
-Where an effect hardly changes the lowest natural frequencies and their phase at the end of the run, its
-change of the deflection is estimated from that of the first frequency; otherwise the run is repeated with the
-effect.  A run with large deflection takes far longer: it is repeated where it is short, else the change is
-estimated from the static deflection and the backbone.
+If an effect hardly changes the lowest natural frequencies and their phase at the end of the run, the change
+of the deflection is estimated from that of the first frequency; otherwise the run is repeated with the
+effect.  A run with large deflection takes far longer: it is repeated only if it is short; otherwise the
+change is estimated from the static deflection and the backbone curve (frequency over amplitude).
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ from beamdyn.modes.repeated import BY_FREQUENCY
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.problem import Solution, TransientProblem
 
-_MODES = 2  # number of lowest modes whose frequencies tell whether an effect matters
-# Smallest relative change of a frequency, and of its phase at the end [rad], that matter.
+_MODES = 2  # number of lowest modes whose frequency changes decide whether an effect matters
+# Smallest relative change of a frequency, and smallest change of its phase at the end [rad], that matter.
 _SHIFT, _PHASE = 1e-4, 1e-2
 _SHORT_RUN = 2000  # number of samples up to which a run is repeated with large deflection
 _BY_BACKBONE = (
@@ -43,7 +43,7 @@ _BY_BACKBONE = (
 def left_out_of_transient(
     problem: TransientProblem, found: Solution, window: tuple[float, float] | None = None
 ) -> LeftOutEffects:
-    """Find what each effect changes in the largest deflection of a run, or of its window [s]: shape ()."""
+    """Compute the change of a run's largest deflection, in a window [s] or overall, by neglected effects."""
     if problem.scene.tip_load.acts:
         return nothing_known(problem.scene, LOADED)
     largest, samples = _peak(found, window), len(found.path.samples[0])
@@ -51,7 +51,7 @@ def left_out_of_transient(
     straight = without_large_deflection(problem.model)
     shifts = _shifts_of_frequencies(straight, speed, problem.t_end)
     without = SolvedValues(np.array(largest))
-    if straight is not problem.model:  # effects are compared with a run of the straight beam
+    if straight is not problem.model:  # effects are compared with a run of the straight, linear beam
         without = _run_again(problem, straight.scene, window)
 
     def solve(scene: Scene, name: str) -> SolvedValues:
@@ -67,12 +67,12 @@ def left_out_of_transient(
 
 
 def _peak(found: Solution, window: tuple[float, float] | None) -> float:
-    """Find the largest deflection of a run, or in a window of it [m]."""
+    """Find the largest deflection [m] in a run, or in a window of it."""
     return found.largest if window is None else found.peak(*window)
 
 
 def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str, float]:
-    """Find the relative changes of the first frequency by effects that hardly change the frequencies."""
+    """Compute relative changes of the first frequency by effects that hardly change the lowest ones."""
     s = model.solver.solve(np.array([speed]), min(_MODES, model.solver.size)).eigenvalue
     omega, changes = np.abs(s).max(), left_out_of_modes(model, np.array([speed]), s).changes
     largest = {name: np.abs(each).max() for name, each in changes.items() if name != LARGE_DEFLECTION.name}
@@ -81,10 +81,10 @@ def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str
 
 
 def _estimate_bent(problem: TransientProblem, largest: float, scene: Scene, speed: float) -> SolvedValues:
-    """Estimate the largest deflection with large deflection from equilibrium and backbone at a speed.
+    """Estimate the largest deflection at large deflection from static equilibrium and backbone curve.
 
-    The constant part is the equilibrium's deflection at the largest speed.  The rest changes as the
-    compliance of the first mode does, by -2 times the relative change of its frequency.
+    The static part is the equilibrium deflection at the largest speed.  The vibration changes in proportion
+    to the first mode's compliance: by -2 times the relative change of its frequency.
     """
     bent, straight = (Model(each, problem.model.discretization) for each in (scene, problem.scene))
     try:
@@ -102,7 +102,7 @@ def _estimate_bent(problem: TransientProblem, largest: float, scene: Scene, spee
 
 
 def _run_again(problem: TransientProblem, scene: Scene, window: tuple[float, float] | None) -> SolvedValues:
-    """Find the largest deflection in a run of another scene with the same number of modes."""
+    """Compute the largest deflection in a run of another scene with the same number of modes."""
     if not isinstance(problem.initial, str):
         return SolvedValues(np.array(np.nan), "the initial coordinates are those of this model")
     modes = problem.basis.modes

@@ -1,4 +1,4 @@
-"""The problem of a transient, its integration, and problems with more modes for comparison."""
+"""Transient problem: its equations, their integration, and problems with more modes for comparison."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ from beamdyn.transient.trajectory import Path, Trajectory, in_direction, largest
 if TYPE_CHECKING:
     from scipy.integrate import OdeSolver
 
-_LIMIT_DEFLECTION = 1000.0  # deflection over the length beyond which the motion counts as unbounded
-_FREE = 1e-9  # relative stiffness, over that with a clamped root, below which the root turns freely
+_LIMIT_DEFLECTION = 1000.0  # ratio of deflection to length above which the motion counts as unbounded
+_FREE = 1e-9  # stiffness relative to that with a clamped root, below which the root turns freely
 _REMEDY = "give 'rest' or an array"
-_FINER_MODEL = 1e-3  # ratio of the error of the modes to the tolerance
+_FINER_MODEL = 1e-3  # ratio of the modes' discretization error to the tolerance
 _Found = TypeVar("_Found")
 
 
@@ -71,17 +71,17 @@ def unless_unbounded(solve: Callable[[], _Found]) -> _Found | None:
 def choose_for_basis(
     scene: Scene, discretization: DiscretizationChoice, basis: ModalBasis, tolerance: float
 ) -> Model:
-    """Choose the smallest model that gives the modes of a basis, far within the tolerance of a motion.
+    """Choose the smallest discretization whose modes are far more accurate than the tolerance requires.
 
-    The basis has undamped modes.  In a scene with two planes, shear, rotary inertia or springs the choice
-    is based on them: damped modes take far longer to find in large models, and where shear has no
-    mass of its own, some do not exist.
+    The modal basis consists of undamped modes.  For a scene with two planes, shear, rotary inertia or springs
+    the choice also uses undamped modes: damped ones take far longer to compute in large models, and some do
+    not exist if shear has no mass of its own.
     """
     speeds, modes, target = np.array(basis.speeds), basis.modes or 1, _FINER_MODEL * tolerance
     if scene.bends_in_space:
         plain = replace(scene.straightened, physics=Physics(planes=scene.physics.planes))
         return Model(scene, choose_for_basis(plain, discretization, basis, tolerance).discretization)
-    if scene.physics.large_deflection:  # the modes are those of the straight beam
+    if scene.physics.large_deflection:  # the basis consists of modes of the straight beam
         return choose_for_basis(scene.straightened, discretization, basis, tolerance).of(scene)
     plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
     if plain or not scene.is_damped:
@@ -115,9 +115,9 @@ class TransientProblem(FieldsOnly):
         return choose_for_basis(self.scene, self.discretization, self.basis, self.tolerance)
 
     def system(self) -> AnySystem:
-        """Return the equations of the run, without the coordinates that stay at rest."""
+        """Build the equations of motion of the run, without coordinates that stay at rest."""
         if self.scene.bends_in_space or self.scene.tip_load.acts:
-            # Imported here, as few scenes need it.
+            # The import is inside the function because few scenes have large deflection.
             from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 
             return BeamInSpaceSystem.of_model(self.model, self.basis, self.motion)
@@ -134,7 +134,7 @@ class TransientProblem(FieldsOnly):
         Raises
         ------
         NoModelAnswer
-            If the motion passes the critical speed, before any long work.
+            If the motion passes the critical speed (raised before any long computation).
         ArithmeticError
             If the motion has grown without bound, so that its error estimates are void.
         """
@@ -175,7 +175,7 @@ class TransientProblem(FieldsOnly):
     def refined(self) -> Self | None:
         """Return the problem with more modes, or a finer discretization if it has all modes.
 
-        None if there is none.
+        None if there is no larger problem.
         """
         base = replace(self, method="auto", t_eval=None)
         if self.basis.modes is None:
@@ -185,7 +185,7 @@ class TransientProblem(FieldsOnly):
         return basis and base._with_basis(basis)
 
     def with_one_more(self) -> Self | None:
-        """Return the problem with one more mode; None if the basis has all."""
+        """Return the problem with one more mode; None if the basis already has all modes."""
         basis = None if self.basis.modes is None else self.basis.with_one_more()
         return basis and self._with_basis(basis)
 
@@ -209,7 +209,7 @@ class TransientProblem(FieldsOnly):
         return replace(finer, discretization=own) if same else finer
 
     def follow_with_more_modes(self, path: Trajectory) -> tuple[AnySystem, Path] | None:
-        """Integrate with the modes of `refined` in the steps of a path: equations and motion; or None.
+        """Integrate with the modes of `refined` in the time steps of a path: equations and motion, or None.
 
         Two runs in the same steps differ only by the additional modes; neither needs an error estimate.
         If the steps are too long for the motion of the further modes, the steps of `refined` are used.
@@ -228,7 +228,7 @@ class TransientProblem(FieldsOnly):
         return solved and (solved.system, solved.path)
 
     def distance_with_more_modes(self, path: Trajectory, own: ModalSystem) -> float | None:
-        """Estimate the tip's distance [m] along a path from that with more modes; None where not possible."""
+        """Estimate the distance [m] of a path's tip deflection from one with more modes, or None."""
         finer = self._refined_of_same_functions()
         if finer is None or not isinstance(system := finer.system(), ModalSystem):
             return None
@@ -245,7 +245,7 @@ def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
     Raises
     ------
     ValueError
-        If `initial` is another word, an array of another shape, or there is no equilibrium.
+        If `initial` is another word or has another shape, or if there is no equilibrium.
     """
     n = system.size
     if isinstance(initial, str):
@@ -265,7 +265,7 @@ def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
 
 
 def _equilibrium(system: ModalSystem) -> np.ndarray:
-    """Solve static equilibrium with the loads at time 0; a ValueError where a hinge turns freely."""
+    """Compute the static equilibrium under the loads at time 0; a ValueError if the root turns freely."""
     _, K, f = system.coefficients(np.zeros(()))
     if (shift := system.equations.shift) and np.abs(np.linalg.eigvalsh(K)).min() < _FREE * shift:
         bound = "at time 0 the beam turns freely on its hinge: no position is its equilibrium"
@@ -274,10 +274,11 @@ def _equilibrium(system: ModalSystem) -> np.ndarray:
 
 
 def _bent_equilibrium(system: BeamInSpaceSystem) -> np.ndarray:
-    """Find coordinates (n,) in equilibrium with the loads at time 0, on the branch of the scene.
+    """Compute coordinates (n,) in static equilibrium under loads at time 0, on the scene's branch.
 
-    The continuation parameter is the squared speed, and all other quantities, such as gravity, grow in
-    proportion; for a beam that does not rotate, the parameter is the fraction of the loads.
+    The solution is continued from the unloaded beam.  The parameter is the squared speed, and all other
+    loads, such as gravity, grow in proportion; for a beam that does not rotate, the parameter is the fraction
+    of the loads.
     """
     root, lowest = system.root(np.zeros(())), Solver(system.equations.steady()).lowest_at_rest
     speed = abs(float(root.speed)) or 1.0

@@ -1,10 +1,11 @@
-"""Time steps for a motion given by many samples: several samples per step, where the tolerance allows.
+"""Time steps for a motion given by samples: a step spans several samples if the tolerance allows.
 
-Such a motion is smooth between samples only, and Gauss collocation needs coefficients that are smooth over a
+Such a motion is smooth only between samples, but Gauss collocation needs coefficients that are smooth over a
 step.  So each coefficient is replaced, over each step, by the polynomial of degree s - 1 nearest to it in the
-mean square, with s stages.  What this leaves out is orthogonal to all polynomials of that degree, and the
-response of a mode over a step is nearly such a polynomial: what is left out hardly changes the state at the
-ends of the steps.  Between them it changes the deflection, which the error estimate includes (`time_error`).
+mean square, where s is the number of stages.  The remainder is orthogonal to all polynomials of that degree.
+As the response of a mode over a step is nearly such a polynomial, the remainder hardly changes the state at
+the ends of the steps.  Its effect on the deflection between step ends is part of the error estimate
+(`time_error`).
 """
 
 from __future__ import annotations
@@ -25,21 +26,24 @@ from beamdyn.transient import gauss
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
-_STRETCHES = 16  # number of stretches of a run, each with steps as long as the motion in it allows
-_FEWEST_PIECES = 16  # smallest number of pieces between samples: fewer are integrated one after the other
-# Mean number of steps above which the pieces are better integrated one after the other.
+# Number of stretches of a run; each stretch has one step size, which suits the motion in it.
+_STRETCHES = 16
+# Smallest number of sample intervals for these steps: fewer intervals are integrated one after the other.
+_FEWEST_PIECES = 16
+# Mean number of steps per sample interval above which sample intervals are integrated one after the other.
 _MOST_STEPS_IN_PIECE = 16
-_PIECES_AT_ONCE = 4096  # number of pieces in the steps of a block, whose matrices fit into memory
-_SLACK = 1e-6  # fraction of a step that rounding may add to it
-# Largest and smallest number of equal steps whose maps are expanded about one mean motion.
+_PIECES_AT_ONCE = 4096  # number of sample intervals solved as one batch, whose matrices fit into memory
+_SLACK = 1e-6  # fraction of a step by which rounding may lengthen it
+# Largest and smallest number of equal steps whose maps are expanded about one mean motion of the root.
 _EQUAL_STEPS, _FEWEST_EQUAL = 1024, 128
 _SAME_LENGTH = 1e-6  # fraction of a step by which lengths and ends of equal steps may differ
-# Pieces in a step, and nodes or stages in each: with so many pieces, fewer nodes are as exact.
+# Pieces (sample intervals) in a step, and nodes or stages used in each: with many pieces, fewer nodes are as
+# exact.
 _MANY_PIECES, _IN_EACH = 4, 5
 
 
 class StepCounter(Protocol):
-    """Method of choosing numbers of equal steps; implemented by `beamdyn.transient.step_size.StepSize`."""
+    """Protocol: count equal steps in a time interval; see `beamdyn.transient.step_size.StepSize`."""
 
     def count_steps(self, system: ModalSystem, start: float, end: float) -> int:
         """Count the equal steps from start to end [s]."""
@@ -47,21 +51,21 @@ class StepCounter(Protocol):
 
 
 def is_record(system: ModalSystem, t_end: float, step_size: StepCounter) -> bool:
-    """Tell whether a motion has breakpoints about as dense as the steps, as a sampled motion has."""
+    """Return whether a motion has breakpoints about as dense as the time steps, as a sampled motion does."""
     pieces = len(smooth_piece_ends(system.motion, t_end)) - 1
     few = _MOST_STEPS_IN_PIECE * pieces
     return pieces >= _FEWEST_PIECES and step_size.count_steps(system, 0.0, t_end) <= few
 
 
 def smooth_piece_ends(motion: Motion, t_end: float) -> np.ndarray:
-    """List the ends of the pieces on which a motion is smooth, including 0 and `t_end` [s]."""
+    """List the ends [s] of the intervals on which a motion is smooth, including 0 and `t_end`."""
     breakpoints = np.array(motion.breakpoints)
     return np.concatenate([[0.0], breakpoints[(breakpoints > 0) & (breakpoints < t_end)], [t_end]])
 
 
 @dataclass(frozen=True)
 class RecordSteps:
-    """Time steps of unequal length, and the pieces of each step on which the motion is smooth.
+    """Time steps of unequal length, and the pieces (smooth intervals of the motion) in each step.
 
     Parameters
     ----------
@@ -83,7 +87,8 @@ class RecordSteps:
     def choose(cls, system: ModalSystem, t_end: float, step_size: StepCounter) -> RecordSteps:
         """Choose steps about as long as the step size allows, which end at samples or divide a piece."""
         wanted, ends = _wanted_steps(system, t_end, step_size), smooth_piece_ends(system.motion, t_end)
-        parts = np.maximum(1, np.ceil(np.diff(wanted(ends)) - _SLACK).astype(int))  # parts of each piece
+        # Number of steps in each piece.
+        parts = np.maximum(1, np.ceil(np.diff(wanted(ends)) - _SLACK).astype(int))
         index = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
         inside = np.repeat(ends[:-1], parts) + index * np.repeat(np.diff(ends) / parts, parts)
         pieces = np.append(inside, ends[-1])
@@ -103,7 +108,7 @@ class RecordSteps:
 
     @cached_property
     def blocks(self) -> list[slice]:
-        """Divide the steps into blocks, each solved as one batch: equal steps of one piece, and others."""
+        """Divide the steps into blocks solved as one batch: equal steps of one piece each, or other steps."""
         single = self.counts == 1
         cuts = np.flatnonzero(~(_are_same(self.h) & single[1:] & single[:-1])) + 1
         runs = [(a, b) for a, b in pairwise([0, *cuts.tolist(), len(self)]) if b - a >= _FEWEST_EQUAL]
@@ -111,15 +116,15 @@ class RecordSteps:
         return [slice(a, b) for a, b in pairwise(ends)]
 
     def are_equal(self, block: slice) -> bool:
-        """Tell whether the steps of a block have one piece each and equal lengths that do not drift."""
+        """Return whether the steps of a block have one piece each and equal lengths without drift."""
         ends = np.append(self.start[block], self.start[block.stop - 1] + self.h[block.stop - 1])
         grid = np.linspace(ends[0], ends[-1], len(ends))
-        # Differences of lengths may be small between neighbours, but add up over the block.
+        # Neighbouring lengths may differ little, but the differences add up over the block.
         off = np.abs(ends - grid).max()
         return bool(off <= _SAME_LENGTH * (grid[1] - grid[0]) and (self.counts[block] == 1).all())
 
     def select(self, which: np.ndarray) -> RecordSteps:
-        """Select some of the steps by their indices."""
+        """Return the steps with the given indices."""
         counts = self.counts[which]
         first = np.cumsum(counts) - counts
         pieces = np.repeat(self.first[which] - first, counts) + np.arange(counts.sum())
@@ -128,35 +133,35 @@ class RecordSteps:
         )
 
     def pieces(self) -> RecordSteps:
-        """Return the pieces as steps of their own."""
+        """Return the pieces as separate steps."""
         index = np.arange(len(self.piece_start))
         return RecordSteps(self.piece_start, self.piece_width, self.piece_start, self.piece_width, index)
 
     def root(self, system: ModalSystem, table: gauss.Tableau) -> RootMotion:
-        """Compute the root's motion at nodes of steps, from each quantity's nearest polynomial: (N, s)."""
+        """Compute the root's motion at nodes of steps, (N, s), by the nearest polynomial of each quantity."""
         within = gauss.tableau(self.nodes_in_piece(len(table.c)))
         root = system.root(self.piece_start[:, None] + self.piece_width[:, None] * within.c)
         if len(self.piece_start) == len(self):
-            return root  # without a sample inside the step, a polynomial through the nodes is the nearest
+            return root  # without a sample inside the step, the polynomial through the nodes is the nearest
         s, owner = len(table.c), np.repeat(np.arange(len(self)), self.counts)
         share = self.piece_width / self.h[owner]
         offset = (self.piece_start - self.start[owner]) / self.h[owner]
         inside = legendre.legvander(2 * (offset[:, None] + share[:, None] * within.c) - 1, s - 1)
         at_nodes = legendre.legvander(2 * table.c - 1, s - 1) * (2 * np.arange(s) + 1)
-        # Weights by which values at a piece's nodes add to those at the nodes of its step.
+        # Weights with which values at a piece's nodes contribute to the values at the nodes of its step.
         weights = share[:, None, None] * within.b[:, None] * (inside @ at_nodes.T)
         values = (getattr(root, f.name) for f in fields(RootMotion))
         return RootMotion(*(np.add.reduceat((v[:, None] @ weights)[:, 0], self.first) for v in values))
 
     def nodes_in_piece(self, count: int) -> int:
-        """Choose the number of nodes or stages per piece that are as exact as `count` in a step."""
+        """Choose the number of nodes or stages per piece that is as exact as `count` nodes in a step."""
         return min(count, _IN_EACH) if self.counts.min() >= _MANY_PIECES else count
 
 
 def _wanted_steps(
     system: ModalSystem, t_end: float, step_size: StepCounter
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Make the function that gives the number of steps before times [s] for a step size."""
+    """Build the function that computes, for a step size, the number of steps from 0 to each time [s]."""
     times = np.linspace(0.0, t_end, _STRETCHES + 1)
     counts = [step_size.count_steps(system, a, b) for a, b in pairwise(times)]
     return partial(np.interp, xp=times, fp=np.concatenate([[0], np.cumsum(counts)]))
@@ -174,7 +179,7 @@ def _are_same(lengths: np.ndarray) -> np.ndarray:
 
 
 def _group(place: list[float]) -> list[int]:
-    """Group pieces with given ends into steps of at most unit length; return each step's first piece."""
+    """Group pieces with given ends into steps of at most unit length; return indices of the first pieces."""
     first = [0]
     while True:
         end = bisect_right(place, place[first[-1]] + 1 + _SLACK) - 1
@@ -184,7 +189,7 @@ def _group(place: list[float]) -> list[int]:
 
 
 def maps_of_record(system: ModalSystem, steps: RecordSteps, stages: int) -> gauss.StepMaps:
-    """Solve the collocation equations of all steps, each in units of its own length, then in seconds."""
+    """Solve the collocation equations of all steps, scaled to unit length; return the maps in seconds."""
     table, n, h = gauss.tableau(stages), system.size, steps.h[:, None, None]
     C, K, f = system.assemble(steps.root(system, table))
     C = None if C is None else C * h[..., None]
@@ -225,7 +230,7 @@ class RecordSegment:
         return float(self.steps.start[-1] + self.steps.h[-1])
 
     def projected(self, outputs: np.ndarray) -> RecordSegment:
-        """Build the segment of d outputs in place of the n coordinates, by their matrix `outputs` (d, n)."""
+        """Replace the n coordinates by d linear functions of them with coefficients `outputs` (d, n)."""
         return replace(
             self,
             state=gauss.project(self.state, outputs),
@@ -233,7 +238,7 @@ class RecordSegment:
         )
 
     def samples(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Sample times, displacements and velocities at `count` equal parts of each step, without its end."""
+        """Sample times, displacements, velocities at `count` equal parts of each step, without its end."""
         theta, h = np.arange(count) / count, self.steps.h[:, None, None]
         q, v = gauss.interpolate(h, self.state[:-1], self.acceleration, theta)
         t = self.steps.start[:, None] + self.steps.h[:, None] * theta
@@ -252,8 +257,8 @@ def propagate_record(
 ) -> RecordSegment:
     """Integrate over unequal steps by Gauss collocation.
 
-    Many equal steps, each between two samples, use maps that are expanded about the mean motion of a block
-    of them.
+    Blocks of many equal steps, each between two samples, use maps that are expanded in a series about the
+    mean motion of the block.
 
     Parameters
     ----------
@@ -266,7 +271,7 @@ def propagate_record(
     stages : int
         Stages of each step.
     accuracy : float
-        Largest relative error by the truncated series of all expanded maps.
+        Largest allowed relative error by truncating these series.
 
     Returns
     -------
@@ -288,7 +293,7 @@ def _expand(
     acceleration: np.ndarray,
     accuracy: float,
 ) -> bool:
-    """Fill in a block of equal steps by expanded maps; False if they are unequal or vary too much."""
+    """Fill in a block of equal steps by maps from a series; False if they are unequal or vary too much."""
     count, n = block.stop - block.start, system.size
     if count < _FEWEST_EQUAL or not steps.are_equal(block):
         return False
@@ -307,7 +312,7 @@ def _expand(
 def _solve(
     system: ModalSystem, steps: RecordSteps, block: slice, state: np.ndarray, acceleration: np.ndarray
 ) -> None:
-    """Fill in a block of steps, solving each step by itself."""
+    """Compute the states in a block of steps, solving the collocation equations of each step."""
     size = max(1, min(gauss.BLOCK, _PIECES_AT_ONCE // int(steps.counts[block].max())))
     for first in range(0, len(acceleration), size):
         part = np.arange(first, min(first + size, len(acceleration)))

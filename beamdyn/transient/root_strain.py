@@ -17,12 +17,12 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import estimate_time_error
 from beamdyn.transient.trajectory import Path, Trajectory
 
-_TIMES_CHECKED = 257  # number of times of a run at which the strain per coordinate is compared
+_TIMES_CHECKED = 257  # number of times at which the strain per unit of each coordinate is evaluated
 
 
 @dataclass(frozen=True)
 class RootStrain:
-    """Bending strain of the outer fibre at the root as a function of the state of a run.
+    """Bending strain of the outer fibre at the root, as a function of coordinates and velocities in a run.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class RootStrain:
 
     @classmethod
     def of_scene(cls, scene: Scene, discretization: Discretization, system: AnySystem) -> RootStrain:
-        """Build the strain in the coordinates of a scene's equations; a ValueError without an outer fibre."""
+        """Build the strain for the coordinates of a scene's equations; ValueError without outer fibre."""
         if isinstance(system, BeamInSpaceSystem):
             bound = "the root strain of a beam with large deflection is not computed"
             remedy = "leave large_deflection out where the deflection is small"
@@ -59,9 +59,10 @@ class RootStrain:
         return self.per_moment * self.moment.at(self.system.root(t), q, v)
 
     def time_error(self, path: Path, of_tip: float) -> float:
-        """Estimate the strain's time-integration error on a path from that of the tip deflection [m].
+        """Estimate the strain's time-integration error in a run from the error of the tip deflection [m].
 
-        The error is nan where that of the tip is not known, and 0 where the beam stays in equilibrium.
+        The result is nan if the error of the tip deflection is not known, and 0 if the beam stays in
+        equilibrium.
         """
         if of_tip == 0 or not isinstance(path, Trajectory):
             return of_tip

@@ -1,6 +1,6 @@
 """Time integration by `scipy.integrate.solve_ivp`, and Gauss collocation with error control as its method.
 
-The module is separate because importing `scipy.integrate` takes longer than many a run.
+This is a module of its own because importing `scipy.integrate` takes longer than many simulations.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from beamdyn.transient.trajectory import SAMPLES
 
 _KNOWN_METHODS = ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")
 _JACOBIAN_METHODS = ("Radau", "BDF", "LSODA")
-_SCALING_TOLERANCE = 1e-2  # tolerance of the run that finds the magnitudes of the coordinates
+_SCALING_TOLERANCE = 1e-2  # tolerance of the preliminary run that finds the magnitude of each coordinate
 
 
 @dataclass(frozen=True)
 class SolveIvpPath:
-    """Solution of `solve_ivp` as a `Path`.
+    """Motion computed by `solve_ivp`, with the interface of a `Path`.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class SolveIvpPath:
 
 
 def check_method(method: object) -> None:
-    """Refuse an integration method that `solve_ivp` does not know."""
+    """Raise an error for an integration method that `solve_ivp` does not know."""
     named = isinstance(method, str) and method in _KNOWN_METHODS
     if not named and not (isinstance(method, type) and issubclass(method, OdeSolver)):
         known = ", ".join(map(repr, _KNOWN_METHODS))
@@ -88,7 +88,7 @@ def integrate_by_solve_ivp(
     method : str or OdeSolver
         The method, by name or class.
     tolerance : float
-        Default of rtol; the default of atol is a tenth of it, times each coordinate's largest magnitude.
+        Default of rtol; a tenth of it, times each coordinate's largest magnitude, is the default of atol.
     options : dict
         Further options of `solve_ivp` and of the method.
 
@@ -111,7 +111,7 @@ def integrate_by_solve_ivp(
         options = {"system": system, **options}
     elif method in _JACOBIAN_METHODS:
         options = {"jac": system.jacobian, **options}
-    chosen: Any = method  # a method that `check_method` accepts
+    chosen: Any = method  # methods accepted by `check_method`
     result: Any = solve_ivp(system.rhs, (0.0, t_end), y0, method=chosen, dense_output=True, **options)
     if not result.success:
         raise ArithmeticError(f"solve_ivp stopped at t = {result.t[-1]:g} s: {result.message}")
@@ -186,7 +186,7 @@ class GaussCollocation(OdeSolver):
         self.solved_steps: list[tuple[float, np.ndarray, np.ndarray]] = []
 
     def _first_step(self, t0: float, t_bound: float) -> float:
-        """Choose the step size in which the fastest motion advances by 1 rad, at most half the run [s]."""
+        """Choose the step size [s] in which the fastest mode advances by 1 rad, but at most half the run."""
         _, K, _ = self.system.coefficients(np.array([t0]))
         fastest = np.sqrt(np.abs(np.linalg.eigvals(K[0])).max())
         return min(1 / fastest if fastest else np.inf, (t_bound - t0) / 2)
@@ -206,7 +206,7 @@ class GaussCollocation(OdeSolver):
         return np.concatenate([[1.0], self.y])
 
     def _solve_block(self) -> None:
-        """Solve the next block, with a step size chosen by its local error and at most 4 times the last."""
+        """Solve the next block of steps, with a step size from the local error, at most 4 times the last."""
         order = 2 * self.stages + 1
         while True:
             remaining = self.t_bound - self.t
@@ -222,7 +222,7 @@ class GaussCollocation(OdeSolver):
         self.solved_steps = list(zip(ends, maps.step, maps.acceleration, strict=True))
 
     def _local_error(self, maps: StepMaps, starts: np.ndarray, h: float) -> float:
-        """Compute the largest ratio of local error to its bound in the first and last step of a block."""
+        """Compute the largest ratio of the local error to its bound in the first and last step of a block."""
         y = self.augmented()
         first = y
         for step in maps.step[:-1]:

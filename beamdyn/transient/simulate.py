@@ -1,4 +1,4 @@
-"""Transients: motion of a scene's beam in time."""
+"""Simulation of a transient: motion of a scene's beam in time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @announced
 @repeatable
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
+@one_blas_thread()  # with small matrices, further threads only slow each other down
 def simulate(
     scene: Scene,
     t_end: float,
@@ -49,13 +49,14 @@ def simulate(
     modes : int, "auto" or None
         Number of modes at rest of each uncoupled displacement (such as bending in each plane).  "auto" takes
         modes at the slowest and at the fastest speed: the smallest modal basis whose truncation error meets
-        the tolerance.  The search stops before that with a warning where the next basis would take minutes:
-        past 5e7 steps times squared number of coordinates, or past 5e6 if the last modes added reduced the
-        error to no less than a quarter.  None keeps all functions of the discretization.
+        the tolerance.  The search stops earlier, with a warning, if the next basis would take minutes: if the
+        number of steps times the squared number of coordinates exceeds 5e7, or 5e6 if the last added modes
+        reduced the error by less than a factor of four.  None keeps all functions of the discretization.
     tolerance : float
         Target of the time-integration error, and with ``modes="auto"`` also of the modal truncation error,
         each relative to the largest tip deflection.  An error that exceeds it is named in `warnings`.  If no
-        affordable basis meets one below 1e-5, the run is that at 1e-5 where its whole error is smaller.
+        affordable basis meets a tolerance below 1e-5, the run with tolerance 1e-5 is returned if its total
+        error is smaller.
     method : {"auto", "RK45", "DOP853", "Radau", "BDF", "LSODA", ...} or OdeSolver
         "auto": Gauss collocation with a step size from the tolerance; or any method of `solve_ivp`.
     discretization : {"ritz", "fem"} or Discretization

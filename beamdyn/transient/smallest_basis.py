@@ -1,6 +1,6 @@
-"""Search for the smallest modal basis with which a transient, or the cases of a sweep, meet the tolerance.
+"""Search for the smallest modal basis with which a transient, or all cases of a sweep, meet the tolerance.
 
-A sweep uses the numbers of modes with which some sampled speeds meet the tolerance.
+For a sweep, the numbers of modes that some sampled speeds need are determined.
 """
 
 from __future__ import annotations
@@ -17,25 +17,26 @@ from beamdyn.transient.chunks import SweepRequest
 from beamdyn.transient.trajectory import SAMPLES
 from beamdyn.transient.transient import Transient, TransientRequest, warn_of_missed_modes
 
-# Largest work of a run, its steps times its squared size (some seconds), for which "auto" adds further modes.
+# Largest computing work of a run, its steps times its squared number of coordinates (some seconds), for which
+# "auto" adds further modes.
 _MOST_WORK = 5e7
-# The same limit, if the modes added last have divided the truncation error by less than _FAST.
+# The same limit, if the last added modes have divided the truncation error by less than _FAST.
 _SLOW_WORK = 5e6
 _FAST = 4.0
-# Up to the first number of modes, one more mode may divide the truncation error by the second number.
+# Up to the first number, of modes, one more mode may divide the truncation error by the second number.
 _FEW_MODES, _NEARLY = 4, 30.0
-_TIGHT = 1e-5  # tolerance that is tried, too, if the modes miss a smaller tolerance
+_TIGHT = 1e-5  # tolerance that is tried too, if no basis meets a smaller requested tolerance
 
 
 def run_smallest_basis(request: TransientRequest) -> Transient:
     """Integrate with the smallest basis that meets the tolerance, or else with the best basis found.
 
-    The search starts with the basis of the request.
+    The search starts with the modal basis of the request.
     """
     tolerance = request.tolerance
     run = _search(replace(request, method="auto", t_eval=None))
     if run.mode_error > tolerance and tolerance < _TIGHT:
-        # Accurate steps leave less work for modes: with coarser steps the total error may be smaller.
+        # If a coarser time integration leaves computing work for more modes, the total error may be smaller.
         coarse = _search(replace(request, method="auto", t_eval=None, tolerance=_TIGHT))
         run = min(run, coarse, key=lambda each: each.time_error + each.mode_error * each.largest)
     missed = tuple(warn_of_missed_modes(run.mode_error, tolerance, str(run.request.basis)))
@@ -45,10 +46,10 @@ def run_smallest_basis(request: TransientRequest) -> Transient:
 
 
 def _search(request: TransientRequest) -> Transient:
-    """Add modes until the truncation error meets the tolerance, or the next run takes too much work."""
+    """Add modes until the truncation error meets the tolerance, or until the next run takes too much work."""
     run, tolerance = request.run(), request.tolerance
     if run.mode_error > tolerance and (finer := run.with_more_modes) is not None:
-        # A sudden motion excites many modes: the same number of modes at rest may then be the better basis.
+        # A sudden motion excites many modes: the same number of modes of the beam at rest may then be better.
         at_rest = replace(run.request, basis=ModalBasis(run.system.equations.modes)).run()
         if at_rest.distance_from_path(*finer) < run.distance_from_path(*finer):
             run = _refine_better(at_rest, run, tolerance)
@@ -67,9 +68,9 @@ def _search(request: TransientRequest) -> Transient:
 
 
 def _refine_better(at_rest: Transient, at_speeds: Transient, tolerance: float) -> Transient:
-    """Return the run with modes at rest if it is near the tolerance, else the better of both refined runs.
+    """Return the run with modes at rest if it nearly meets the tolerance, else the better refined run.
 
-    Both are refined before they are compared, as few modes tell little about convergence.
+    Both runs are refined before their comparison, as few modes show little about convergence.
     """
     if at_rest.mode_error <= _NEARLY * tolerance:
         return at_rest
@@ -86,7 +87,7 @@ def first_basis(request: SweepRequest, speeds: tuple[float, ...]) -> ModalBasis:
 
 
 def end_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> np.ndarray:
-    """Return the slowest and the fastest speed of all cases [rad/s]; a single one if they are equal."""
+    """Return the slowest and the fastest speed of all cases [rad/s]; one speed if they are equal."""
     ends = [
         find_speed_range(motion, request.t_end) for motion in map(request.motion, (speeds[0], speeds[-1]))
     ]
@@ -94,17 +95,18 @@ def end_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> np.ndarray:
 
 
 def list_samples(speeds: tuple[float, ...]) -> list[float]:
-    """List speeds [rad/s] at which `mode_error` is estimated: slowest above 0, fastest, and between."""
+    """List the speeds [rad/s] at which `mode_error` is estimated: lowest above 0, highest, and between."""
     slowest = min(1, len(speeds) - 1) if speeds[0] == 0 else 0
     return sorted({speeds[max(slowest, k * (len(speeds) - 1) // 4)] for k in range(5)})
 
 
 @one_blas_thread()
 def run_samples(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transient]:
-    """Run sampled cases in sufficient bases, each starting one mode below the need of the one before.
+    """Run sampled cases with enough modes; each search starts one mode below the number of the last case.
 
-    If some use modes at their speeds and others modes at rest, all run in one basis: at rest if that meets
-    the tolerance with fewer coordinates, else at their speeds if that meets it, or else in the better one.
+    If some cases use modes at their speeds and others modes at rest, all are run with one kind: modes at rest
+    if these meet the tolerance with fewer coordinates, else modes at the speeds if these meet it, else the
+    kind with the smaller error.
     """
     samples, basis = [], request.basis
     for speed in list_samples(speeds):
@@ -128,7 +130,7 @@ def run_samples(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transi
 
 
 def with_basis_of(request: SweepRequest, speeds: tuple[float, ...], runs: list[Transient]) -> SweepRequest:
-    """Return the request with the modal bases of its sampled cases."""
+    """Return the request with the modal bases that its sampled cases need."""
     at_rest = runs[0].request.basis.is_at_rest
     basis = ModalBasis(_most_modes(runs), (0.0,) if at_rest else request.basis.speeds)
     modes = [run.request.basis.modes or 0 for run in runs]

@@ -18,19 +18,20 @@ from beamdyn.transient.time_error import ERROR_ORDER, TimeError
 from beamdyn.transient.trajectory import Trajectory
 
 TOLERANCES = (1e-12, 0.1)  # smallest and largest tolerance; smaller ones are below the rounding error
-_REFERENCE_PHASE = 3.84  # step size [rad] for a tolerance of 1e-5, measured on examples
-_LOOSEST_TOLERANCE = 0.01  # tolerance of the free vibration of a mode whose phase is resolved
+_REFERENCE_PHASE = 3.84  # phase advance per step [rad] that gives an error of 1e-5, measured on examples
+_LOOSEST_TOLERANCE = 0.01  # largest tolerance for the free vibration of a mode whose phase is resolved
 _PARTS = 4  # number of parts of a segment of changing speed, each with its own step size
 _MOST_STEPS = 3_000_000  # largest number of steps of a run
 # Largest number of steps times coordinates of a run, which fits into some 3 GB of memory.
 _MOST_VALUES = 15_000_000
-_ROUNDING = 1e-9  # error over the largest deflection that rounding may cause
-_MOST_REFINED = 50  # ratio of _REFERENCE_PHASE to the smallest step size, below which rounding errors grow
+_ROUNDING = 1e-9  # ratio of error to largest deflection below which rounding may be the cause of the error
+# Ratio of _REFERENCE_PHASE to the smallest useful phase per step: rounding errors grow below that.
+_MOST_REFINED = 50
 
 
 @dataclass(frozen=True)
 class StepSize:
-    """Step size, as the phase angle by which the fastest resolved motion advances per step.
+    """Step size, given as the phase angle by which the fastest resolved mode advances per step.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ class StepSize:
         speed = np.abs(system.motion.at(t).speed).max(axis=1)
         multiple = max((line.multiple for line in system.motion.lines), default=0.0)
         _, K, _ = system.coefficients(t)
-        # Eigenvalue 0 is the flux of a circuit, a coordinate without stiffness.
+        # The eigenvalue 0 belongs to the flux of a circuit, a coordinate without stiffness.
         first = int(system.equations.voltage is not None)
         squared = np.sort(np.abs(np.linalg.eigvals(K)), axis=-1)[:, :, max(self.modes - 1, first)]
         natural = np.sqrt(squared.max(axis=1))
@@ -66,12 +67,12 @@ class StepSize:
         return np.maximum(1, np.ceil(np.diff(ends) * fastest / self.phase)).astype(int).tolist()
 
     def next(self, error: TimeError, bound: float, order: int) -> StepSize:
-        """Choose the next step size where the error exceeds its bound [m]: resolve more modes, or shorten.
+        """Choose the next step size if the error exceeds its bound [m]: resolve more modes, or shorten steps.
 
-        The error falls with the step size to the power `order`.
+        The error is proportional to the step size to the power `order`.
         """
         cumulative = np.cumsum((error.modes * error.unresolved)[::-1])[::-1]
-        # The errors of all modes beyond this number are together below a quarter of the bound.
+        # All modes above this number have a total error below a quarter of the bound.
         modes = int((cumulative > bound / 4).sum())
         if modes > self.modes:  # the step is only as short as the highest resolved mode requires
             share = min(bound / 4 / cumulative[modes - 1], _LOOSEST_TOLERANCE)
@@ -81,13 +82,13 @@ class StepSize:
 
     @property
     def is_finest(self) -> bool:
-        """Whether a smaller step size would only add rounding error."""
+        """Whether a smaller step size would only increase the rounding error."""
         return self.phase < _REFERENCE_PHASE / _MOST_REFINED
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """A run in steps of one size, with its error.
+    """Run with one step size, and its error.
 
     Parameters
     ----------
@@ -116,21 +117,21 @@ class Attempt:
 def shorten_steps(
     run: Callable[[StepSize, Attempt | None], Attempt], tolerance: float
 ) -> tuple[Trajectory, float, str]:
-    """Run with the step size for the tolerance, and with shorter steps while the error exceeds it.
+    """Run with the step size for the tolerance, and with smaller steps while the error exceeds the tolerance.
 
-    The refinement also ends where shorter steps have not halved an error that may be rounding.
+    The refinement also ends if smaller steps did not halve an error that may be due to rounding.
 
     Parameters
     ----------
     run : callable
-        Function of a step size and of the previous attempt (or None) that runs an attempt.
+        Function from a step size and the previous attempt (or None) to a new attempt.
     tolerance : float
         Target of the time-integration error, relative to the largest deflection.
 
     Returns
     -------
     path, error, method
-        Results as of `integrate`.
+        Results as for `integrate`.
     """
 
     def meets(found: tuple[Attempt, Attempt | None]) -> bool:
@@ -149,7 +150,7 @@ def shorten_steps(
 
 
 class TooManySteps(InvalidValue):
-    """Raised for a run whose steps would not fit into memory."""
+    """Raised if the time steps of a run do not fit into memory."""
 
 
 def check_number_of_steps(steps: int, size: int, t_end: float) -> None:
@@ -162,7 +163,7 @@ def check_number_of_steps(steps: int, size: int, t_end: float) -> None:
 
 
 def split_at_breakpoints(motion: Motion, t_end: float) -> np.ndarray:
-    """Split a run at the motion's breakpoints, and segments of changing speed into parts: all ends [s]."""
+    """Split a run at breakpoints of the motion, and segments of changing speed into parts: all ends [s]."""
     parts = []
     for a, b in pairwise(smooth_piece_ends(motion, t_end)):
         speed_changes = np.ptp(motion.at(np.linspace(a, b, 9)[1:-1]).speed) > 0
@@ -176,7 +177,7 @@ def chain_segments(
     y0: np.ndarray,
     propagate: Callable[[float, float, int, np.ndarray, np.ndarray], Segment],
 ) -> tuple[Segment, ...]:
-    """Integrate consecutive segments with ends `edges` [s] in the given numbers of steps."""
+    """Integrate consecutive segments with ends `edges` [s], each in its number of steps."""
     segments: list[Segment] = []
     for (a, b), count in zip(pairwise(edges), steps, strict=True):
         segments.append(propagate(a, b, count, *np.split(y0, 2)))

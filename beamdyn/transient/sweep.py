@@ -1,4 +1,4 @@
-"""Sweep over speed: peaks of transients, computed in parallel, resumable, and bitwise reproducible."""
+"""Sweep over speeds: largest deflections in transients, computed in parallel, resumable, reproducible."""
 
 from __future__ import annotations
 
@@ -50,13 +50,14 @@ from beamdyn.transient.smallest_basis import (
 from beamdyn.transient.step_size import TOLERANCES
 from beamdyn.transient.transient import Transient, warn_of_missed_modes
 
-_DIGITS = 4  # largest number of significant digits in the headline
+_DIGITS = 4  # largest number of significant digits in the one-line summary
 _KIND = "beamdyn sweep"
-_VERSIONS = (__version__, np.__version__, scipy.__version__)  # versions on which the stored bits depend
+# Versions that affect the last bits of stored results.
+_VERSIONS = (__version__, np.__version__, scipy.__version__)
 
 
 class SweepInterrupted(RunInterrupted):
-    """Raised when the executor breaks before all cases are done.
+    """Raised when the executor fails before all cases are computed.
 
     Examples
     --------
@@ -70,7 +71,7 @@ class SweepInterrupted(RunInterrupted):
 
 @dataclass(frozen=True)
 class Sweep(StatesModelError):
-    """Peaks of the tip deflection in transients, over final speed.
+    """Largest tip deflections in transients, over the final speed.
 
     Parameters
     ----------
@@ -79,7 +80,7 @@ class Sweep(StatesModelError):
     peaks : ndarray, shape (S,)
         Largest |tip deflection| in the window [m], also between steps; nan where the case failed.
     largest : ndarray, shape (S,)
-        Largest |tip deflection| of the run [m], also between steps; nan where the case failed.
+        Largest |tip deflection| of the whole run [m], also between steps; nan where the case failed.
     time_error : ndarray, shape (S,)
         Estimated time-integration error of the tip deflection [m], which applies to `peaks` and `largest`.
     peaks_by_direction : ndarray, shape (S, 1) or (S, 2)
@@ -143,28 +144,28 @@ class Sweep(StatesModelError):
 
     @property
     def left_out_speeds(self) -> np.ndarray:
-        """Speed of the largest peak [rad/s], at which the model error is computed: (1,), or (0,)."""
+        """Speed of the largest peak [rad/s], for which the model error is computed: (1,), or (0,)."""
         known = np.isfinite(self.peaks).any()
         return self.speeds[[np.nanargmax(self.peaks)]] if known else np.empty(0)
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the largest peak (1,) by effects left out, found by running its case again."""
+        """Changes of the largest peak (1,) by each neglected effect, found by repeating that run."""
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
-        with unannounced():  # the field `warnings` already has the run's warnings
+        with unannounced():  # the field `warnings` already contains the warnings of the repeated run
             run = simulate(replace(self.scene, motion=motion), self.t_end)
         return left_out_of_transient(run.request, run.solution, self.window).at(np.newaxis)
 
     def is_warned(self, tolerance: float) -> np.ndarray:
-        """Tell for each speed, (S,), whether a warning applies, for runs with the given tolerance."""
+        """Return for each speed whether a warning applies, (S,), given the tolerance of the runs."""
         if any(warn_of_missed_modes(self.mode_error, tolerance, "")):
             return np.ones(len(self.speeds), dtype=bool)
         return np.array([any(_warnings(self._at(i), tolerance)) for i in range(len(self.speeds))])
 
     def _at(self, i: int) -> Sweep:
-        """Select one of the cases as a sweep of its own."""
+        """Select one case as a sweep with a single speed."""
         names = "speeds", "peaks", "largest", "time_error", "status"
         return replace(self, **{name: getattr(self, name)[i : i + 1] for name in names})
 
@@ -194,8 +195,8 @@ def sweep(
 ) -> Sweep:
     """Compute the largest |tip deflection| in a time window, from rest, for each final speed of the motion.
 
-    Each case has its own time steps, so that its result is the same to the bit for any workers, executor,
-    order, resumption and size of the chunks.
+    Each case has its own time steps, so that its result is bitwise the same for any number of workers,
+    executor, order, interruption and chunk size.
 
     With ``modes="auto"`` a case uses as many modes as the sampled cases next to it need.  So its result
     depends, within `time_error` and `mode_error`, on which other speeds are requested.
@@ -203,7 +204,7 @@ def sweep(
     Parameters
     ----------
     scene : Scene
-        The scene; the `with_speed` of its motion gives the motion to each speed.
+        The scene; the method `with_speed` of its motion builds the motion for each speed.
     speeds : sequence of float
         Speeds [rad/s], ascending, below the critical one.
     window : tuple of float
@@ -212,8 +213,8 @@ def sweep(
         End of each run [s]; the window's end if not given.
     modes : int or "auto"
         Number of modes at rest of each uncoupled displacement (such as bending in each plane).  "auto" takes
-        modes at the slowest and at the fastest speed of each case: as few as meet the tolerance by their
-        truncation error at five of the speeds.
+        modes at the slowest and at the fastest speed of each case: the fewest whose truncation error,
+        estimated at five of the speeds, meets the tolerance.
     tolerance : float
         Target of the time-integration error, and with ``modes="auto"`` also of the modal truncation error,
         each relative to the largest deflection of a case.
@@ -229,7 +230,7 @@ def sweep(
     discretization : {"ritz", "fem"} or Discretization
         Discretization from which the modes are computed.
     chunk : int
-        Number of cases that a worker takes and the store keeps at once.
+        Number of cases that a worker computes and the store saves together.
 
     Returns
     -------
@@ -238,10 +239,11 @@ def sweep(
     Raises
     ------
     ValueError
-        Before any long work, if an argument is out of its range, a speed passes the critical one, the
-        store is foreign or cannot be written, or the motion cannot be stored or sent to workers.
+        Before any long computation, if an argument is out of its range, a speed passes the critical one, the
+        store belongs to another sweep or cannot be written, or the motion cannot be stored or sent to
+        workers.
     SweepInterrupted
-        If the executor breaks; finished chunks are in the store.
+        If the executor fails; finished chunks are in the store.
 
     Examples
     --------
@@ -259,7 +261,7 @@ def sweep(
     runner = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress, SweepInterrupted)
     basis = given_basis(modes)
     scene = choose_for_motion(scene, end_speeds(request, cases), basis and basis.modes, request.tolerance)
-    # The record of the choice has computing times, which must not affect keys of the store.
+    # The recorded choice contains computing times, which must not change the keys of the store.
     request = replace(request, scene=replace(scene, physics_choice=None))
     _check_speeds(request := replace(request, basis=basis or first_basis(request, cases)), cases)
     if store is not None or executor is not None or runner.workers > 1:
@@ -299,21 +301,21 @@ def sweep(
 
 @dataclass(frozen=True)
 class _Chunk:
-    """Chunk of cases, given by speeds [rad/s], that a worker solves and the store keeps at once."""
+    """Chunk of cases, given by speeds [rad/s], that a worker computes and the store saves together."""
 
     request: SweepRequest
     speeds: tuple[float, ...]
 
 
 def _solve(chunk: _Chunk) -> list[CaseResult]:
-    """Solve a chunk; this is the function that workers and executors run."""
+    """Solve a chunk; worker processes and executors call this function."""
     return solve_chunk(chunk.request, chunk.speeds)
 
 
 def _solve_cases(
     request: SweepRequest, speeds: tuple[float, ...], size: int, runner: TaskRunner
 ) -> list[CaseResult]:
-    """Solve all cases, the fastest speeds first, as they take longest."""
+    """Solve all cases, starting with the fastest speeds, as these take longest."""
     found: dict[int, list[CaseResult]] = {}
     parts = [speeds[k : k + size] for k in range(0, len(speeds), size)]
     tasks = [Task(partial(_Chunk, request, part), len(part), k) for k, part in enumerate(parts)]
@@ -351,7 +353,7 @@ def _check_request(
 
 
 def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
-    """Raise a ValueError for a case that passes the critical speed, or a motion that ends early."""
+    """Raise a ValueError if a case passes the critical speed, or if a motion ends too early."""
     model, t = request.model, np.linspace(0, request.t_end, SPEED_SAMPLES)
     critical = np.inf if request.scene.physics.large_deflection else model.solver.critical_speed
     fastest = np.array([np.abs(motion.at(t).speed).max() for motion in map(request.motion, speeds)])
@@ -365,7 +367,7 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
 
 @contextmanager
 def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[float]]:
-    """Call a function in a thread, with an event that is set when its result is no longer wanted.
+    """Run a function in a thread, with an event that is set when its result is no longer needed.
 
     An error in the body of the `with`, such as an interrupt, sets the event without waiting for the function.
     """
@@ -383,19 +385,19 @@ def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[floa
 def _find_mode_error(
     request: SweepRequest, speeds: tuple[float, ...], samples: Sequence[Transient] | None, unwanted: Event
 ) -> float:
-    """Find the modal truncation error of sampled cases, running them unless given, while it is wanted."""
+    """Compute the modal truncation error of sampled cases until `unwanted` is set; run cases not given."""
     while_wanted = partial(takewhile, lambda _: not unwanted.is_set())
     runs = samples or (request.transient_request(speed).run() for speed in while_wanted(list_samples(speeds)))
     return largest_mode_error(while_wanted(runs))
 
 
 def _check_sendable(request: SweepRequest, importable: bool) -> None:
-    """Raise a ValueError for a scene that cannot be pickled, or that worker processes cannot import."""
+    """Raise a ValueError if a scene cannot be pickled, or if worker processes cannot import its classes."""
     assert request.scene.motion is not None
     check_picklable(request.scene.motion)
     try:
         pickled = pickle.dumps(request)
-    except Exception as error:  # the class of the exception depends on the object
+    except Exception as error:  # the exception class depends on the object that cannot be pickled
         raise ValueError(f"the scene can be neither stored nor sent to workers: {error}") from None
     if importable and b"__main__" in pickled:
         raise ValueError(
@@ -405,7 +407,7 @@ def _check_sendable(request: SweepRequest, importable: bool) -> None:
 
 
 def _warnings(sweep: Sweep, tolerance: float) -> Iterator[Statement]:
-    """Yield warnings about the peaks, with the cases and speeds that they apply to."""
+    """Yield warnings about the peaks, with the cases and speeds affected."""
     speeds, motion = sweep.speeds, sweep.scene.motion
     yield from warn_of_left_out(sweep.scene)
     yield from warn_of_peak(sweep.scene, float(np.nanmax(sweep.largest, initial=0.0)))

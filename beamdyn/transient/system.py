@@ -1,4 +1,4 @@
-"""Equations of motion of a scene in modal coordinates, evaluated at times for the integrators."""
+"""Equations of motion of a scene in modal coordinates, evaluated at given times for the integrators."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from beamdyn.transient.gauss import components
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 
 _MEAN_SAMPLES = 257  # number of samples of the root's motion for the mean stiffness
-_GOLDEN = 0.6180339887498949  # reciprocal of the golden ratio: such spacing misses no period of the motion
+# Reciprocal of the golden ratio: spacing the sample times by it avoids coincidence with a period.
+_GOLDEN = 0.6180339887498949
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ class ModalSystem:
         return q @ self.equations.deflection(xi, direction=direction)
 
     def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Compute the deflection [m] over a strip at xi (k,) and eta (l,): shape (T, k, l)."""
+        """Compute the deflection [m] of a strip at xi = x/L (k,) and eta = 2 y/width (l,): (T, k, l)."""
         return np.tensordot(q, self.equations.surface(xi, eta), 1)
 
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -68,9 +69,10 @@ class ModalSystem:
 
     @classmethod
     def from_rest(cls, equations: Equations, motion: Motion, t_end: float) -> ModalSystem:
-        """Build the equations of a run from rest, without coordinates that nothing excites.
+        """Build the equations of a run from rest, without coordinates that no load excites.
 
-        Left out are planes without loads and coupling, judged at times over the run and its smooth pieces.
+        Planes without loads and coupling are omitted; loads are sampled over the run and each smooth
+        interval.
         """
         spread = t_end * (_GOLDEN * np.arange(SPEED_SAMPLES) % 1)
         ends = np.clip([0.0, *motion.breakpoints, t_end], 0.0, t_end)
@@ -99,9 +101,9 @@ class ModalSystem:
         return C, self.equations.matrix(0, root), self.equations.load(root)
 
     def modulated(self, start: float, end: float) -> ModulatedSystem | None:
-        """Split the equations from start to end [s] into a part that follows the speed, and the rest.
+        """Split the equations from start to end [s] into a part that depends on the speed, and a variation.
 
-        The result is None if damping or gyroscopic terms vary in another way.
+        The result is None if damping or gyroscopic terms vary with something else than the speed.
         """
         stiffness, damping, _ = self.equations.matrices
         varying: list[Quantity] = [name for name in stiffness if name not in CONSTANT_AT_STEADY_SPEED]
@@ -126,9 +128,9 @@ class ModalSystem:
         return self._split(slow, self.motion.steady_start <= start, varying, excess, lines)
 
     def about_mean(self, start: float, end: float) -> ModulatedSystem | None:
-        """Split the equations from start to end [s] into those of the mean motion and a varying stiffness.
+        """Split the equations from start to end [s] into those of the mean motion, and a varying stiffness.
 
-        None if damping or gyroscopic terms vary.
+        The result is None if damping or gyroscopic terms vary.
         """
         stiffness, damping, _ = self.equations.matrices
         if not set(damping) <= {"unity"}:
@@ -155,7 +157,7 @@ class ModalSystem:
         excess: Callable[[MotionSample, RootMotion], list[np.ndarray]],
         lines: np.ndarray,
     ) -> ModulatedSystem:
-        """Build equations whose stiffness varies by the difference of quantities from a slow part."""
+        """Build equations with a slow stiffness and a varying rest: quantities minus their slow values."""
         stiffness, loads = self.equations.matrices[0], self.equations.vectors
 
         def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -170,12 +172,12 @@ class ModalSystem:
         return ModulatedSystem(slow=slow, steady=steady, G=G, P=P, scalars=scalars, lines=lines)
 
     def _about_fixed_centre(self, sample: MotionSample) -> RootMotion:
-        """Compute the motion of the root about a fixed centre without gravity, which follows the speed."""
+        """Compute the root motion about a fixed centre without gravity, which depends only on the speed."""
         still = MotionSample(np.zeros(()), sample.speed, sample.acceleration, np.zeros(3))
         return root_motion(self.equations.mount, still)
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Compute y' for y = (q, q'), as `solve_ivp` calls it."""
+        """Compute y' for y = (q, q'), with the arguments of a right-hand side for `solve_ivp`."""
         C, K, f = self.coefficients(np.asarray(t))
         q, v = y[: self.size], y[self.size :]
         return np.concatenate([v, f - K @ q - (0 if C is None else C @ v)])

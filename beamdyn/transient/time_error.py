@@ -1,6 +1,7 @@
-"""Time-integration error, estimated by solving some steps again with two more stages.
+"""Estimate of the time-integration error, by solving some steps again with two more stages.
 
-With equal steps, some in each segment are solved again; steps over many samples are solved piece by piece.
+With equal steps, some steps of each segment are solved again; steps that span many samples are solved again
+from sample to sample.
 """
 
 from __future__ import annotations
@@ -18,20 +19,24 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import magnitude
 
 STAGES = 8  # number of stages of the Gauss collocation that is checked
-ERROR_ORDER = 2 * STAGES  # order of convergence of its error with the step size
+ERROR_ORDER = 2 * STAGES  # order of convergence of the collocation error with respect to the step size
 _MOST_CHECKED = 32  # number of steps of a segment at which the local error is measured
-_ROUGHEST = 2  # further checked steps per coordinate, those with the largest error of interpolation
-_GOLDEN = 0.6180339887498949  # reciprocal of the golden ratio: such spacing misses no period of the motion
-INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])  # fractions of a step at which the error is largest
+_ROUGHEST = 2  # further checked steps per coordinate: those with the largest interpolation error
+# Reciprocal of the golden ratio: spacing points by it avoids coincidence with a period.
+_GOLDEN = 0.6180339887498949
+# Fractions of a step at which the interpolation error is largest.
+INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])
 UNRESOLVED_PHASE = 0.05  # phase error per step [rad] above which a mode counts as unresolved
-_ROUNDING = 1e-14  # rounding error of a step, relative to the sum of the magnitudes of its terms
+_ROUNDING = 1e-14  # rounding error of a step, relative to the sum of the magnitudes of the terms
 
-_PIECES_CHECKED = 128  # number of pieces in the checked steps over samples, unless these are too few
+_PIECES_CHECKED = 128  # number of sample intervals in the checked steps, unless that gives too few steps
 _FEWEST_CHECKED = 48
-_POINTS = np.arange(10) / 10  # fractions of a piece at which the error between ends is sought
-# Number of longest, and of roughest steps that are checked in addition to those spread over the run.
+# Fractions of a sample interval at which the error between its ends is evaluated.
+_POINTS = np.arange(10) / 10
+# Number of longest steps, and of steps with the roughest load, checked in addition to those spread over the
+# run.
 _MOST_OF_A_KIND = 24
-_BATCH = 256  # number of pieces, of steps that span several samples, that are solved as one batch
+_BATCH = 256  # number of sample intervals solved as one batch
 
 
 def choose_checked_steps(steps: int, most: int = _MOST_CHECKED) -> np.ndarray:
@@ -95,7 +100,7 @@ class TimeError:
     def of_coordinates(
         cls, system: ModalSystem, modes: np.ndarray, interpolation: float, unresolved: np.ndarray
     ) -> TimeError:
-        """Sort the contributions of the coordinates of a system by frequency."""
+        """Build the error from the contributions of a system's coordinates, sorted by frequency."""
         rank = np.argsort(np.diag(system.equations.matrices[0]["unity"]), kind="stable")
         return cls(modes[rank], interpolation, unresolved[rank])
 
@@ -117,8 +122,8 @@ def estimate_time_error(
     segments : sequence of Segment, or of one RecordSegment
         The segments of a trajectory.
     outputs : ndarray, shape (d, n)
-        The quantity whose error is sought, such as the tip deflection, per unit of each coordinate: the d
-        components of a vector; the error is the magnitude of the vector's error.
+        Quantity whose error is estimated, such as the tip deflection, per unit of each coordinate: d
+        components of a vector; the result is the magnitude of the vector's error.
 
     Returns
     -------
@@ -140,15 +145,15 @@ def estimate_time_error(
 
 
 def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarray) -> SegmentError:
-    """Estimate the error of a segment from local errors of steps spread over it, and of the roughest.
+    """Estimate a segment's error from local errors of steps spread over it, and of the roughest steps.
 
-    Gauss collocation keeps amplitudes and errs in phase.  A mode's local errors therefore add up
+    Gauss collocation preserves amplitudes; its error is one of phase.  A mode's local errors therefore add up
     coherently until its phase is lost, after 2 / delta steps with a phase error delta per step.  The error
     of a mode that the steps do not resolve is thus bounded by the amplitude of its free vibration.  A
-    stiffness that varies within a step, as on a wavy road, turns the error of one mode into that of another.
+    stiffness that varies within a step, as on a wavy road, transfers the error of one mode to another.
     """
     h, steps, own, more = segment.h, len(segment.acceleration), tableau(STAGES), tableau(STAGES + 2)
-    # The last term of the series, which errs as the interpolation does.
+    # The last term of the series has the same size as the interpolation error.
     series = own.b * Legendre.basis(STAGES - 1)(2 * own.c - 1)
     last = np.abs(np.einsum("s,ksn->kn", series, segment.acceleration))
     roughest = np.unique(np.argsort(last, axis=0)[-_ROUGHEST:])
@@ -176,10 +181,7 @@ def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
 
 
 def _total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
-    """Bound the error of each coordinate after some steps by local (k, n) and largest phase errors (n,).
-
-    The bound is the sum of all local errors, or of the largest ones until the phase is lost, if that is less.
-    """
+    """Bound each coordinate's error after some steps by local (k, n) and largest phase errors delta (n,)."""
     until_lost = 2 / np.maximum(delta, 1e-30)  # number of steps until the phase is lost
     return np.minimum(steps * local.mean(axis=0), until_lost * local.max(axis=0))
 
@@ -192,7 +194,7 @@ def local_errors(
     Parameters
     ----------
     step, fine : ndarray, shape (k, 2 n, 2 n + 1)
-        Maps of the steps, and more accurate maps.
+        Maps of the steps, and maps with more stages, which are more accurate.
     state : ndarray, shape (k, 2 n + 1)
         Augmented states at the beginnings of the steps.
     end_state : ndarray, shape (k, 2 n)
@@ -222,8 +224,8 @@ def phase_errors(difference: np.ndarray, frequencies: np.ndarray) -> np.ndarray:
 def vibration_frequencies(system: ModalSystem, duration: float) -> np.ndarray:
     """Compute the angular frequency of each uncoupled coordinate at time 0 [rad/s].
 
-    An error of velocity over the frequency is one of the coordinate.  On a hinge the frequency may be 0: the
-    error of velocity then grows to one of the coordinate over the duration [s] of the run, as for a flux.
+    The frequency converts an error of velocity to one of the coordinate.  With a hinged root or for a
+    circuit's flux it may be 0: the velocity error then accumulates over the duration [s] of the run.
     """
     _, K, _ = system.coefficients(np.zeros(()))
     slowest = 1 / duration if system.equations.shift or system.equations.voltage else 0.0
@@ -234,10 +236,11 @@ def vibration_frequencies(system: ModalSystem, duration: float) -> np.ndarray:
 
 
 def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.ndarray) -> TimeError:
-    """Estimate the error of a quantity by solving checked steps again from sample to sample.
+    """Estimate the error of a quantity by solving some steps again from sample to sample.
 
-    The solutions have two more stages or, in steps of many samples, as many as these need.  Some steps are
-    spread over the run and stand for all; others are the longest, and those in which the load is roughest.
+    These solutions have two more stages or, in steps of many samples, as many as the sample intervals need.
+    Some steps are spread over the run and represent all steps; others are the longest ones, and those with
+    the roughest load.
     """
     steps, count, total, interpolation = segment.steps, len(segment.steps), np.zeros(system.size), 0.0
     unresolved, across = np.zeros(system.size, dtype=bool), count < len(steps.piece_start)
@@ -245,7 +248,7 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
     middle = steps.piece_start + steps.piece_width / 2
     slope = np.diff(system.equations.load(system.root(middle)), axis=0) / np.diff(middle)[:, None]
     bend = np.pad(np.abs(np.diff(slope, axis=0)).sum(axis=1), 1, mode="edge")
-    # Changes of the load's slope change displacements in proportion to the cube of the step.
+    # Changes of the load's slope change displacements in proportion to the cube of the step size.
     kinds = steps.h, steps.h**3 * np.maximum.reduceat(bend, steps.first)
     worst = np.unique([np.argsort(kind)[-_MOST_OF_A_KIND:] for kind in kinds])
     spread = choose_checked_steps(count, most)
@@ -255,7 +258,7 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
         local = np.concatenate([each[0] for each in found])
         delta = np.max([each[1] for each in found], axis=0)
         added = _total_of_local_errors(local, delta, represented)
-        if across:  # errors by samples inside a step are random, and add up so
+        if across:  # errors by samples inside a step are random, so their squares are added
             added = np.maximum(added, np.sqrt(represented) * local.mean(axis=0))
         total += added
         unresolved |= delta > UNRESOLVED_PHASE
@@ -267,7 +270,7 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
 def _check_batch(
     system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, outputs: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Compare chosen steps with their pieces: local error, largest phase error, error between ends."""
+    """Compare steps with solutions of their pieces: local error, largest phase error, error between ends."""
     steps, state = segment.steps.select(chosen), segment.state[chosen]
     step = maps_of_record(system, steps, STAGES).step
     pieces = maps_of_record(system, steps.pieces(), steps.nodes_in_piece(STAGES + 2))
@@ -282,7 +285,7 @@ def _check_batch(
 
 
 def _compose(steps: RecordSteps, pieces: StepMaps, state: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compose the maps of pieces to maps of steps, and compute the states at the beginnings of pieces."""
+    """Multiply the maps of pieces to maps of steps, and compute the states at the beginnings of pieces."""
     size = state.shape[1]
     total = np.tile(np.eye(size), (len(steps), 1, 1))
     at_pieces = np.empty((len(steps.piece_start), size))

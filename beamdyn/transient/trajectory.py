@@ -1,4 +1,4 @@
-"""Trajectories: coordinates over time, and the largest tip deflection along them."""
+"""Trajectories: coordinates over time, and the largest tip deflection during a motion."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from beamdyn.transient.gauss import Segment
 from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.system import ModalSystem
 
-SAMPLES = 8  # number of samples per step, if the caller gives no times
-_CANDIDATES = 12  # number of maxima that are refined; the samples are within 1e-3 of the maxima between them
-_REFINED = 4  # number of maxima refined after the first refinement
-# Number of refinements of a maximum, each 17 times as fine; parabolas then err by less than 1e-12.
+SAMPLES = 8  # number of samples per step, unless times are given
+# Number of highest sampled maxima that are refined; samples miss the height of a maximum by at most 1e-3.
+_CANDIDATES = 12
+_REFINED = 4  # number of maxima that are refined a second time
+# Number of refinements of a maximum, each 17 times finer; the error of the final parabola is below 1e-12.
 _REFINEMENTS = 2
 
 Size: TypeAlias = "Callable[[np.ndarray], np.ndarray]"
@@ -29,11 +30,11 @@ class Path(Protocol):
     In order to add an integrator:
 
     1. Write a function of the equations (`ModalSystem`), the initial coordinates and velocities, the end
-       and the tolerance, which returns a path.  It asks the equations for C, K and f at arrays of times.
-    2. Steps end at the motion's breakpoints, as `beamdyn.transient.step_size.split_at_breakpoints` has them.
-    3. `samples` are several in each step, so that no maximum is missed; `at` interpolates between them.
-    4. It estimates its time-integration error of the tip deflection [m], or states nan.
-    5. `TransientProblem.solve` calls it by the name in ``method=``.  A subclass of scipy's `OdeSolver` needs
+       and the tolerance, which returns a path.  It evaluates C, K and f of the equations at arrays of times.
+    2. Steps end at the motion's breakpoints, see `beamdyn.transient.step_size.split_at_breakpoints`. 3.
+    `samples` has several samples in each step, so that no maximum is missed; `at` interpolates between them.
+    4. The function estimates the time-integration error of the tip deflection [m], or returns nan. 5.
+    `TransientProblem.solve` calls it by the name in ``method=``.  A subclass of scipy's `OdeSolver` needs
        none of this: it is passed as ``method=`` itself.
     """
 
@@ -93,7 +94,7 @@ class Trajectory:
         return t, q, v
 
     def projected(self, outputs: np.ndarray) -> Trajectory:
-        """Build the path of d outputs in place of the n coordinates, by their matrix `outputs` (d, n)."""
+        """Replace the n coordinates by d linear functions of them with coefficients `outputs` (d, n)."""
         return Trajectory(tuple(segment.projected(outputs) for segment in self.segments))
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -125,7 +126,7 @@ def magnitude(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
 
 
 def largest_on(size_of: Size, path: Path, start: float, end: float) -> float:
-    """Find the largest magnitude of the tip's deflection in one time window: see `largest_in_each`."""
+    """Find the largest magnitude of the tip's deflection [m] in a time window, as `largest_in_each` does."""
     return largest_in_each(size_of, path, [(start, end)])[0]
 
 
@@ -156,7 +157,7 @@ def largest_in_each(size_of: Size, path: Path, windows: Sequence[tuple[float, fl
     for _ in range(_REFINEMENTS):
         near = np.linspace(np.maximum(t - half_width, start), np.minimum(t + half_width, end), 35, axis=-1)
         found = size_of(path.at(near.ravel())[0]).reshape(near.shape)
-        # The first refinement tells which maxima are highest.
+        # The first refinement shows which maxima are highest.
         highest = np.argsort(found.max(axis=2))[:, -_REFINED:]
         best = np.take_along_axis(found.argmax(axis=2), highest, axis=1)
         near = np.take_along_axis(near, highest[:, :, None], axis=1)
@@ -171,20 +172,21 @@ def _top_of_parabola(left: np.ndarray, middle: np.ndarray, right: np.ndarray) ->
     """Find the maximum of the parabola through three equidistant values, or the middle one if higher."""
     is_maximum = (middle >= left) & (middle >= right)
     bend = np.where(is_maximum, 2 * middle - left - right, 0.0)
-    tilt = np.divide(right - left, bend, out=np.zeros_like(bend), where=bend > 0)  # tilt is at most 1
+    # A tilt above 1 means that the highest value is outside.
+    tilt = np.divide(right - left, bend, out=np.zeros_like(bend), where=bend > 0)
     return middle + (right - left) * tilt / 8
 
 
 def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -> np.ndarray:
-    """Choose times of the highest samples in a window and its ends, perhaps repeated: (_CANDIDATES + 2,).
+    """Choose the times of a window's highest samples, and its two ends, perhaps repeated: (_CANDIDATES + 2,).
 
-    Samples are ranked by parabolas through three of them.
+    Samples are ranked by the maximum of the parabola through three neighbours.
     """
     first, last = np.searchsorted(times, start), np.searchsorted(times, end, side="right")
     size = size[first:last]
     chosen = np.arange(len(size))
     if len(size) >= 3:
-        size = size / max(size.max(), 1e-300)  # scaled so that squares cannot overflow
+        size = size / max(size.max(), 1e-300)  # scaled so that the squares do not overflow
         height = _top_of_parabola(size[:-2], size[1:-1], size[2:])
         chosen = 1 + np.argpartition(height, -min(_CANDIDATES, len(height)))[-_CANDIDATES:]
     return np.concatenate([times[first + chosen], np.full(_CANDIDATES - len(chosen), start), [start, end]])
@@ -196,7 +198,7 @@ def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -
 def sample_tip(system: AnySystem, path: Path) -> tuple[np.ndarray, np.ndarray]:
     """Sample the tip's deflection on a path: times (k,) [s] and deflections (k, 1 or 2) [m]."""
     if isinstance(system, ModalSystem) and isinstance(path, Trajectory):
-        # Sampling the tip alone takes far fewer numbers than sampling all coordinates.
+        # The tip deflection alone needs far less memory than all coordinates.
         t, deflections, _ = path.projected(system.tips).samples
         return t, deflections
     t, q, _ = path.samples
@@ -209,7 +211,7 @@ def magnitude_of(deflections: np.ndarray) -> np.ndarray:
 
 
 def in_direction(deflections: np.ndarray, direction: int) -> np.ndarray:
-    """Select the deflection (...) in a direction from (..., 1 or 2); 0 where it is not modelled."""
+    """Select the deflection (...) in one direction from (..., 1 or 2); 0 if the direction is not modelled."""
     if direction >= deflections.shape[-1]:
         return np.zeros(deflections.shape[:-1])
     return deflections[..., direction]

@@ -34,13 +34,14 @@ from beamdyn.transient.root_strain import RootStrain
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.trajectory import Path, Trajectory, in_direction, magnitude_of, sample_tip
 
-# Largest distance of the refined run, over the largest deflection, from which the error is estimated.
+# Largest distance from the refined run, over the largest deflection, that still gives an estimate of the
+# error.
 _LIMIT_DIFFERENCE = 0.3
-_TIMES_COMPARED = 20_000  # number of times at which two runs are compared; at most twice as many are used
+_TIMES_COMPARED = 20_000  # number of times at which two runs are compared, at most doubled
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
-# Share of a path's time-integration error in the modal truncation error that is found along this path.
+# Part of the time-integration error of a motion that is included in its modal truncation error.
 _OF_TIME_ERROR = 0.1
-# Computed attributes that a copy with further warnings keeps.
+# Computed attributes that are kept in a copy with further warnings.
 _COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"
 
 
@@ -111,11 +112,11 @@ class Transient(StatesModelError):
 
     @property
     def solution(self) -> Solution:
-        """Equations, path, errors and largest deflection of the run."""
+        """Solution of the run: equations, path, errors and largest deflection."""
         return Solution(self.system, self.path, self.time_error, self.largest)
 
     def without_waiting(self) -> Transient:
-        """Return a copy that can be shown at once, without slow errors that are not computed yet."""
+        """Return a copy that can be shown at once: slow errors that are not computed yet are omitted."""
         vars(shown := copy(super().without_waiting())).setdefault("mode_error", np.inf)
         return shown
 
@@ -139,12 +140,13 @@ class Transient(StatesModelError):
     def mode_error(self) -> float:
         """Estimated modal truncation error, over the largest deflection: twice the distance from `refined`.
 
-        Unless `refined` has been computed, the distance is estimated along the path of this run, or else the
-        further modes are integrated in the steps of this run, where these methods apply.
+        Unless `refined` has been computed, the distance is estimated along the motion of this run
+        (`along_path`), or the further modes are integrated in the time steps of this run, if one of these
+        methods is applicable.
 
-        The factor of two covers the error of `refined` itself: on random runs it was less than half of the
-        distance (benchmark of the coverage of transients).  It is inf if there is no larger model that fits
-        into memory, or if the distance is so large that the error of `refined` is unknown.
+        The factor of two covers the error of `refined` itself: in random runs it was less than half of the
+        distance.  It is inf if there is no larger model that fits into memory, or if the distance is so large
+        that the error of `refined` is unknown.
         """
         system, path, difference = self.system, self.path, None
         known = self.time_error == 0 or not _MOTIONS_WITH_MORE_MODES.isdisjoint(self.__dict__)
@@ -162,18 +164,18 @@ class Transient(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the largest deflection by effects left out of the model, of shape ()."""
+        """Changes of the largest deflection by each neglected effect, of shape ()."""
         return left_out_of_transient(self.request, self.solution)
 
     def with_warnings(self, more: tuple[str, ...]) -> Transient:
-        """Copy with further warnings, which keeps the refined run if it has been computed."""
+        """Return a copy with further warnings, which keeps the refined run if it has been computed."""
         copy = replace(self, warnings=(*self.warnings, *more))
         computed = {name: self.__dict__[name] for name in _COMPUTED if name in self.__dict__}
         copy.__dict__.update(computed)
         return copy
 
     def distance_from(self, other: Transient) -> float:
-        """Find the largest difference of the tip deflection from that of another run of the scene [m]."""
+        """Find the largest difference [m] of tip deflections between this and another run of the scene."""
         return self.distance_from_path(other.system, other.path)
 
     def distance_from_path(self, system: AnySystem, path: Path) -> float:
@@ -191,12 +193,12 @@ class Transient(StatesModelError):
         return {**super().to_dict(), "mode_error": self.mode_error}
 
     def at(self, t: np.ndarray | Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-        """Interpolate modal coordinates and velocities at times t [s] of the run: shapes (len(t), m).
+        """Interpolate modal coordinates and velocities at times t [s] within the run: shapes (len(t), m).
 
         Raises
         ------
         ValueError
-            If a time is no finite number, or lies outside the run.
+            If a time is not finite, or lies outside the run.
         """
         return self.path.at(self._times_in_run(t))
 
@@ -212,8 +214,8 @@ class Transient(StatesModelError):
     ) -> np.ndarray:
         """Compute the deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x)).
 
-        Direction 0 is that of bending at the root, 1 the one across, in which a beam of one plane
-        is rigid.
+        Direction 0 is the bending direction at the root, 1 the direction across, in which a beam with one
+        plane is rigid.
         """
         xi = np.asarray(x) / self.scene.beam.length
         return self.system.shape(self.at(t)[0], xi, direction)
@@ -226,7 +228,7 @@ class Transient(StatesModelError):
     ) -> np.ndarray:
         """Compute the deflection [m] over a strip's area at times t [s]: (len(t), len(x), len(eta)).
 
-        Places and direction are defined as in `Modes.surface`.
+        Positions and direction are defined as in `Modes.surface`.
         """
         xi = np.asarray(x) / self.scene.beam.length
         return self.system.surface(self.at(t)[0], xi, np.asarray(eta))
@@ -249,10 +251,10 @@ class Transient(StatesModelError):
     def root_strain_error(self) -> float:
         """Estimated error of `root_strain`: three times its distance from `refined`, plus the time error.
 
-        After a sudden load, mode k contributes to the strain as k^-3, so that all modes left out together
-        contribute up to 2.2 times what `refined` adds.  As for `mode_error`, it is inf if there is no
-        larger model, or if the distance is too large; as for `time_error`, it is nan for the methods of
-        `solve_ivp`.
+        After a sudden load, mode k contributes to the strain as k^-3, so that all neglected modes together
+        contribute up to 2.2 times the contribution added by `refined`.  As for `mode_error`, it is inf if
+        there is no larger model, or if the distance is too large; as for `time_error`, it is nan for the
+        methods of `solve_ivp`.
         """
         if self.refined is None:
             return np.inf
@@ -265,7 +267,7 @@ class Transient(StatesModelError):
 
     @cached_property
     def _root_strain(self) -> RootStrain:
-        """Root strain as a function of the state."""
+        """Bending strain at the root, as a function of coordinates and velocities."""
         return RootStrain.of_scene(self.scene, self.request.model.discretization, self.system)
 
     def deflection(self, t: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
@@ -275,10 +277,10 @@ class Transient(StatesModelError):
     def energy(self, t: np.ndarray | Sequence[float]) -> np.ndarray:
         """Compute the energy of the vibration [J] at times t [s], q' q' / 2 + q K q / 2 - f q.
 
-        With large deflection, kinetic energy relative to the rotating axes, elastic energy and the
-        potential of the centrifugal forces, of the root's acceleration and of a dead force at the tip:
-        constant, without damping, if the speed and that acceleration are; a moment at the tip, or a load that
-        follows it, does further work.
+        With large deflection it is the sum of the kinetic energy relative to the rotating axes, the elastic
+        energy, and the potential of centrifugal forces, of the root's acceleration and of a tip force of
+        fixed direction.  Without damping this sum is constant if speed and root acceleration are constant; a
+        tip moment, or a load that rotates with the tip, does additional work.
         """
         t = self._times_in_run(t)
         return self.system.energy(t, *self.path.at(t))
@@ -286,14 +288,14 @@ class Transient(StatesModelError):
     def peak(self, start: float, end: float, direction: int | None = None) -> float:
         """Find the largest |tip deflection| [m] from `start` to `end` [s], also between samples.
 
-        Where two planes are modelled, this is the magnitude of a vector, or of its component in a direction:
-        0 is the one of bending at the root, 1 the one across.
+        If two planes are modelled, this is the magnitude of the deflection vector, or of its component in a
+        direction: 0 is the bending direction at the root, 1 the direction across.
         """
         self._check_window(start, end)
         return self.solution.peak(start, end, direction)
 
     def _check_window(self, start: float, end: float) -> None:
-        """Refuse a time window [s] that is not within the run."""
+        """Raise an error for a time window [s] that is not within the run."""
         (start, end), path = (real("start", start, "s"), real("end", end, "s")), self.path
         if not path.start <= start < end <= path.end * (1 + 1e-12):
             within = f"it must lie in the run, {path.start:g} ... {path.end:g} s"
@@ -346,10 +348,10 @@ class Transient(StatesModelError):
 
 @dataclass(frozen=True)
 class TransientRequest(TransientProblem):
-    """Checked arguments of `simulate`, which run it and build its result."""
+    """Checked arguments of `simulate`; methods run the simulation and build the result."""
 
     def run(self) -> Transient:
-        """Integrate with the modal basis of the request."""
+        """Integrate the motion with the modal basis of the request, and build the result."""
         start = perf_counter()
         solution = self.solve()
         t, q, v = solution.path.samples
@@ -374,7 +376,7 @@ class TransientRequest(TransientProblem):
         )
 
     def _warnings(self, solution: Solution) -> Iterator[Statement]:
-        """Yield warnings about a solution, including a missed tolerance."""
+        """Yield warnings about a solution, such as a missed tolerance."""
         scene, largest = self.scene, solution.largest
         yield from warn_of_left_out(scene)
         yield from warn_of_peak(scene, largest)
@@ -405,9 +407,9 @@ class TransientRequest(TransientProblem):
 
 
 def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator[Statement]:
-    """Warn of a modal truncation error, over the largest deflection (inf if not known), past the tolerance.
+    """Warn of a modal truncation error, over the largest deflection (inf if unknown), above the tolerance.
 
-    The argument `basis` is its name in words.
+    The argument `basis` describes the modal basis in words.
     """
     size = f"{error:.2g} of the largest deflection" if np.isfinite(error) else "not known"
     more = "and more would take too long or too much memory; a sudden motion excites very many: "
@@ -418,7 +420,7 @@ def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator
 
 
 def _warn_of_missed(what: str, error: float, tolerance: float, said: str, remedy: str) -> Iterator[Statement]:
-    """Warn of an error over the largest deflection that exceeds the tolerance, with its size in words."""
+    """Warn of an error, over the largest deflection, above the tolerance; `said` states its size."""
     if error > tolerance:
         yield Statement(
             f"tolerance = {tolerance:g} is not reached: the estimated {what} is {said}",

@@ -1,10 +1,10 @@
-"""Gauss collocation for a stiffness that varies slowly with the speed, and weakly about that.
+"""Gauss collocation for a stiffness that varies slowly with the speed, and weakly about its slow variation.
 
-The equations are q'' + C(t) q' + (K(t) + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l with constant G_m and P_l.
-C and K follow the speed.  With e = 0 the maps of the steps are smooth functions of time, which are
-interpolated between a few steps by Chebyshev polynomials; at steady speed one step represents all.  Changes
-by e follow from a power series in the values of e at the nodes, up to the second order.  So no step needs
-a factorisation of its own, and the maps of many steps are one product of matrices.
+The equations are q'' + C(t) q' + (K(t) + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l with constant G_m and P_l. C
+and K depend on the speed.  With e = 0 the maps of the steps are smooth functions of time, which are
+interpolated between a few steps by Chebyshev polynomials; at steady speed one step represents all.  The
+effect of e follows from a power series in the values of e at the nodes, up to the second order.  So no step
+needs a factorisation of its own, and the maps of many steps are one product of matrices.
 """
 
 from __future__ import annotations
@@ -26,28 +26,32 @@ from beamdyn.transient.chebyshev import (
     to_part,
 )
 
-_POINTS = (25, 37)  # odd numbers of Chebyshev points of a segment of changing speed that are tried
-_FEWEST_STEPS = 6  # number of steps for each point, below which solving every step costs no more
-_MOST_VALUES = 4_000_000  # largest number of values of the expanded maps of changing speed, some 30 MB
-# Assumed ratio of the largest e, the variation of the stiffness, to the largest of its samples.
+_POINTS = (25, 37)  # odd numbers of Chebyshev points in a segment of changing speed that are tried in turn
+# Smallest number of steps per Chebyshev point for which interpolation is cheaper than solving every step.
+_FEWEST_STEPS = 6
+_MOST_VALUES = 4_000_000  # largest number of stored values of the expanded maps at changing speed, some 30 MB
+# Assumed ratio of the largest stiffness variation e to its largest sample.
 _LARGEST_SAMPLED = 1.5
-_SQUARINGS = 3  # number of squarings of a matrix, whose norm then bounds the spectral radius closely
+# Number of squarings of a matrix before taking its norm, which gives a close bound of the spectral radius.
+_SQUARINGS = 3
 _SAMPLES = 257  # number of samples of e, the variation of the stiffness, among which the largest is sought
-_SLOWEST = 1e-3  # relative frequency below which errors of velocity are not weighted further
+# Ratio of a mode's frequency to the largest below which velocity errors are not weighted further.
+_SLOWEST = 1e-3
 _SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision
-_STEPS = 192  # number of steps solved as one batch
-# Number of steps at whose nodes e and g are evaluated at once: calls cost more than numbers.
+_STEPS = 192  # number of steps evaluated as one batch
+# Number of steps at whose nodes e and g are evaluated in one call: the calls cost more than the values.
 _SAMPLED = 16 * _STEPS
 
 
 @dataclass(frozen=True)
 class ModulatedSystem:
-    """Equations q'' + C(t) q' + (K(t) + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l with weak factors e.
+    """Equations q'' + C(t) q' + (K(t) + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l with small factors e.
 
     Parameters
     ----------
     slow : callable
-        Function from times (...) [s] to C, (..., n, n) or None, and K, (..., n, n), which follow the speed.
+        Function from times (...) [s] to C, (..., n, n) or None, and K, (..., n, n), which depend on the
+        speed.
     steady : bool
         Whether C and K are constant.
     G : ndarray, shape (m, n, n)
@@ -69,7 +73,7 @@ class ModulatedSystem:
 
 
 class _Steps(NamedTuple):
-    """Equal steps of length h from time `first` [s], with their tableau and the accuracy after all steps."""
+    """Equal steps of length h from time `first` [s], their tableau, and the accuracy after all steps."""
 
     system: ModulatedSystem
     first: float
@@ -112,7 +116,7 @@ class _StepMapSeries:
         Y = np.linalg.inv(gauss.left_side(C, K, h, table))
         free = gauss.right_side(C, K, np.zeros((P, s, n)), h, table)[:, :, 1:]
         loads = np.einsum("ij,la->iajl", np.eye(s), system.P).reshape(s * n, -1)
-        # Drift of q and v in the displacement at the nodes.
+        # Contribution of q and v at the start of a step to the displacements at the nodes.
         drift = np.stack([np.ones(s), h * table.c], axis=1)
         R = -np.einsum("ix,mab->miaxb", drift, system.G).reshape(-1, s * n, 2 * n)
         R = np.concatenate([R, np.zeros((len(R), *loads.shape))], axis=2)
@@ -120,7 +124,7 @@ class _StepMapSeries:
         return cls(Y, np.concatenate([Y @ free, Y @ loads], axis=2), R, Z, h, table)
 
     def every(self, stride: int) -> _StepMapSeries:
-        """Select the series at every `stride`-th point."""
+        """Select the series at every `stride`-th Chebyshev point."""
         return replace(self, Y=self.Y[::stride], X0=self.X0[::stride])
 
     @property
@@ -129,11 +133,11 @@ class _StepMapSeries:
         return self.Y.shape[1] // len(self.table.c)
 
     def constant(self) -> np.ndarray:
-        """Compute the maps from z to states at the end of a step with e = 0: (P, 1, 2 n, :)."""
+        """Compute the maps, with e = 0, from z to the state at the end of a step: (P, 1, 2 n, :)."""
         return gauss.add_drift(gauss.increment(self.X0, self.h, self.table), self.h, first=0)[:, None]
 
     def _parts(self) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the maps from loads at nodes to (q, v), and W = R - Z X0 in the symbols of the class.
+        """Compute the maps from loads at the nodes to (q, v), and W = R - Z X0 in the notation of the class.
 
         The shapes are (P, s, 2 n, n) and (P, m, s, n, :).
         """
@@ -160,14 +164,14 @@ class _StepMapSeries:
         P, m, s, n, columns = W.shape
         ZY = (self.Z @ self.Y[:, None]).reshape(P, m, s, n, s * n)
         left = (ends[:, None] @ ZY).reshape(P, m * s * 2 * n, s, n).swapaxes(1, 2)
-        # Terms in which e_k acts first, and e_l on its result.
+        # Terms in which e_k acts first, and then e_l acts on the resulting motion.
         pairs = (left[:, None] @ W).reshape(P, m * s, m * s, 2 * n, columns)
         rows, cols = _pairs(m * s)
         twice = np.where(rows == cols, 0.5, 1.0)[:, None, None]
         return -(pairs[:, rows, cols] + pairs[:, cols, rows]) * twice
 
     def ratio(self) -> np.ndarray:
-        """Bound the ratio of successive terms of the series, per size of each factor e: shape (m,)."""
+        """Bound the ratio of successive terms of the series, per unit of each factor e: shape (m,)."""
         A = self.Z @ self.Y[:, None]
         norm = np.linalg.norm(A, axis=(2, 3)) + 1e-300
         A = A / norm[:, :, None, None]
@@ -200,7 +204,7 @@ class _Expansion:
 
     @classmethod
     def of(cls, steps: _Steps, points: int) -> _Expansion | None:
-        """Expand the maps of some steps, with a number of Chebyshev points.
+        """Expand the maps of steps in Chebyshev polynomials through a number of points.
 
         Returns None if the polynomials through these points are not accurate enough after all steps.
         """
@@ -216,11 +220,11 @@ class _Expansion:
         for k, (order, factor) in enumerate(zip(orders, monomials, strict=True)):
             values = chebyshev_coefficients(order)
             size = (np.abs(values * (rows[:, None] * columns)).max(axis=(2, 3)) * factor).sum(axis=1)
-            if len(size) > 1 and size[-1] > allowed:  # the number of points does not suffice
+            if len(size) > 1 and size[-1] > allowed:  # more Chebyshev points are needed
                 return None
             rough = k > 0 and size.sum() * _SINGLE_ROUNDING <= allowed
             maps.append(Polynomials(values, size, allowed).shortened(rough))
-        change = float(ratio @ largest)  # change by the first order, relative to the order before it
+        change = float(ratio @ largest)  # ratio of the first-order change to the unperturbed map
         X0, Y = chebyshev_coefficients(point.X0), chebyshev_coefficients(point.Y)
         # Conversion from accelerations to displacements.
         forces = np.tile(rows[point.size :] ** 2, len(table.c))
@@ -232,7 +236,7 @@ class _Expansion:
         return cls(maps, terms.shortened(rough=False), varied.shortened(rough), ratio, point)
 
     def over(self, start: float, end: float) -> _Block:
-        """Return the maps of the steps that begin from `start` to `end` of the variable in [-1, 1].
+        """Return the maps of steps that begin between `start` and `end` on the scale [-1, 1] of all steps.
 
         Fewer polynomials suffice for this part than for all steps.
         """
@@ -244,7 +248,7 @@ class _Expansion:
 
 @dataclass(frozen=True)
 class _Block:
-    """Maps of neighbouring steps, by polynomials that are accurate for these alone."""
+    """Maps of neighbouring steps, by polynomials that are accurate for these steps only."""
 
     maps: tuple[np.ndarray, ...]
     X0: np.ndarray
@@ -258,7 +262,8 @@ class _Block:
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
         """Compute maps of steps (N, 2 n, 2 n + s l) for polynomials (N, p) at step starts, e (N, m s)."""
         rows, columns = self.maps[0].shape[2:]
-        sums: dict[np.dtype, np.ndarray] = {}  # sums by precision: single precision where that suffices
+        # Sums grouped by precision: single precision where that suffices.
+        sums: dict[np.dtype, np.ndarray] = {}
         for monomials, values in zip(_monomials_by_order(e), self.maps, strict=True):
             kind = values.dtype
             factor = _products(T.astype(kind), monomials.astype(kind), values)
@@ -287,7 +292,7 @@ def _products(T: np.ndarray, monomials: np.ndarray, values: np.ndarray) -> np.nd
 
 
 def _evaluate(coefficients: np.ndarray, T: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Multiply the vectors z (N, c) by matrices given by Chebyshev coefficients (p, r, c): shape (N, r)."""
+    """Multiply vectors z (N, c) by matrices of Chebyshev coefficients (p, r, c), at T (N, p): (N, r)."""
     p, rows, columns = coefficients.shape
     return _products(T, z, coefficients) @ coefficients.swapaxes(1, 2).reshape(p * columns, rows)
 
@@ -301,9 +306,10 @@ def _pairs(d: int) -> tuple[np.ndarray, np.ndarray]:
 def _scales(
     system: ModulatedSystem, constant: np.ndarray, t: float, table: gauss.Tableau
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute factors of rows (2 n,) and columns (2 n + s l,) that make entries of the maps comparable.
+    """Compute factors of rows (2 n,) and columns (2 n + s l,) that make the entries of maps comparable.
 
-    Errors of velocity are divided by the frequency, errors of loads by each load's largest effect in a step.
+    Errors of velocity are divided by the angular frequency, errors of loads by each load's largest effect in
+    a step.
     """
     K = system.slow(np.array([t]))[1][0]
     n, frequency = len(K), np.sqrt(np.abs(np.diag(K)))
@@ -324,7 +330,7 @@ def propagate_modulated(
     stages: int,
     accuracy: float,
 ) -> gauss.Segment | None:
-    """Integrate over equal steps by the expanded maps; like `beamdyn.transient.gauss.propagate`.
+    """Integrate over equal steps by the expanded maps; other arguments as for `gauss.propagate`.
 
     Parameters
     ----------
@@ -370,10 +376,11 @@ def _blocks(
 def _advance_block(
     local: _Block, e: np.ndarray, g: np.ndarray, state: np.ndarray, acceleration: np.ndarray
 ) -> None:
-    """Fill state[1:] of a block of N steps from state[0], and the accelerations at their nodes."""
+    """Compute the states state[1:] of a block of N steps from state[0], and accelerations at their nodes."""
     N, columns = len(e), state.shape[1]
     T = local.polynomials(2 * np.arange(N) / max(N - 1, 1) - 1)
-    e, g = np.moveaxis(e, 2, 1).reshape(N, -1), g.reshape(N, -1)  # e of shape (N, m nodes)
+    # As one row per step: e of length m s.
+    e, g = np.moveaxis(e, 2, 1).reshape(N, -1), g.reshape(N, -1)
     maps = local.steps(T, e)
     affine = np.empty((N, columns - 1, columns))
     np.matmul(maps[:, :, columns - 1 :], g[:, :, None], out=affine[:, :, :1])
@@ -384,7 +391,7 @@ def _advance_block(
 
 
 def _expand(steps: _Steps) -> _Expansion | None:
-    """Expand the maps of steps by as few points as suffice; None if none suffice."""
+    """Expand the maps of steps with the fewest Chebyshev points that suffice; None if none suffices."""
     system, s = steps.system, len(steps.table.c)
     if system.steady:
         return _Expansion.of(steps, 1)
@@ -402,7 +409,7 @@ def _expand(steps: _Steps) -> _Expansion | None:
 def _monomials_by_order(e: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Compute the monomials of each row of e (N, d) up to the second order, one array for each order.
 
-    They are 1, all e_k, and all e_k e_l with k <= l.
+    The monomials are 1, all e_k, and all e_k e_l with k <= l.
     """
     rows, columns = _pairs(e.shape[1])
     return np.ones((len(e), 1)), e, e[:, rows] * e[:, columns]

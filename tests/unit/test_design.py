@@ -136,7 +136,7 @@ def test_targets_that_are_met_are_mentioned_beside_those_that_are_missed_for_the
     for others in ([], [bd.Target("critical_speed", at_least=50.0)]):
         found = bd.design(INWARD, THICKNESS, [*apart, *others])
         assert found.why_none and found.met.tolist() == [False, False, *(True for _ in others)]
-        said = " beside all else that is wanted; the nearest found is "
+        said = " together with all other targets; the nearest found is "
         assert (said in found.sentences()[0]) == bool(others)
 
 

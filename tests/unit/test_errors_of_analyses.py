@@ -131,7 +131,7 @@ def test_sensitivities_of_a_bent_beam_are_not_known():
 def test_what_has_no_value_says_why_nothing_is_known():
     thick = bd.Beam.rectangular(0.2, 0.08, 0.03, 200e9, 7850.0)
     found = bd.setting_angle_limits(bd.Scene(thick, bd.Mount(0.1, math.pi, math.pi / 2)), 300.0)
-    assert "there is no value that it could change" in found.left_out_effects.sentence()
+    assert "there is no value that the effect could change" in found.left_out_effects.sentence()
 
 
 def test_loads_of_a_tapered_strip_choose_physics_without_camber():
@@ -192,7 +192,9 @@ def test_large_deflection_of_a_run_in_two_planes_is_not_known():
     loads = bd.transient_loads(bd.simulate(scene, 0.3, modes=2), at=[0.0])
     for found in (loads, bd.count_cycles(loads)):
         assert np.isnan(found.left_out[LARGE])
-        assert found.left_out_effects.not_known[LARGE] == "in two planes it is not judged: modes may cross"
+        assert (
+            found.left_out_effects.not_known[LARGE] == "not estimated for two planes, where modes may cross"
+        )
 
 
 def test_loads_of_a_loaded_run_are_not_judged_and_say_why(tmp_path):

@@ -213,7 +213,7 @@ def test_why_a_bent_mode_is_not_judged_is_said() -> None:
     bent = replace(scene, physics=bd.Physics(large_deflection=True, branch="bent"))
     effects = bd.natural_modes(bent, 1.2 * bd.critical_speed(scene)).left_out_effects
     assert np.isnan(effects.total[0])
-    assert "stretch (it is judged on the straight beam, which is unstable)" in effects.sentence()
+    assert "stretch (estimated for the straight beam, which is unstable)" in effects.sentence()
     assert len([*effects.warnings()]) == 1
 
 

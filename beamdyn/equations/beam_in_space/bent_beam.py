@@ -1,24 +1,24 @@
 """The geometrically exact beam in space, and its equations of motion linearized about any deformed state.
 
-The unknowns are the strains along the axis, six functions of x/L: stretch g1 and shears g2, g3 of the
-section against the tangent, twist rate k1 and curvatures k2, k3, in the axes of the section.  With the
-rotation R of the sections and the position r of the axis,
+The unknowns are the strains along the axis, six functions of x/L: stretch g1, shears g2, g3 between section
+and tangent, twist rate k1 and curvatures k2, k3, in the axes of the section.  With the rotation R of the
+sections and the position r of the axis,
 
     R' = R skew(k),   r' = R (e1 + g),
 
-the six strains may be chosen without any condition between them, and the elastic energy is a quadratic form
-of the coordinates.  Fibres off the axis become helices by the twist and so pull the ends together (trapeze
-effect): with the mean strain e of the fibres, i^2 the mean square of their distance from the axis, and t the
-twist of the unloaded sections against the axes in which strains are given,
+the six strains are independent of each other, and the elastic energy is a quadratic form of the coordinates.
+Twist makes helices of the fibres off the axis, which shortens the beam (trapeze effect): with the mean strain
+e of the fibres, their mean squared distance i^2 from the axis, and the pretwist t of the unloaded sections
+relative to the axes of the strains,
 
     g1 = e - i^2/2 ((k1 + t)^2 - (k1_0 + t)^2).
 
-A change of the coordinates turns the sections by W and displaces the axis by X,
+A small change of the coordinates rotates the sections by W and displaces the axis by X,
 
     W' = R dk,   X' = W x r' + R dg,
 
-all components in space.  With n and m the resultants of the forces F and moments M that act beyond a point,
-virtual work is int [R'm . dk + R'n . dg], and its derivative, at fixed forces, is
+all with components in space-fixed axes.  With n and m the resultants of the forces F and moments M that act
+beyond a point, virtual work is int [R'm . dk + R'n . dg], and its derivative, at fixed forces, is
 
     int [W_i' . (m x W_j) + R g_i . (n x W_j) + W_i . (X_j' x n) + R'n . g_ij].
 
@@ -44,41 +44,41 @@ from beamdyn.equations.beam_in_space.finite_rotations import UNIT, cross, integr
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, MassesInSpace, StationForces
 from beamdyn.equations.discretization import ArcQuadrature, Cells
 
-# Weights of a Gauss rule on the arc of a root on springs: rotations by half a circle are exact to rounding.
+# Weights of a Gauss rule on the arc that models a sprung root: exact to rounding for rotations up to pi.
 _ON_ARC = gauss_rule(12)[1] / 2
 STRAINS = "stretch", "shear", "second shear", "twist rate", "second curvature", "curvature"
 
 
 @dataclass(frozen=True)
 class BeamInSpace(FieldsOnly):
-    """A beam, clamped or on hinges, that bends, twists, shears and stretches by any amount.
+    """Beam, clamped or hinged at the root, with arbitrarily large bending, twist, shear and stretch.
 
     The axes at the root are e1 along the beam, e2 in the direction of bending and e3 across.
 
     Parameters
     ----------
     stations : BeamStations
-        Points along the beam, N of them of a Gauss rule.
+        Points along the beam; N of them are Gauss points.
     masses : Masses
         Masses at the stations.
     initial : ndarray, shape (6, N)
         Strains of the unloaded beam, in the order of `STRAINS`; curvatures in 1/m.
     functions : ndarray, shape (n, 6, N)
-        Strains per coordinate.
+        Strains per unit of each coordinate.
     stiffness, damping : ndarray, shape (n, n)
         Elastic stiffness and damping of the coordinates.
     fibres : ndarray, shape (N,)
-        Mean square i^2 of the distance of fibres from the axis [m2]; 0 leaves their shortening out.
+        Mean squared distance i^2 of the fibres from the axis [m2]; 0 neglects the shortening by twist.
     pretwist : ndarray, shape (N,)
-        Twist t of the unloaded sections against the axes of the strains [1/m].
+        Pretwist t of the unloaded sections relative to the axes of the strains [1/m].
     kinks : ndarray, shape (c, 4)
-        Unit quaternions by which the axes turn where each cell of the rule begins: those of a beam whose axis
-        has kinks, or does not begin along e1.
+        Unit quaternions of the axes' rotation at the beginning of each cell; needed if the beam's axis has
+        kinks, or does not begin along e1.
     hinges : ndarray, shape (n, 3), optional
-        Vector of the turn of the root per coordinate [rad]; None where the root is clamped.
+        Rotation vector of the root per unit of each coordinate [rad]; None if the root is clamped.
     slopes : ndarray, shape (n, N + 1), optional
-        Slopes by bending at the Gauss points and the tip per coordinate, more exact than integrals of the
-        curvature from the Gauss points; None if they are not known.
+        Bending slopes at the Gauss points and the tip per unit of each coordinate, more exact than integrals
+        of the curvature over Gauss points; None if not known.
     """
 
     stations: BeamStations
@@ -100,16 +100,16 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def flat_functions(self) -> np.ndarray:
-        """Strains per coordinate, flattened over components and points: shape (n, 6 N)."""
+        """Strains per unit of each coordinate, flattened over components and points: shape (n, 6 N)."""
         return self.functions.reshape(self.size, -1)
 
     def strained(self, q: np.ndarray) -> np.ndarray:
-        """Compute the changes of the strains (..., 6, N) by coordinates (..., n)."""
+        """Compute the changes of strain (..., 6, N) from the unloaded beam, at coordinates (..., n)."""
         return (q @ self.flat_functions).reshape(*q.shape[:-1], *self.initial.shape)
 
     @cached_property
     def angles(self) -> np.ndarray:
-        """Measure of changes of the shape per coordinate, shape (n, k): strains integrated from the root.
+        """Measure of shape changes per unit of each coordinate, (n, k): strains integrated from the root.
 
         The k columns are the components of strain that are not 0, at each Gauss point and at the tip.
         """
@@ -122,7 +122,7 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def shears(self) -> bool:
-        """Whether sections shear, or the axis changes its length by stretch or twist."""
+        """Whether the model has shear, or the axis changes its length by stretch or twist."""
         return bool(self.functions[:, :3].any() or self.shortens)
 
     @cached_property
@@ -139,15 +139,15 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def is_planar(self) -> bool:
-        """Whether the beam bends in the plane of e1 and e2 alone, inextensible, from a straight axis."""
+        """Whether the beam is straight and inextensible, and bends in the plane of e1 and e2 only."""
         return not (self.initial.any() or self.kinks[:, 1:].any() or self.functions[:, :-1].any())
 
     @cached_property
     def arc(self) -> BeamInSpace:
-        """Root on springs, modelled as an infinitely short and soft piece of beam that is bent to an arc.
+        """Sprung root, modelled as an infinitely short and soft piece of beam that is bent to an arc.
 
-        Its length counts as 1: its curvature is the vector of the turn.  The root so turns to its direction
-        by the shortest rotation, whichever axis is named first.  Its elastic energy is that of the beam.
+        With its length taken as 1, its curvature is the rotation vector of the root.  This makes the root's
+        rotation independent of the order of axes.  Its elastic energy is part of that of the beam.
         """
         none = np.zeros_like(_ON_ARC)
         stations = BeamStations(ArcQuadrature(Cells(np.array([0.0, 1.0]), len(none))), 1.0, none[:0])
@@ -157,7 +157,7 @@ class BeamInSpace(FieldsOnly):
         return BeamInSpace(stations, self.masses, 0 * functions[0], functions, *law, none, none, UNIT[None])
 
     def at(self, q: np.ndarray) -> BentBeam:
-        """Return the deformed beam at coordinates q (..., n)."""
+        """Return the beam deformed by coordinates q (..., n)."""
         return BentInPlane(self, q) if self.is_planar else BentBeam(self, q)
 
 
@@ -167,7 +167,7 @@ def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.nda
     Raises
     ------
     InvalidValue
-        If the law of a section is not positive definite: it would deform without a force.
+        If a section's stiffness matrix is not positive definite: the section would deform without a force.
     """
     least = np.linalg.eigvalsh(np.moveaxis(law, 2, 0))[:, 0]
     if (least <= 0).any():
@@ -179,7 +179,7 @@ def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.nda
 
 
 class Work(NamedTuple):
-    """Virtual work (n,) of forces on the stations per coordinate, and its derivatives (n, n)."""
+    """Virtual work (n,) of forces at the stations per unit of each coordinate, and its derivatives (n, n)."""
 
     work: np.ndarray
     change: np.ndarray
@@ -187,9 +187,9 @@ class Work(NamedTuple):
 
 @dataclass(frozen=True)
 class BentBeam(FieldsOnly):
-    """A deformed beam at given coordinates.
+    """Beam deformed by given coordinates.
 
-    All properties but the matrices can be computed at several sets of coordinates (..., n) at once.
+    All properties except the matrices can be computed for several sets of coordinates (..., n) at once.
 
     Parameters
     ----------
@@ -209,12 +209,12 @@ class BentBeam(FieldsOnly):
 
     @property
     def _shortening(self) -> np.ndarray:
-        """Derivative of the axial stretch by the twist rate (..., N), as twist turns fibres to helices."""
+        """Derivative of the axial stretch with respect to the twist rate (..., N), by the trapeze effect."""
         return -self.beam.fibres * (self.strains[..., 3, :] + self.beam.pretwist)
 
     @cached_property
     def rotations(self) -> np.ndarray:
-        """Rotation matrices (..., 3, 3, N + 1) whose columns are the axes of the sections."""
+        """Rotation matrices (..., 3, 3, N + 1) with the section axes as columns, at Gauss points and tip."""
         beam, stations = self.beam, self.beam.stations
         curvature = stations.length * self.strains[..., 3:, :]
         turned = integrate_curvature(stations.quadrature.cells, curvature, beam.kinks)
@@ -224,12 +224,12 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _within(self) -> np.ndarray:
-        """Rotation matrices (..., 3, 3, N) of the sections at the Gauss points alone."""
+        """Rotation matrices (..., 3, 3, N) of the sections at the Gauss points, without the tip."""
         return self.rotations[..., :-1]
 
     @cached_property
     def tangents(self) -> np.ndarray:
-        """Derivative r' of the position of the axis by the arc length (..., 3, N)."""
+        """Derivative r' (..., 3, N) of the axis' position with respect to arc length."""
         if not (self.beam.shears or self.beam.initial[:3].any()):
             return self._within[..., :, 0, :]
         extended, beam, twist = self.strains[..., :3, :].copy(), self.beam, self.strains[..., 3, :]
@@ -249,11 +249,11 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def masses(self) -> MassesInSpace:
-        """Masses of the beam at their places on the deformed beam."""
+        """Masses of the beam at their positions on the deformed beam."""
         return self.beam.masses.turned(self.rotations, self.positions)
 
     def strain_rates(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute strain rates in space (..., 3, N): of stretch and shears, and of curvatures."""
+        """Compute rates of stretch and shears, and of curvatures, in space-fixed axes: (..., 3, N) each."""
         stretch, bending = np.split(self.beam.strained(rates), 2, axis=-2)
         if self.beam.shears:
             stretch[..., 0, :] += self._shortening * bending[..., 0, :]
@@ -261,55 +261,55 @@ class BentBeam(FieldsOnly):
         return stretch, turn(self._within, bending)
 
     def shortening_rate(self, rates: np.ndarray) -> np.ndarray:
-        """Compute the second rate (..., 3, N) of the stretch by squared twist rates (trapeze effect)."""
+        """Compute the stretch's second rate (..., 3, N) due to squared twist rates (trapeze effect)."""
         twist_rate = rates @ self.beam.functions[:, 3]
         return -(self.beam.fibres * twist_rate**2)[..., None, :] * self._within[..., 0, :]
 
-    # Rotation of the root on springs ----------------------------------------------------------------------
+    # Rotation of the sprung root -------------------------------------------------------------------------
 
     @cached_property
     def _root(self) -> BentBeam:
-        """Arc of the root on springs at these coordinates, whose tip is the root."""
+        """Arc that models the sprung root, at these coordinates; its end is the root of the beam."""
         return self.beam.arc.at(self.q)
 
     @cached_property
     def _mean_of_arc(self) -> np.ndarray:
-        """Rotation matrices averaged along the arc (..., 3, 3), which turn changes of the root's vector."""
+        """Mean rotation matrix (..., 3, 3) along the arc; it maps changes of the root's rotation vector."""
         return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Compute angular velocities (..., 3, N + 1) of sections by rates of coordinates and curvatures."""
+        """Compute angular velocities (..., 3, N + 1) of sections from rates of coordinates and curvatures."""
         turning, hinges = self.beam.stations.to_sections(bending), self.beam.hinges
         return turning if hinges is None else turning + self._mean_of_arc @ (rates @ hinges)[..., None]
 
     def turning_of_root(self, rates: np.ndarray) -> np.ndarray | float:
-        """Compute the angular acceleration of the root (..., 3, 1) at constant rates (..., n)."""
+        """Compute the angular acceleration (..., 3, 1) of the root for constant coordinate rates (..., n)."""
         if self.beam.hinges is None:
             return 0.0
         bending = self._root.strain_rates(rates)[1]
         return (cross(self._root.turning_rate(rates, bending)[..., :-1], bending) @ _ON_ARC)[..., None]
 
-    # Derivatives of the motion by the coordinates ---------------------------------------------------------
+    # Derivatives of the motion with respect to the coordinates --------------------------------------------
 
     @cached_property
     def _strained(self) -> tuple[np.ndarray, np.ndarray]:
-        """Changes in space of stretch and shears, and of curvatures, per coordinate: (n, 3, N) each."""
+        """Changes of stretch and shears, and of curvatures, per coordinate, space-fixed: (n, 3, N) each."""
         return self.strain_rates(np.eye(self.beam.size))
 
     @cached_property
     def _turned(self) -> np.ndarray:
-        """Rotation vectors of the sections per coordinate, in space: shape (n, 3, N + 1)."""
+        """Rotation vectors of the sections per unit of each coordinate, space-fixed: shape (n, 3, N + 1)."""
         return self.turning_rate(np.eye(self.beam.size), self._strained[1])
 
     @cached_property
     def displacement_rates(self) -> np.ndarray:
-        """Derivatives along the axis of its displacements per coordinate: shape (n, 3, N)."""
+        """Derivatives of the axis displacements along the axis, per unit coordinate: shape (n, 3, N)."""
         rates = cross(self._turned[..., :-1], self.tangents)
         return rates + self._strained[0] if self.beam.shears else rates
 
     @cached_property
     def motions(self) -> np.ndarray:
-        """Displacements and rotations of all stations per coordinate: shape (n, 6, N + 1 + k)."""
+        """Displacements and rotations of all stations per unit of each coordinate: (n, 6, N + 1 + k)."""
         stations = self.beam.stations
         motions = np.zeros((self.beam.size, 6, stations.count))
         motions[:, :3] = stations.to_all(self.displacement_rates)
@@ -318,25 +318,25 @@ class BentBeam(FieldsOnly):
 
     @property
     def tip_motions(self) -> np.ndarray:
-        """Displacements of the tip per coordinate: shape (n, 3)."""
+        """Displacements of the tip per unit of each coordinate: shape (n, 3)."""
         return self.motions[:, :3, self.beam.stations.sections - 1]
 
-    # Work of forces on the stations -------------------------------------------------------------------
+    # Virtual work of forces at the stations -----------------------------------------------------------
 
     def under(self, forces: StationForces) -> Work:
-        """Compute the virtual work of forces on the stations, with its derivatives by the coordinates."""
+        """Compute the virtual work of forces at the stations, with its derivatives by the coordinates."""
         resultants = self._resultants(forces.force)
         change = self._change_by(*resultants) + self._of_stations(forces.tangent)
         return Work(self._work_of(*resultants), change)
 
     def work(self, force: np.ndarray) -> np.ndarray:
-        """Compute the virtual work (..., n) of forces (..., 6, N + 1 + k) on the stations, per coordinate."""
+        """Compute the virtual work (..., n) per unit coordinate of forces (..., 6, N + 1 + k) at stations."""
         return self._work_of(*self._resultants(force))
 
     def _resultants(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute the forces n and moments m that act beyond each point, and the moment at the root.
+        """Compute the resultants n and moments m of all forces beyond each point, and the root moment.
 
-        n and m (..., 3, N) are multiplied by the weights of the rule; the moment at the root is (..., 3).
+        n and m (..., 3, N) are multiplied by the Gauss weights; the root moment has the shape (..., 3).
         """
         stations = self.beam.stations
         n = stations.from_all(force[..., :3, :])
@@ -358,7 +358,7 @@ class BentBeam(FieldsOnly):
         return work + (at_root[..., None, :] @ self._mean_of_arc)[..., 0, :] @ beam.hinges.T
 
     def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Compute the derivative (n, n) of the virtual work of given resultants (3, N) of fixed direction."""
+        """Compute the derivative (n, n) of the virtual work of resultants (3, N) with fixed directions."""
         beam, W = self.beam, self._turned[..., :-1]
         change = self._change_by_moments(m) + _product(W, cross(self.displacement_rates, n))
         if beam.shears:
@@ -371,11 +371,11 @@ class BentBeam(FieldsOnly):
         return change
 
     def _change_by_moments(self, m: np.ndarray) -> np.ndarray:
-        """Compute the part (n, n) of `_change_by` that moments (3, N) cause where they turn sections."""
+        """Compute the part (n, n) of `_change_by` due to moments (3, N), which work on section rotations."""
         return _product(self._strained[1], cross(m, self._turned[..., :-1]))
 
     def _of_stations(self, matrices: np.ndarray) -> np.ndarray:
-        """Compute the matrix (n, n) of the coordinates from those of the stations (6, 6, N + 1 + k)."""
+        """Transform matrices (6, 6, N + 1 + k) of the stations to one matrix (n, n) of the coordinates."""
         acting = np.flatnonzero(matrices.any(axis=(1, 2)) | matrices.any(axis=(0, 2)))
         motions = self.motions[:, acting]
         return _product(motions, np.einsum("abj,nbj->naj", matrices[np.ix_(acting, acting)], motions))
@@ -387,11 +387,11 @@ class BentBeam(FieldsOnly):
 
 
 class BentInPlane(BentBeam):
-    """A deformed beam that bends in the plane of e1 and e2 alone, where rotations about e3 add up."""
+    """Deformed beam that bends only in the plane of e1 and e2, where rotations about e3 simply add up."""
 
     @cached_property
     def rotations(self) -> np.ndarray:
-        """Rotation matrices (..., 3, 3, N + 1) whose columns are the axes of the sections."""
+        """Rotation matrices (..., 3, 3, N + 1) with the section axes as columns, at Gauss points and tip."""
         angle = self.q @ self.beam.angles
         axes = np.zeros((*angle.shape[:-1], 3, 3, angle.shape[-1]))
         axes[..., 0, 0, :] = axes[..., 1, 1, :] = np.cos(angle)
@@ -401,11 +401,11 @@ class BentInPlane(BentBeam):
 
     @cached_property
     def _turned(self) -> np.ndarray:
-        """Rotation vectors of the sections per coordinate, in space: shape (n, 3, N + 1)."""
+        """Rotation vectors of the sections per unit of each coordinate, space-fixed: shape (n, 3, N + 1)."""
         return self.beam.angles[:, None] * np.array([0.0, 0.0, 1.0])[:, None]
 
     def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Compute the derivative (n, n) of the virtual work of resultants (3, N) of constant direction."""
+        """Compute the derivative (n, n) of the virtual work of resultants (3, N) with fixed directions."""
         angles, along = self.beam.angles[:, :-1], (self.tangents[:2] * n[:2]).sum(axis=0)
         return (angles * -along) @ angles.T
 

@@ -1,6 +1,6 @@
-"""Finite rotations: integrated from a curvature along a curve, and applied to vectors at many points.
+"""Finite rotations: integration of a curvature along a curve, and rotation of vectors at many points.
 
-Vectors and matrices at points have the points last: (..., 3, N) and (..., 3, 3, N).
+In arrays of vectors and matrices, the last axis counts the points: (..., 3, N) and (..., 3, 3, N).
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ import numpy as np
 from beamdyn.common.numerics import gauss_rule
 from beamdyn.equations.discretization import Cells, integrals_between_points
 
-UNIT = np.array([1.0, 0.0, 0.0, 0.0])  # quaternion of no rotation
-_NEXT = np.array([1, 2, 0])  # cyclic successor of each component, for vector products in few operations
-_ITERATIONS = 30  # iterations of Picard's method, enough for a turn by 2 pi
+UNIT = np.array([1.0, 0.0, 0.0, 0.0])  # quaternion of the identity rotation
+_NEXT = np.array([1, 2, 0])  # cyclic successor of each component, for fast cross products
+_ITERATIONS = 30  # number of Picard iterations that suffice for a rotation by 2 pi
 _CONVERGED = 4 * float(np.finfo(float).eps)  # change of a quaternion below which the iteration has converged
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Compute the vector products of vectors (..., 3, N), which are broadcast."""
+    """Compute the cross products of vectors (..., 3, N); the shapes are broadcast."""
     return (a * b.take(_NEXT, axis=-2) - a.take(_NEXT, axis=-2) * b).take(_NEXT, axis=-2)
 
 
@@ -31,25 +31,26 @@ def skew(a: np.ndarray) -> np.ndarray:
 _PRODUCT = np.zeros((4, 4, 4))  # multiplication table of quaternions: two factors, then the product
 _PRODUCT[0] = _PRODUCT[:, 0] = np.eye(4)
 _PRODUCT[1:, 1:, 0], _PRODUCT[1:, 1:, 1:] = -np.eye(3), -skew(np.eye(3))
-_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # y -> y (0, a), per component of a
-_TURNING = np.einsum(  # rotation matrices a -> y (0, a) y*, per product of two components of a quaternion y
-    "ajc,b,cbi->abij", _PRODUCT[:, 1:], [1.0, -1.0, -1.0, -1.0], _PRODUCT[..., 1:]
-).reshape(16, 9)
+_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # matrices of y -> y (0, a), per component of a
+# Matrix entries of the rotation a -> y (0, a) y*, per product of two components of the quaternion y.
+_TURNING = np.einsum("ajc,b,cbi->abij", _PRODUCT[:, 1:], [1.0, -1.0, -1.0, -1.0], _PRODUCT[..., 1:]).reshape(
+    16, 9
+)
 
 
 def turn(R: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Multiply matrices (..., 3, 3, N) with vectors (..., 3, N), which are broadcast."""
+    """Multiply matrices (..., 3, 3, N) with vectors (..., 3, N); the shapes are broadcast."""
     return np.einsum("...abj,...bj->...aj", R, a)
 
 
 def turn_tensors(R: np.ndarray, tensors: np.ndarray) -> np.ndarray:
-    """Turn tensors by rotations, which are broadcast, (..., 3, 3, N) each: R tensor R^T."""
+    """Rotate tensors: R tensor R^T for rotations and tensors (..., 3, 3, N), which are broadcast."""
     half = np.einsum("...abj,...bcj->...acj", R, tensors)
     return np.einsum("...acj,...dcj->...adj", half, R)
 
 
 def turn_law(R: np.ndarray, law: np.ndarray) -> np.ndarray:
-    """Rotate stiffness or mass matrices of sections (6, 6, N) by rotations (3, 3, N)."""
+    """Rotate section stiffness or mass matrices (6, 6, N) by rotations (3, 3, N)."""
     blocks = law.reshape(2, 3, 2, 3, -1).swapaxes(1, 2)
     return turn_tensors(R, blocks).swapaxes(1, 2).reshape(law.shape)
 
@@ -59,21 +60,21 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
 
     The unit quaternion of R' = R skew(curvature) satisfies a linear equation, y' = y (0, curvature)/2, which
     Gauss collocation solves with an error that falls exponentially with the number of points on a cell.  The
-    method keeps the length of the quaternion, so that rotations do not leave their group.
+    method preserves the length of the quaternion, so that the results remain rotations.
 
     Parameters
     ----------
     cells : Cells
         Cells and their Gauss points.
     curvature : ndarray, shape (..., 3, N)
-        Twist rate and curvatures in the turned axes, per x/L, at the points.
+        Twist rate and curvatures in the rotated axes, per unit of x/L, at the Gauss points.
     kinks : ndarray, shape (c, 4)
-        Unit quaternions by which the axes turn where each of the c cells begins.
+        Unit quaternions of the axes' rotation at the beginning of each of the c cells.
 
     Returns
     -------
     ndarray, shape (..., 3, 3, N + 1)
-        Components of the turned axes, in columns.
+        Rotation matrices, whose columns are the rotated axes.
 
     References
     ----------
@@ -95,9 +96,9 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
 def _collocate(rates: np.ndarray, A: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Solve y = 1 + A (y rates) for quaternions (S, c, p, 4) at points of cells, and (S, c, 4) at their ends.
 
-    Picard iteration starts from the turn about the integral of the rates (S, c, p, 3), which is exact where
-    their direction is constant.  After j steps its error is of the order h^j / j!, with h half the angle of a
-    cell; where this needs too many steps, the linear equations are solved instead.
+    Picard iteration starts from the rotation about the integral of the rates (S, c, p, 3), which is exact if
+    their direction is constant.  After j steps its error is of the order h^j / j!, where h is half the
+    rotation angle over a cell; if this needs too many steps, the linear equations are solved instead.
     """
     operators, turns = (rates @ _FROM_RIGHT).reshape(*rates.shape[:-1], 4, 4), A @ rates
     angle = np.sqrt((turns * turns).sum(axis=-1, keepdims=True))

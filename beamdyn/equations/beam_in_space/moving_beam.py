@@ -1,16 +1,16 @@
-"""Exact inertial forces and energies of a beam in space that moves on a moving carrier.
+"""Exact inertial forces and energies of a beam in space whose root moves with a rotating carrier.
 
-With the rates k. and g. of the strains, the sections turn against the carrier with the rate w and move with
-the velocity v,
+Dots are rates of change.  Relative to the carrier, the sections have the angular velocity w and the velocity
+v, by the strain rates k. and g.:
 
     w' = R k.,                            v' = w x r' + R g.,
     (w.)' = R k.. + w x R k.,             (v.)' = w. x r' + w x v' + w x R g. + R g..,
 
-and in axes that turn with the carrier at the rate W a centre of mass c has the acceleration of the root plus
+In axes fixed to the carrier, of angular velocity W, a centre of mass c has the acceleration of the root plus
 
     c.. + 2 W x c. + W. x c + W x (W x c),
 
-and a section of inertia I has the rate of angular momentum I (w. + W. + W x w) + (w + W) x I (w + W).
+and a section of inertia tensor I has the rate of angular momentum I (w. + W. + W x w) + (w + W) x I (w + W).
 
 Arrays over N + 1 + k stations have the N Gauss points of the strains, the tip and the k point masses: see
 `station_forces`.
@@ -34,7 +34,7 @@ _AT_REST = np.zeros(3)
 
 
 class Carrier(NamedTuple):
-    """Motion of the carrier, in axes that turn with it, at one time or several.
+    """Motion of the carrier, in axes fixed to it, at one time or several.
 
     Parameters
     ----------
@@ -49,24 +49,24 @@ class Carrier(NamedTuple):
     root_acceleration: np.ndarray = _AT_REST
 
     def at(self, times: int | slice) -> Carrier:
-        """Select the motion at one time, or some, of those along the first axis."""
+        """Select the motion at one or several of the times, which are along the first axis of the arrays."""
         return Carrier(self.turning[times], self.turning_rate[times], self.root_acceleration[times])
 
     @classmethod
     def of_root(cls, axis: np.ndarray, root: RootMotion) -> Carrier:
-        """Build the motion of a carrier that rotates about an axis (3,) and moves the beam's root."""
+        """Build the motion of a carrier that rotates about an axis (3,), from the motion of the root."""
         acceleration = np.stack([root.root_axial, root.root_transverse, root.root_across], axis=-1)
         return cls(axis * root.speed[..., None], axis * root.acceleration[..., None], acceleration)
 
 
 @dataclass(frozen=True)
 class MovingBeam(FieldsOnly):
-    """A beam at given coordinates and rates on a moving carrier, at one time or several.
+    """Beam with given coordinates and rates on a moving carrier, at one time or several.
 
     Parameters
     ----------
     bent : BentBeam
-        The beam at the coordinates.
+        The beam deformed by the coordinates.
     rates : ndarray, shape (..., n)
         Rates of the coordinates.
     carrier : Carrier
@@ -82,7 +82,7 @@ class MovingBeam(FieldsOnly):
 
     @cached_property
     def _strain_rates(self) -> tuple[np.ndarray, np.ndarray]:
-        """Rates of strain in space, (..., 3, N) each: of stretch and shears, and of the curvatures."""
+        """Rates of stretch and shears, and of the curvatures, in carrier-fixed axes: (..., 3, N) each."""
         return self.bent.strain_rates(self.rates)
 
     @cached_property
@@ -92,7 +92,7 @@ class MovingBeam(FieldsOnly):
 
     @cached_property
     def _tangent_rate(self) -> np.ndarray:
-        """Rate of change (..., 3, N) of the derivative r' of the axis' position by the arc length."""
+        """Time derivative (..., 3, N) of r', the derivative of the axis' position by arc length."""
         return cross(self._turning[..., :-1], self.bent.tangents) + self._strain_rates[0]
 
     @cached_property
@@ -101,7 +101,7 @@ class MovingBeam(FieldsOnly):
         return self.bent.beam.stations.to_all(self._tangent_rate)
 
     def forces(self, accelerations: np.ndarray) -> np.ndarray:
-        """Compute inertial forces and moments on stations (..., 6, N + 1 + k) for accelerations (..., n)."""
+        """Compute inertial forces and moments at stations (..., 6, N + 1 + k) for accelerations (..., n)."""
         bent, stations, masses = self.bent, self.bent.beam.stations, self.bent.masses
         straining, bending = bent.strain_rates(accelerations)
         w, strained = self._turning[..., :-1], self._strain_rates
@@ -121,7 +121,7 @@ class MovingBeam(FieldsOnly):
         return np.concatenate([F, M + cross(masses.lever, F)], axis=-2)
 
     def residual(self, accelerations: np.ndarray) -> np.ndarray:
-        """Sum of elastic, damping and inertial forces, less the load at the tip (..., n): 0 in motion."""
+        """Sum of elastic, damping and inertial forces, minus the tip load (..., n): 0 for the true motion."""
         beam, forces = self.bent.beam, self.forces(accelerations)
         elastic = self.bent.q @ beam.stiffness + self.rates @ beam.damping
         return elastic + self.bent.work(forces if self.load is None else forces - self.load.forces(self.bent))
@@ -130,8 +130,9 @@ class MovingBeam(FieldsOnly):
     def energy(self) -> np.ndarray:
         """Compute the energy integral (...) [J] on a steadily rotating carrier.
 
-        It is the kinetic energy against the carrier, the elastic one and the potential of the centrifugal
-        forces, of the acceleration of the root and of a dead force at the tip; other loads there have none.
+        It is the sum of the kinetic energy relative to the carrier, the elastic energy, and the potential of
+        centrifugal forces, of the root's acceleration and of a force of fixed direction at the tip; other tip
+        loads have no potential.
         """
         bent, masses, W = self.bent, self.bent.masses, self.carrier.turning[..., None]
         turning = bent.beam.stations.of_all(self._turning)

@@ -1,10 +1,10 @@
-"""The beam in space on a rotating carrier: its equations of motion, also linearized about any state.
+"""Beam in space on a rotating carrier: its equations of motion, also linearized about any state.
 
-The coordinates and the elastic energy are those of the fields of the straight beam (bending in two
-directions, shear, stretch, torsion), whose functions are here those of the strains.  What the root's motion
-does to the masses is exact.  The Coriolis forces need no derivation of their own: with the generalized
-inertial force p by a unit angular acceleration, which is the angular momentum per coordinate, and E its
-derivative by the coordinates, the gyroscopic matrix per speed is E - E^T.
+Coordinates and elastic energy are taken from the displacement fields of the straight beam (bending in two
+directions, shear, stretch, torsion); the trial functions of the fields give the strains here.  The inertial
+forces by the root's motion are exact.  The gyroscopic matrix follows from them: let p be the generalized
+inertial force by a unit angular acceleration, and E the derivative of p with respect to the coordinates; the
+gyroscopic matrix per speed is E - E^T.
 """
 
 from __future__ import annotations
@@ -38,16 +38,17 @@ from beamdyn.scene.section_matrices import split_mass
 from beamdyn.scene.sections import offset_components
 
 _AXES = np.eye(3)
-_KEPT = 4  # number of states of the beam that are cached
-_SIGNS = 1.0, 1.0, 1.0, -1.0, -1.0, 1.0  # -1 of strains whose fields turn sections about a negative axis
-# Directions of the deflection in the names of a bent beam's blocks.
+_KEPT = 4  # number of recently computed states of the beam that are cached
+_SIGNS = 1.0, 1.0, 1.0, -1.0, -1.0, 1.0  # -1 for strains whose field rotates sections about a negative axis
+# Direction of the deflection that each block of a bent beam describes, by name of the block.
 _DIRECTIONS = "in the direction of bending", "across"
 _ROOT: tuple[Quantity, ...] = "root_axial", "root_transverse", "root_across"
-QUANTITIES: tuple[Quantity, ...] = "speed_squared", "acceleration", *_ROOT  # those that load the beam
+# Quantities of root motion that load the beam.
+QUANTITIES: tuple[Quantity, ...] = "speed_squared", "acceleration", *_ROOT
 
 
 def _strains_of_fields(scene: Scene) -> dict[str, tuple[int, int, RootConditions]]:
-    """Find the strain that each field causes: place in `STRAINS`, order of the derivative by x, root."""
+    """Find the strain that each displacement field causes: index in `STRAINS`, derivative order, and root."""
     mount, warps = scene.mount, scene.modelled_beam.warping_stiffness is not None
     torsion = CLAMPED if warps else FIXED
     resists = "warping_stiffness" if warps else "torsion_stiffness"
@@ -62,7 +63,7 @@ def _strains_of_fields(scene: Scene) -> dict[str, tuple[int, int, RootConditions
 
 
 def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear: Equations) -> RotatingBeam:
-    """Assemble the equations of a scene for large deflection in space, over those of the straight beam."""
+    """Assemble a scene's equations for large deflection in space, from those of the straight beam."""
     beam = scene.modelled_beam
     quadrature, spaces = ArcQuadrature(discretization.cells(beam)), discretization.spaces(beam)
     stations, xi, n = BeamStations(quadrature, beam.length, beam.lumps[0]), quadrature.xi, linear.size
@@ -72,7 +73,7 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         component, order, conditions = known[name]
         of_field, sign = spaces.functions(conditions), _SIGNS[component]
         functions[place, component] = sign * of_field.evaluate(xi, order) / beam.length**order
-        if order == 2:  # its functions turn the root
+        if order == 2:  # functions of such a field rotate the root
             at_root, *turned = of_field.evaluate(np.array([0.0, *xi, 1.0]), 1).T / beam.length
             hinges[place, component - 3] = sign * at_root
             slopes[place] += (sign > 0) * np.array(turned).T
@@ -100,7 +101,7 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
 
 
 def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretization) -> RotatingBeam:
-    """Replace stiffness and modal damping of the beam by those of its 6 x 6 section matrices."""
+    """Replace a beam's stiffness and modal damping by values from 6 x 6 section stiffness matrices."""
     beam, model, linear = scene.modelled_beam, rotating.beam, rotating.linear
     assert beam.matrices is not None
     xi = model.stations.quadrature.xi
@@ -124,10 +125,10 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
 
 
 def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
-    """Compute the strains (6, n, 6, N) by each of six forces and moments that varies as one of n polynomials.
+    """Compute strains (6, n, 6, N) by six forces and moments, each varying along x as one of n polynomials.
 
-    The polynomials, over the whole beam, are components in space, which are smooth; components in the axes of
-    the sections turn with the axis of the beam.
+    The polynomials describe components in space-fixed axes, which are smooth over the beam; components in
+    section axes rotate with the axis of the beam.
     """
     xi, unloaded = model.stations.quadrature.xi, model.at(np.zeros(model.size)).rotations[..., :-1]
     compliance = np.linalg.inv(np.moveaxis(law, 2, 0)).reshape(-1, 6, 2, 3)
@@ -138,7 +139,7 @@ def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int
 def terms_of_blocks(
     equations: Equations, name: str, matrix: np.ndarray, order: int, quantity: Quantity = "unity"
 ) -> Iterator[Term]:
-    """Split a matrix (n, n) into terms of the equations of motion, one for each pair of blocks."""
+    """Split a matrix (n, n) into terms of the equations of motion, one for each pair of coordinate blocks."""
     for row, i in equations.blocks.items():
         for column, j in equations.blocks.items():
             if matrix[i, j].any():
@@ -146,7 +147,7 @@ def terms_of_blocks(
 
 
 def _masses(scene: Scene, stations: BeamStations) -> Masses:
-    """Gather the masses of a scene's beam at stations: of sections, of the tip body, and point masses."""
+    """Collect the masses of a scene's beam at stations: of sections, of the tip body, and point masses."""
     beam, tip, xi = scene.modelled_beam, scene.beam.tip or TipMass(0.0), stations.quadrature.xi
     weights = stations.quadrature.weights * beam.length
     m, centre, inertia = _masses_of_sections(beam, xi)
@@ -159,7 +160,7 @@ def _masses(scene: Scene, stations: BeamStations) -> Masses:
 
 
 def _masses_of_sections(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate mass per length (N,), centres (3, N) and inertia (3, 3, N) in the axes of sections, at xi."""
+    """Evaluate mass per length (N,), mass centres (3, N) and inertia (3, 3, N) in section axes, at x/L."""
     if beam.matrices is not None:
         return split_mass(beam.matrices.at("mass", xi))
     none = np.zeros_like(xi)
@@ -170,7 +171,7 @@ def _masses_of_sections(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def _tension(beam: Beam, xi: np.ndarray) -> np.ndarray:
-    """Evaluate offsets (2, N) of centres of tension [m] in the direction of bending and across, at xi."""
+    """Evaluate offsets (2, N) of tension centres [m] in the direction of bending and across, at xi = x/L."""
     if beam.matrices is not None:
         K = beam.matrices.at("stiffness", xi)
         return np.stack([-K[0, 5], K[0, 4]]) / K[0, 0]
@@ -178,10 +179,10 @@ def _tension(beam: Beam, xi: np.ndarray) -> np.ndarray:
 
 
 def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Evaluate the mean square distance (N,) of fibres from the axis, and the pretwist (N,), at xi.
+    """Evaluate the mean squared distance (N,) of fibres from the axis [m2] and the pretwist (N,) at xi = x/L.
 
-    The distribution of stiffness about the centre of tension is taken to be that of mass about the centre of
-    mass; without torsion it does not matter.
+    The distribution of stiffness about the centre of tension is assumed to equal that of mass about the
+    centre of mass; without torsion it has no effect.
     """
     twist = np.zeros_like(xi) if beam.twist is None else beam.twist.derivative()(xi) / beam.length
     if beam.torsion_stiffness is None:
@@ -193,7 +194,7 @@ def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _turned_sections(beam: Beam, xi: np.ndarray) -> np.ndarray:
-    """Compute the axes (3, 3, N + 1) of unloaded sections at xi (N,) and at the tip, turned by the twist."""
+    """Compute the section axes (3, 3, N + 1) of the unloaded, pretwisted beam at xi (N,) and at the tip."""
     twist = np.zeros(len(xi) + 1) if beam.twist is None else np.append(beam.twist(xi), beam.tip_twist)
     axes = np.zeros((3, 3, len(twist)))
     axes[0, 0] = 1.0
@@ -203,17 +204,17 @@ def _turned_sections(beam: Beam, xi: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class RotatingBeam(FieldsOnly):
-    """Equations of motion of a beam in space on a carrier.
+    """Equations of motion of a beam in space on a rotating carrier.
 
     Parameters
     ----------
     beam : BeamInSpace
         The beam.
     linear : Equations
-        Equations of the same coordinates by the fields of the straight beam, each of which is a block: their
-        functions, elastic stiffness and damping are those of this beam.
+        Equations of the straight beam in the same coordinates, one block for each displacement field; this
+        beam has the same functions, elastic stiffness and damping.
     axis : ndarray, shape (3,)
-        Axis of positive rotation of the carrier along e1, e2, e3.
+        Components along e1, e2, e3 of the axis of the carrier's positive rotation.
     load : TipForces or None
         Load at the tip.
     """
@@ -225,13 +226,13 @@ class RotatingBeam(FieldsOnly):
 
     @cached_property
     def turning(self) -> dict[Quantity, float]:
-        """Values of the quantities of the root's motion per squared speed of steady rotation."""
+        """Quantities of the root's motion in steady rotation, divided by the squared speed."""
         root = root_motion(self.linear.mount, MotionSample.steady(1.0))
         return {name: float(getattr(root, name)) for name in QUANTITIES}
 
     @property
     def straight(self) -> BentState:
-        """State of the straight beam, without a load at its tip."""
+        """State of the beam without deflection and without a load at its tip."""
         return (replace(self, load=None) if self.load else self).at(np.zeros(self.beam.size))
 
     @cached_property
@@ -240,11 +241,11 @@ class RotatingBeam(FieldsOnly):
         return self.straight.linearized()
 
     def reduced(self, modal: Equations) -> RotatingBeam:
-        """Return the beam in the coordinates to which equations about the straight beam were reduced."""
+        """Return the beam in the modal coordinates to which its linearized equations were reduced."""
         return replace(self, beam=self.beam.reduced(self.basis_of(modal)), linear=modal)
 
     def basis_of(self, modal: Equations) -> np.ndarray:
-        """Compute the basis (n, m) of a reduced model in the coordinates of the beam."""
+        """Compute the basis (n, m) of a reduced model, expressed in the coordinates of the beam."""
         basis = np.zeros((self.beam.size, modal.size))
         for name, place in self.linear.blocks.items():
             shape = modal.shapes[name if name in modal.shapes else f"{name}, {_DIRECTIONS[0]}"]
@@ -252,7 +253,7 @@ class RotatingBeam(FieldsOnly):
         return basis
 
     def nearest(self, other: RotatingBeam, q: np.ndarray) -> np.ndarray:
-        """Find the coordinates (n,) whose strains are nearest to another discretization's at q."""
+        """Find coordinates (n,) whose strains are nearest to those of another discretization's beam at q."""
         own, rule = self.beam, self.beam.stations.quadrature
         between = other.beam.stations.quadrature.interpolate_to(rule.xi)
         strains = np.tensordot(q, other.beam.functions, 1) @ between.T * np.sqrt(rule.weights)
@@ -262,7 +263,7 @@ class RotatingBeam(FieldsOnly):
         return np.linalg.lstsq(matrix.T, strains.ravel())[0]
 
     def at(self, q: np.ndarray) -> BentState:
-        """Return the state of the beam at coordinates q (..., n); recent states are cached."""
+        """Return the state of the beam with coordinates q (..., n); recent states are cached."""
         return self._states(q.tobytes(), q.shape)
 
     @cached_property
@@ -274,7 +275,7 @@ class RotatingBeam(FieldsOnly):
         return q @ self.beam.functions[:, -1] @ self.beam.stations.quadrature.interpolate_to(xi).T
 
     def tip_angle(self, q: np.ndarray) -> float:
-        """Compute the angle of the tip from e1 [rad] at q (n,); it is signed for one plane only."""
+        """Compute the angle between the tip and e1 [rad] at q (n,); signed only for bending in one plane."""
         if self.beam.is_planar:
             return float(q @ self.beam.angles[:, -1])
         along = self.beam.at(q).rotations[:, 0, -1]
@@ -283,24 +284,24 @@ class RotatingBeam(FieldsOnly):
 
 @dataclass(frozen=True)
 class BentState(FieldsOnly):
-    """A deformed beam on a rotating carrier, at given coordinates.
+    """State of a deformed beam on a rotating carrier, at given coordinates.
 
     Parameters
     ----------
     of : RotatingBeam
         Equations of motion.
     bent : BentBeam
-        The beam at the coordinates.
+        The beam deformed by the coordinates.
     """
 
     of: RotatingBeam
     bent: bent_beam.BentBeam
 
     def under(self, values: Mapping[Quantity, float]) -> bent_beam.Work:
-        """Compute the work of inertial forces under given values of the root's quantities (cached).
+        """Compute the virtual work of inertial forces for given quantities of root motion (cached).
 
-        The value of "unity" is the share of the load at the tip that acts instead.  Signs are those of the
-        left-hand side of the equations of motion.
+        If "unity" is given, that fraction of the tip load acts in place of inertial forces.  Signs are as on
+        the left-hand side of the equations of motion.
         """
         key = tuple(values.items())
         if key not in self._known:
@@ -312,7 +313,7 @@ class BentState(FieldsOnly):
         return {}
 
     def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
-        """Compute the forces on the stations, or the share of the load at the tip."""
+        """Compute the inertial forces at the stations, or the given fraction of the tip load."""
         if "unity" in values:
             assert self.of.load is not None
             return self.of.load.on(self.bent, -values["unity"])
@@ -321,25 +322,25 @@ class BentState(FieldsOnly):
         return self.bent.masses.carried(self.of.axis, *turning, root)
 
     def work(self, rates: np.ndarray, accelerations: np.ndarray, root: RootMotion) -> np.ndarray:
-        """Compute the residual (..., n) of the equations of motion; the arguments have the shape of q."""
+        """Compute the residual (..., n) of the equations of motion; all arguments have the shape of q."""
         carrier = Carrier.of_root(self.of.axis, root)
         return MovingBeam(self.bent, rates, carrier, self.of.load).residual(accelerations)
 
     @cached_property
     def gyroscopic(self) -> np.ndarray:
-        """Gyroscopic matrix per speed at this state, shape (n, n)."""
+        """Gyroscopic matrix at this state, divided by the speed, shape (n, n)."""
         euler = self.under({"acceleration": 1.0}).change
         return euler - euler.T
 
     def steady(self) -> SteadyPencil:
-        """Return the equations of small motions at steady speed, with the inertial forces as their load."""
+        """Return the equations of small motions at steady speed, in which inertial forces are the load."""
         linear, (force, K2) = self.of.linear, self.under(self.of.turning)
         K0 = linear.matrices[0]["unity"] + (self.under({"unity": 1.0}).change if self.of.load else 0.0)
         C = linear.matrices[1].get("unity", np.zeros_like(K0))
         return SteadyPencil(self.bent.mass, C, self.gyroscopic, K0, K2, -force, linear.shift, linear.planes)
 
     def linearized(self) -> Equations:
-        """Return the equations of small motions about this state, whose elastic force is among the loads."""
+        """Return the equations of small motions about this state; loads include minus the elastic force."""
         linear = self.of.linear
         terms = [
             *terms_of_blocks(linear, "mass", self.bent.mass, 2),
@@ -363,12 +364,12 @@ class BentState(FieldsOnly):
         return replace(linear, deflections=deflections, shapes=shapes, coarse=None, **given)
 
     def _loads(self, name: str, vector: np.ndarray, quantity: Quantity) -> Iterator[Load]:
-        """Split a force of the left-hand side (n,) into loads of the right-hand side, one for each block."""
+        """Split a left-hand-side force (n,) into right-hand-side loads, one for each coordinate block."""
         for row, i in self.of.linear.blocks.items():
             yield Load(name, row, vector[i], quantity, -1.0)
 
     def _deflection(self, place: slice, direction: int) -> Deflection:
-        """Build the deflection in a direction by the coordinates of one block, with its inertial loads."""
+        """Build the deflection in a direction that one coordinate block causes, with its inertial loads."""
         axis = np.array([-_AXES[2], _AXES[1]][direction])
         by_root = self.under({_ROOT[1 + direction]: 1.0}).work[place]
         by_turning = -self.bent.work(self.bent.masses.carried(axis, acceleration=1.0).force)[place]
@@ -378,14 +379,14 @@ class BentState(FieldsOnly):
 
 @dataclass(frozen=True)
 class DeflectedFunctions(FieldsOnly):
-    """Changes of a bent beam's deflection in one direction per coordinate, as functions of x/L.
+    """Changes of a bent beam's deflection in one direction per unit coordinate, as functions of x/L.
 
     Parameters
     ----------
     bent : BentBeam
         The bent beam.
     place : slice
-        Coordinates of a block.
+        Slice of the coordinates of one block.
     direction : int
         0 for the direction of bending at the root, 1 for that across.
     """
@@ -396,7 +397,7 @@ class DeflectedFunctions(FieldsOnly):
 
     @property
     def size(self) -> int:
-        """Number of functions, one for each coordinate of the block."""
+        """Number of functions: one for each coordinate of the block."""
         return self.place.stop - self.place.start
 
     def end(self, order: int) -> np.ndarray:
@@ -404,7 +405,7 @@ class DeflectedFunctions(FieldsOnly):
         return self.evaluate(np.ones(1), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the functions (order 0) or their slopes by x/L (order 1) at xi (k,): shape (n, k)."""
+        """Evaluate the functions (order 0) or their derivatives by x/L (order 1) at xi (k,): shape (n, k)."""
         if order > 1:
             raise ValueError("only the deflection and its slope follow a deflected beam")
         stations = self.bent.beam.stations

@@ -1,9 +1,9 @@
-"""Stations along a beam: the points where masses are placed and forces act.
+"""Stations of a beam: the points at which masses are placed and forces act.
 
-Stations are the N Gauss points of a rule along the beam, its tip, and k point masses.  Motions of a station
-are (X, W): the displacement of the beam's axis and the rotation of its section, components in space.  Forces
-are (F, M): the force and the moment about the axis that do work on them.  Arrays have 6 components, then the
-N + 1 + k stations; the rotation of a point mass is not counted, and taken as 0.
+The stations are N Gauss points along the beam, its tip, and k point masses.  Motions of a station are (X, W):
+the displacement of the beam's axis and the rotation of its section, in space-fixed axes.  The corresponding
+forces (F, M) are the force and the moment about the beam's axis.  Arrays have 6 components, then the N + 1 +
+k stations; point masses have no rotation, so that it is set to 0.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from beamdyn.equations.discretization import ArcQuadrature
 
 @dataclass(frozen=True)
 class BeamStations(FieldsOnly):
-    """Integrals along a beam from the root to its stations, and their transposes.
+    """Integrals along a beam from the root to its stations, and the transposed operations.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class BeamStations(FieldsOnly):
 
     @property
     def sections(self) -> int:
-        """Number N + 1 of stations that have a rotation: Gauss points and tip."""
+        """Number N + 1 of stations with a rotation: Gauss points and tip."""
         return len(self.quadrature.xi) + 1
 
     @property
@@ -48,27 +48,27 @@ class BeamStations(FieldsOnly):
         return self.sections + len(self.lumps)
 
     def to_places(self, xi: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Integrate values (..., N) per length from the root to places x/L = xi (k,): shape (..., k)."""
+        """Integrate values per length (..., N) from the root to positions x/L = xi (k,): shape (..., k)."""
         return self.length * values @ self.quadrature.integrate_to(xi).T
 
     @cached_property
     def _to_lumps(self) -> np.ndarray:
-        """Weights (k, N) of the integrals from the root to each point mass."""
+        """Weights (k, N) of the integrals from the root to the point masses."""
         return self.quadrature.integrate_to(self.lumps)
 
     def to_sections(self, values: np.ndarray) -> np.ndarray:
-        """Integrate values (..., N) per length from the root to Gauss points and tip: shape (..., N + 1)."""
+        """Integrate values per length (..., N) from the root to Gauss points and tip: shape (..., N + 1)."""
         return self.length * self.quadrature.integrate(values)
 
     def to_all(self, values: np.ndarray) -> np.ndarray:
-        """Integrate values (..., N) per length from the root to all stations: shape (..., N + 1 + k)."""
+        """Integrate values per length (..., N) from the root to all stations: shape (..., N + 1 + k)."""
         to_sections = self.to_sections(values)
         if not self.lumps.size:
             return to_sections
         return np.concatenate([to_sections, self.length * values @ self._to_lumps.T], axis=-1)
 
     def of_all(self, of_sections: np.ndarray) -> np.ndarray:
-        """Append zeros for point masses to values (..., N + 1) of sections: shape (..., N + 1 + k)."""
+        """Append zeros for the point masses to section values (..., N + 1): shape (..., N + 1 + k)."""
         none = np.zeros((*of_sections.shape[:-1], len(self.lumps)))
         return np.concatenate([of_sections, none], axis=-1) if self.lumps.size else of_sections
 
@@ -86,7 +86,7 @@ class BeamStations(FieldsOnly):
 
 @dataclass(frozen=True)
 class Masses:
-    """Masses at the stations of a beam, in the axes of its unloaded sections.
+    """Masses at the stations of a beam, described in the section axes of the unloaded beam.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class Masses:
     centre : ndarray, shape (3, N + 1)
         Vectors from the axis to the centres of mass [m].
     inertia : ndarray, shape (3, 3, N + 1)
-        Tensors of inertia about the centres of mass [kg m2].
+        Inertia tensors about the centres of mass [kg m2].
     """
 
     mass: np.ndarray
@@ -103,7 +103,7 @@ class Masses:
     inertia: np.ndarray
 
     def turned(self, R: np.ndarray, positions: np.ndarray) -> MassesInSpace:
-        """Place the masses at positions (..., 3, N + 1 + k) of the axis, turned by R (..., 3, 3, N + 1)."""
+        """Move the masses to positions (..., 3, N + 1 + k) of the axis, rotated by R (..., 3, 3, N + 1)."""
         levers = np.zeros_like(positions)
         levers[..., : self.centre.shape[1]] = turn(R, self.centre)
         inertia = np.zeros((*R.shape[:-1], len(self.mass)))
@@ -113,14 +113,14 @@ class Masses:
 
 
 class StationForces(NamedTuple):
-    """Forces on the stations and their change with a small motion: (F, M) = force + tangent (X, W).
+    """Forces at the stations, linear in a small motion: (F, M) = force + tangent (X, W).
 
     Parameters
     ----------
     force : ndarray, shape (6, N + 1 + k)
         Forces [N] and moments [N m].
     tangent : ndarray, shape (6, 6, N + 1 + k)
-        Derivatives of forces and moments by displacements and rotations of the stations.
+        Derivatives of forces and moments with respect to displacements and rotations of the stations.
     """
 
     force: np.ndarray
@@ -129,19 +129,19 @@ class StationForces(NamedTuple):
 
 @dataclass(frozen=True)
 class MassesInSpace:
-    """Masses on a deformed beam: mass m, centre c = axis + lever, tensor of inertia I about the centre.
+    """Masses m on a deformed beam: mass centre c = axis + lever, inertia tensor I about the centre.
 
-    Inertial forces are mass times acceleration, and the rate of angular momentum, with the sign of the
-    left-hand side of the equations of motion.
+    Inertial forces are here mass times acceleration, and inertial moments the rate of angular momentum: the
+    sign is that of the left-hand side of the equations of motion.
 
     Parameters
     ----------
     mass : ndarray, shape (N + 1 + k,)
         Masses [kg].
     centre, lever : ndarray, shape (3, N + 1 + k)
-        Centres of mass from the root and from the axis [m].
+        Vectors to the centres of mass from the root, and from the beam's axis [m].
     inertia : ndarray, shape (3, 3, N + 1 + k)
-        Tensors of inertia [kg m2].
+        Inertia tensors [kg m2].
     """
 
     mass: np.ndarray
@@ -163,7 +163,7 @@ class MassesInSpace:
         acceleration: float = 0.0,
         root: np.ndarray = np.zeros(3),  # noqa: B008  (it is not changed)
     ) -> StationForces:
-        """Compute the inertial forces on a carrier that rotates about an axis (3,) and moves the root.
+        """Compute the inertial forces on masses whose carrier rotates about an axis (3,) and moves the root.
 
         With B v = speed_squared axis x v + acceleration v, a mass has the acceleration B (axis x c) plus that
         of the root (3,), and the angular momentum I axis about its centre has the rate B (I axis).
@@ -182,9 +182,9 @@ class MassesInSpace:
         return StationForces(np.concatenate([F, M]), tangent)
 
     def _of_centre(self, A: np.ndarray) -> np.ndarray:
-        """Build matrices (6, 6, N + 1 + k) of forces and moments about the axis by small motions.
+        """Build matrices (6, 6, N + 1 + k) from small motions to forces and moments about the beam's axis.
 
-        The forces are the mass times A times the displacement of the mass centre, which is X + W x lever.
+        The force is the mass times A times the displacement X + W x lever of the mass centre.
         """
         matrix = np.zeros((6, 6, len(self.mass)))
         matrix[:3, :3] = A[..., None] * self.mass

@@ -1,4 +1,4 @@
-"""Forces at the tip of a beam in space, which keep their direction or follow the tip."""
+"""Force and couple at the tip of a beam in space, with fixed directions or rotating with the tip."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _NOTHING = np.zeros(3)
 
 
 class TipForces(NamedTuple):
-    """A force and a couple at the tip.
+    """Force and couple at the tip.
 
     Parameters
     ----------
@@ -25,8 +25,8 @@ class TipForces(NamedTuple):
     couple : ndarray, shape (3,)
         Couple [N m].
     follows : bool
-        Whether components are those in the axes of the section at the tip, with which the load turns; else
-        they are those in space.  A couple that keeps its direction has no potential.
+        Whether the components refer to the axes of the tip section, so that the load rotates with it;
+        otherwise they refer to space-fixed axes.  A couple of fixed direction has no potential.
     """
 
     force: np.ndarray = _NOTHING
@@ -34,7 +34,7 @@ class TipForces(NamedTuple):
     follows: bool = False
 
     def forces(self, bent: BentBeam) -> np.ndarray:
-        """Compute force and moment (..., 6, N + 1 + k) on each station, which are 0 but at the tip."""
+        """Compute force and moment (..., 6, N + 1 + k) at each station, which are 0 except at the tip."""
         stations, both = bent.beam.stations, np.stack([self.force, self.couple])
         if self.follows:
             both = np.einsum("...ab,kb->...ka", bent.rotations[..., -1], both)
@@ -43,7 +43,7 @@ class TipForces(NamedTuple):
         return force
 
     def on(self, bent: BentBeam, share: float = 1.0) -> StationForces:
-        """Return a share of the load on the stations at one set of coordinates."""
+        """Return the load at the stations, multiplied by `share`, at one set of coordinates."""
         force, tip = share * self.forces(bent), bent.beam.stations.sections - 1
         tangent = np.zeros((6, *force.shape))
         if self.follows:
@@ -52,7 +52,7 @@ class TipForces(NamedTuple):
 
 
 def forces_at_tip(scene: Scene, unloaded: BentBeam) -> TipForces | None:
-    """Resolve the load at the tip along e1, e2, e3, or in the section's axes if it follows; None if 0."""
+    """Resolve the tip load along e1, e2, e3, or in section axes if it follows the tip; None if it is 0."""
     load, (c, s) = scene.tip_load, aligned_cos_sin(scene.mount.bending_angle)
     if not load.acts:
         return None

@@ -1,4 +1,4 @@
-"""Fields of the beam: unknown functions along it, with their terms in the equations of motion."""
+"""Displacement fields along the beam, such as bending, with their terms in the equations of motion."""
 
 from beamdyn.equations.fields.bending_shear_stretch import Stretch
 from beamdyn.equations.fields.field import Field

@@ -1,7 +1,7 @@
-"""Fields of bending, with sections normal to the axis, and of shear (Timoshenko), in two directions; stretch.
+"""Bending with sections normal to the axis, and shear (Timoshenko), in two directions; and axial stretch.
 
-The deflection is u = u_b + u_s, with the sections' rotation u_b'.  Shear is thus a field that vanishes at
-the root like the stretch; there is no locking, and the slender beam is the exact limit.
+The deflection is u = u_b + u_s, with the sections' rotation u_b'.  The shear deflection u_s thus vanishes at
+the root like the stretch; there is no shear locking, and the limit of a slender beam is exact.
 
 Axial stretch with its Coriolis coupling is as in Yoo and Shin (1998), for comparison.
 """
@@ -30,7 +30,7 @@ from beamdyn.scene.sections import section_tensor
 
 
 class Bending(TransverseField):
-    """Bending in the direction of the bending angle: the field that every scene has."""
+    """Bending in the direction of the bending angle; every scene has this field."""
 
     name = "bending"
     direction = 0
@@ -43,7 +43,7 @@ class Bending(TransverseField):
     }
 
     def complete(self, scene: Scene) -> Scene:
-        """Return the scene with tip body, damping, springs and angles that make every term present."""
+        """Return the scene with the tip body, damping, springs and angles that make every term nonzero."""
         body = TipMass(1.0, inertia=1.0, transverse_inertia=0.8, axial_inertia=0.5)
         mount = Mount(1.0, math.pi, 1.0, root_stiffness=1.0, second_root_stiffness=1.0, precone=0.5)
         springs = (PointSpring(scene.beam.length, scene.beam.bending_stiffness(np.zeros(1))[0]),)
@@ -51,16 +51,16 @@ class Bending(TransverseField):
         return replace(scene.undamped, beam=beam, mount=mount, damping_ratio=0.5)
 
     def conditions(self, mount: Mount) -> RootConditions:
-        """Return the conditions at the root: clamped, or hinged where a spring holds the root."""
+        """Return the boundary conditions at the root: clamped, or hinged if a spring supports the root."""
         at_root = HINGED if math.isfinite(mount.root_stiffnesses[self.direction]) else CLAMPED
         return at_root._replace(stiffness="bending_stiffness", direction=self.direction)
 
     def stiffening(self, section: Rectangle, length: float) -> Profile:
-        """Compute the bending stiffness of sections that keep their shape over that of cambering ones."""
+        """Compute the ratio of bending stiffness of sections that cannot camber to that of cambering ones."""
         return section.camber_stiffening
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
-        """Yield the bending stiffness and the spring at the root."""
+        """Yield the bending stiffness term and the spring at the root."""
         stiffness = section_tensor(pair.rows.beam, "bending_stiffness").get(pair.directions)
         if stiffness is not None:
             scene = pair.rows.scene
@@ -75,7 +75,7 @@ class Bending(TransverseField):
 
 
 class SecondBending(Bending):
-    """Bending in the direction across, for scenes with both planes."""
+    """Bending in the direction across, for scenes with two planes of bending."""
 
     name = "second bending"
     direction = 1
@@ -83,7 +83,7 @@ class SecondBending(Bending):
     partners = (*Bending.partners, Bending())
 
     def stiffening(self, section: Rectangle, length: float) -> Profile:
-        """Compute the bending stiffness near a clamped root, which hinders camber, over that elsewhere."""
+        """Compute the ratio of bending stiffness near a clamped root (camber hindered) to that elsewhere."""
         return section.stiffening_across(length)
 
 
@@ -101,18 +101,18 @@ class Shear(TransverseField):
     }
 
     def conditions(self, mount: Mount) -> RootConditions:
-        """Return the conditions at the root: no shear deflection."""
+        """Return the boundary condition at the root: no shear deflection."""
         return FIXED._replace(stiffness="shear_stiffness", direction=self.direction)
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
-        """Yield the shear stiffness between two shear fields."""
+        """Yield the shear stiffness term of two shear fields."""
         stiffness = section_tensor(pair.rows.beam, "shear_stiffness").get(pair.directions)
         if stiffness is not None and not pair.rows.field.rotates:
             yield pair.term("shear stiffness", pair.integrate(stiffness, 1))
 
 
 class SecondShear(Shear):
-    """Shear deflection in the direction across, for scenes with shear and both planes."""
+    """Shear deflection in the direction across, for scenes with shear and two planes of bending."""
 
     name = "second shear"
     direction = 1
@@ -122,11 +122,11 @@ class SecondShear(Shear):
 
 # Stretch ---------------------------------------------------------------------------------------------
 
-STRETCHED = FIXED._replace(stiffness="axial_stiffness")  # conditions of the stretch at the root
+STRETCHED = FIXED._replace(stiffness="axial_stiffness")  # boundary condition of the stretch at the root
 
 
 class Stretch(Field):
-    """Field of the axial stretch of the beam."""
+    """Displacement field of the axial stretch of the beam."""
 
     name = "stretch"
     partners: ClassVar[tuple[TransverseField, ...]] = (*SecondShear.partners, SecondShear())
@@ -167,7 +167,8 @@ class Stretch(Field):
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
         """Assemble eqs. (13) of Lee and Yoo (2019), and the coupling in (14).
 
-        The terms are mass M11 (15), axial stiffness KS (16), its spin softening, and the loads (20), (21).
+        The terms are mass M11 (15), axial stiffness KS (16), the softening of the stretch by rotation, and
+        the loads (20), (21).
         """
         s, beam, space = self.name, scene.beam, spaces.functions(STRETCHED)
         tip = beam.tip or TipMass(0.0)
@@ -193,7 +194,7 @@ class Stretch(Field):
 
 
 def _coupling(trial: Trial) -> list[Term]:
-    """Couple the stretch with a deflection in the plane of rotation, or with any under precone.
+    """Couple the stretch with deflection in the plane of rotation, or with any deflection under precone.
 
     The coupling is by the mass matrix M12 of eq. (15) of Lee and Yoo (2019).
     """

@@ -1,4 +1,4 @@
-"""Interface of fields: unknown functions along the beam, with their terms in the equations of motion."""
+"""Interface of displacement fields: unknown functions along the beam, with terms in the equations."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from beamdyn.scene.scene import Scene
 
 @dataclass(frozen=True)
 class Term:
-    """A term of the left-hand side: factor * quantity(t) * matrix * (time derivative of coordinates).
+    """Term of the left-hand side: factor * quantity(t) * matrix * (time derivative of coordinates).
 
     Parameters
     ----------
     name : str
         Name in `beamdyn.terms`.
     rows, columns : str
-        Field in whose equations the term stands, and field whose coordinates it multiplies.
+        Field whose equations contain the term, and field whose coordinates it multiplies.
     order : int
         Order of the time derivative: 0 stiffness, 1 damping and gyroscopic, 2 mass.
     matrix : ndarray, shape (n, m)
@@ -44,13 +44,13 @@ class Term:
     factor: float = 1.0
 
     def coefficient(self, root: RootMotion) -> np.ndarray:
-        """Compute factor times quantity at the times of the root's motion."""
+        """Compute factor times quantity at all times of the root's motion."""
         return self.factor * getattr(root, self.quantity)
 
 
 @dataclass(frozen=True)
 class Load:
-    """A term of the right-hand side: factor * quantity(t) * vector in the equations of the field `rows`."""
+    """Term of the right-hand side: factor * quantity(t) * vector in the equations of the field `rows`."""
 
     name: str
     rows: str
@@ -59,13 +59,13 @@ class Load:
     factor: float = 1.0
 
     def coefficient(self, root: RootMotion) -> np.ndarray:
-        """Compute factor times quantity at the times of the root's motion."""
+        """Compute factor times quantity at all times of the root's motion."""
         return self.factor * getattr(root, self.quantity)
 
 
 @dataclass(frozen=True)
 class Deflection:
-    """Transverse deflection of the beam by one field: its trial functions, and the loads on them.
+    """Transverse deflection of the beam by one field: trial functions, and loads on them.
 
     Parameters
     ----------
@@ -87,16 +87,16 @@ class Deflection:
 
 
 class SectionFunctions(Protocol):
-    """Functions of a field that deform the sections of a strip: deflections that vary over its width."""
+    """Functions of a field that deform a strip's cross-sections: deflections that vary over its width."""
 
     @property
     def of_each(self) -> int:
-        """Number of coordinates of each function across the width, which are consecutive."""
+        """Number of coordinates of each function across the width; they are consecutive."""
         ...
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection per coordinate (n,) at the tip's corner in the direction across, up to a scale."""
+        """Deflection per coordinate (n,) of the tip's corner in the direction across, up to a factor."""
         ...
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
@@ -109,7 +109,7 @@ class SectionFunctions(Protocol):
 
 
 class Coordinates(Protocol):
-    """Functions of a field as far as the equations of motion use them; a `Space` offers more."""
+    """Trial functions of a field, reduced to what the equations of motion use of a `Space`."""
 
     @property
     def size(self) -> int:
@@ -129,17 +129,17 @@ class FieldEquations:
     Parameters
     ----------
     space : Coordinates
-        Functions of which the coordinates are coefficients.
+        Trial functions; the coordinates are their coefficients.
     terms : tuple of Term
         Terms of the left-hand side.
     loads : tuple of Load
         Terms of the right-hand side.
     deflection : Deflection or None
-        Deflection of the beam by the coordinates; None for a field that does not deflect it.
+        Deflection of the beam by the coordinates; None for a field without deflection.
     turns_at_root : bool
-        Whether the first coordinate turns the beam about its root.
+        Whether the first coordinate is a rigid rotation of the beam about its root.
     sections : SectionFunctions or None
-        Deflection over the width of a strip by the coordinates; None for a field that does not deform it.
+        Deflection over a strip's width by the coordinates; None for a field that does not deform sections.
     """
 
     space: Coordinates
@@ -156,14 +156,14 @@ class Field(ABC):
     In order to add a field, write a subclass in a module of its own in `beamdyn.equations.fields`, and
     name it in the list `FIELDS` there:
 
-    1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it.
-    2. `requires` has the values of `Physics` with which a scene has the field, or `is_modelled` says whether
-       it has.  A scene without the field does not pay for it.
+    1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it. 2. `requires` has
+    the values of `Physics` with which a scene has the field, or `is_modelled` decides whether
+       it has.  A scene without the field needs no extra computing time.
     3. `assemble` takes functions that satisfy the conditions at the root from the discretization, by
-       ``spaces.functions(conditions)``, and returns the terms, the loads and, for a field that deflects
-       the beam transversely, the `Deflection`; for one that deforms its sections, the functions over them
-       (`sections`), by which shapes are drawn as surfaces.  `kinds_of_modes` in `beamdyn.modes.modal.model`
-       has a word for its modes.
+       ``spaces.functions(conditions)``, and returns the terms, the loads and, for a field that deflects the
+       beam transversely, the `Deflection`; and for a field that deforms the cross-sections, the functions
+       over them (`sections`), by which shapes are drawn as surfaces.  `kinds_of_modes` in
+       `beamdyn.modes.modal.model` has the name of its kind of modes.
     4. A term whose coefficient varies in time names a quantity of `RootMotion`; all analyses treat
        every quantity.  Its own stiffness, under the quantity "unity", is positive definite; only that of a
        field that `turns_at_root` may lack stiffness against its first coordinate.
@@ -183,13 +183,13 @@ class Field(ABC):
     requires: ClassVar[Mapping[str, object]] = {}
 
     def is_modelled(self, scene: Scene) -> bool:
-        """Whether the scene has this field."""
+        """Return whether the model of a scene includes this field."""
         return all(getattr(scene.physics, name) == value for name, value in self.requires.items())
 
     def complete(self, scene: Scene) -> Scene:
-        """Extend the scene so that every term of this field is present; by default it is unchanged."""
+        """Return the scene, extended so that every term of this field is nonzero; by default unchanged."""
         return scene
 
     @abstractmethod
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
-        """Assemble the terms and loads of this field; those with a factor of 0 may be included."""
+        """Assemble the terms and loads of this field; terms with the factor 0 may be included."""

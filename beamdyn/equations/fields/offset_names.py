@@ -1,4 +1,4 @@
-"""Names of the terms and loads that offsets of section centres add, by the quantity that multiplies each."""
+"""Names of the terms and loads due to offsets of section centres, by the quantity that multiplies each."""
 
 from __future__ import annotations
 

@@ -1,20 +1,21 @@
-"""Offsets of the sections' centres from the axis: their coupling of torsion with bending, and their loads.
+"""Offsets of mass and tension centres from the axis: coupling of torsion with bending, and loads.
 
-The axis of the beam is the line of the sections' shear centres.  The centre of mass lies at c beside it,
-that of tension, about which the section bends, at t; both have components along e1 and e2.  A section that
-tilts by p = (v', w') and turns by theta (from e2 to e1) moves a point y of it, to second order, by
+The axis of the beam is the line of the sections' shear centres.  The centre of mass is at c from the axis,
+the centre of tension (about which the section bends) at t; both have components along e1 and e2.  If a
+section tilts by p = (v', w') and twists by theta (from e2 to e1), its point y is displaced, to second order,
+by
 
     u - p.y - theta p.K y,    w + theta K y - theta^2 y/2 - p (p.y)/2,    K = (0, 1; -1, 0),
 
 u being the displacement of the axis along the beam, w that across it.  The line of centres of tension keeps
-its length, so that u' = t.p' - p.p/2 - theta t.K p', and w' = p + p (t.p').  The section also turns by
--(v' w'' - v'' w')/2, integrated from the root, as always when a beam bends in both directions.
+its length, so that u' = t.p' - p.p/2 - theta t.K p', and w' = p + p (t.p').  The section also twists by
+-(v' w'' - v'' w')/2, integrated from the root, as in every beam that bends in two directions.
 
 In the frame of the root a point at r has the acceleration g + r'' + 2 omega B r' + omega' B r - omega^2 P r,
 with B = -[a x] and P = 1 - a a^T, a being the axis of rotation and g the acceleration of the root.  The terms
-are its work, for a mass at c, on these displacements.  Second moments about the axis stand in the tensors of
-inertia (`beamdyn.scene.sections`, `TipMass.about`) and their terms; products of a tilt and a turn with
-them are left out, as are Coriolis and Euler forces of a tilt, which moves the mass along the beam: these
+are the work of this acceleration, for a mass at c, on these displacements.  Second moments about the axis are
+part of the inertia tensors (`beamdyn.scene.sections`, `TipMass.about`).  Neglected are products of tilt and
+twist with them, and Coriolis and Euler forces of a tilt, which displaces the mass along the beam: these
 change frequencies by about the square of c/L.  In the inertia of tilting, the line of centres of tension is
 straight.  Derivation: docs/conventions.md and tests/invariants/test_offsets.py.
 """
@@ -42,26 +43,27 @@ from beamdyn.scene.profile import FRACTION, ONE, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import offset_components
 
-_C, _T = 0, 2  # index of the first component of c, and of t, in arrays of both
-_TURN = 2  # index of the rotation by torsion, after the tilts towards e1 and e2
+# Index of the first component of c (mass centre), and of t (tension centre), in arrays with both.
+_C, _T = 0, 2
+_TURN = 2  # index of the rotation by torsion, after the two tilts towards e1 and e2
 
 
 @dataclass(frozen=True)
 class SectionMotion:
-    """Motion of the sections by a field: a displacement of the axis or a rotation.
+    """Motion of the sections that a field describes: a displacement of the axis or a rotation.
 
     Parameters
     ----------
     field : str
         Name of the field.
     conditions : RootConditions
-        Conditions that the field's functions satisfy at the root.
+        Boundary conditions of the field's functions at the root.
     at_tip : ndarray, shape (n,)
-        Value of the motion at the tip body's place on the axis, per coordinate.
+        Motion of the tip body's reference point on the axis, per unit of each coordinate.
     along : int or None
         Direction of the displacement: 0, 1, 2 for b1, e1, e2; None for a rotation.
     rotation : int or None
-        0, 1 for a tilt towards e1, e2, and 2 for a turn by torsion; None for a displacement.
+        0, 1 for a tilt towards e1, e2, and 2 for a twist; None for a displacement.
     """
 
     field: str
@@ -72,7 +74,7 @@ class SectionMotion:
 
     @property
     def order(self) -> int:
-        """Order of the derivative by x that turns functions into the motion: 1 for a tilt, else 0."""
+        """Order of the derivative by x from functions to the motion: 1 for a tilt, 0 otherwise."""
         return int(self.rotation in (0, 1))
 
     @cached_property
@@ -82,9 +84,10 @@ class SectionMotion:
 
     @cached_property
     def beside(self) -> np.ndarray:
-        """Displacement of the centre of mass relative to the axis, per component of c and t: shape (3, 4)."""
+        """Displacement of the mass centre relative to the axis, per component of the offsets c, t: (3, 4)."""
         moved = np.zeros((3, 4))
-        if self.rotation == _TURN:  # the displacement is K c, symbols as in the docstring of this module
+        # The displacement is K c: offset c of the mass centre, rotated by 90 degrees in the section.
+        if self.rotation == _TURN:
             moved[1, _C + 1], moved[2, _C] = 1.0, -1.0
         elif self.rotation is not None:
             moved[0, _C + self.rotation], moved[0, _T + self.rotation] = -1.0, 1.0
@@ -97,7 +100,7 @@ def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
     assert i is not None and j is not None, "both are rotations"
     if i == j == _TURN:
         moved[1, _C] = moved[2, _C + 1] = -1.0
-    elif _TURN in (i, j):  # the displacement is -K c along the beam
+    elif _TURN in (i, j):  # the displacement is -K c along the beam, with the offset c of the mass centre
         tilt = min(i, j)
         moved[0, _C + 1 - tilt] = 2.0 * tilt - 1.0
     else:
@@ -111,9 +114,9 @@ def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
 
 @lru_cache(maxsize=256)
 def _moment(beam: Beam, component: int, power: int) -> Profile | None:
-    """Compute mass per length times an offset and a power of x [kg, kg m]; None if it is 0.
+    """Compute mass per length times an offset and a power of x [kg, kg m]; None if the result is 0.
 
-    The offset is one of the four components of c and t, the centres of mass and of tension.
+    The offset is one of the four components of c and t, the positions of the centres of mass and tension.
     """
     offset = offset_components(beam)[component]
     first = offset and beam.mass_per_length * offset
@@ -122,12 +125,12 @@ def _moment(beam: Beam, component: int, power: int) -> Profile | None:
 
 @lru_cache(maxsize=64)
 def _pulled(beam: Beam) -> list[list[Profile | None]]:
-    """Compute tensions (see `axial_tension`) times offsets of the tension centre [kg m, kg m2]."""
+    """Compute tensions (see `axial_tension`) times the offsets of the tension centre [kg m, kg m2]."""
     return [[t and outboard * t for t in offset_components(beam)[_T:]] for outboard in axial_tension(beam)]
 
 
 class _CoupledMatrix(NamedTuple):
-    """A matrix over the coordinates of two motions, which the equations of both use with a sign."""
+    """Matrix over the coordinates of two motions; the equations of both motions contain it, with a sign."""
 
     rows: str
     columns: str
@@ -137,7 +140,7 @@ class _CoupledMatrix(NamedTuple):
     mirrored: float = 1.0
 
     def placed(self) -> Iterator[tuple[tuple[str, str, Quantity, int], np.ndarray]]:
-        """Yield the matrix and, for two motions, its transpose times the sign, each with its place."""
+        """Yield the matrix and (for two different motions) its transpose times the sign, with field names."""
         yield (self.rows, self.columns, self.quantity, self.order), self.matrix
         if self.mirrored:
             place = self.columns, self.rows, self.quantity, self.order
@@ -146,7 +149,7 @@ class _CoupledMatrix(NamedTuple):
 
 @dataclass(frozen=True)
 class Offsets:
-    """Terms and loads by offsets of a scene's sections, over function spaces.
+    """Terms and loads due to offsets of a scene's section centres, over function spaces.
 
     Parameters
     ----------
@@ -155,7 +158,7 @@ class Offsets:
     spaces : Spaces
         Function spaces on the beam.
     turn : SectionMotion
-        Rotation of the sections by torsion.
+        Twist of the sections by torsion.
     trials : sequence of Trial
         Fields that deflect the beam.
     stretched : sequence of SectionMotion
@@ -176,7 +179,7 @@ class Offsets:
 
     @cached_property
     def motions(self) -> list[SectionMotion]:
-        """All motions of the sections: displacements, tilts and the rotation by torsion."""
+        """All motions of the sections: displacements, tilts and twist."""
         moved = [
             SectionMotion(t.field.name, t.conditions, t.centre, along=1 + t.field.direction)
             for t in self.trials
@@ -195,7 +198,7 @@ class Offsets:
 
     @cached_property
     def accelerations(self) -> list[tuple[Quantity, np.ndarray, int]]:
-        """Accelerations of the axis by each quantity: a vector, times x to the power 0 or 1."""
+        """Accelerations of the axis by each quantity of root motion: a vector times x to the power 0 or 1."""
         (B, P), (along, first, second) = self.frame, np.eye(3)
         return [
             ("root_axial", along, 0),
@@ -216,18 +219,18 @@ class Offsets:
 
     @cached_property
     def _beside_axis(self) -> list[tuple[Quantity, np.ndarray]]:
-        """Accelerations (3, 4) of the mass centre relative to the axis, per component of c and t."""
+        """Accelerations (3, 4) of the mass centre relative to the axis, per component of the offsets c, t."""
         (B, P), none = self.frame, np.zeros((3, 2))
         return [
             ("acceleration", np.hstack([B[:, 1:], none])),
             ("speed_squared", np.hstack([-P[:, 1:], none])),
         ]
 
-    # Moments of the mass, and integrals ---------------------------------------------------------------
+    # Moments of the mass, and their integrals --------------------------------------------------------
 
     @cached_property
     def _tip(self) -> tuple[TipMass, np.ndarray]:
-        """Tip body, with the offsets (4,) [m] of its own centre of mass and of the tension centre there."""
+        """Tip body, with offsets (4,) [m] of the mass centre and of the tension centre at the tip."""
         beam = self.scene.modelled_beam
         tip, twist = beam.tip or TipMass(0.0), beam.tip_twist
         of_tension = [
@@ -237,21 +240,21 @@ class Offsets:
         return tip, np.array([*of_mass, *of_tension])
 
     def _of_tip(self, coefficients: np.ndarray, power: int) -> float:
-        """Compute the tip body's mass times x^power and the sum of coefficients (4,) times c and t."""
+        """Compute the tip mass times x^power times the sum of coefficients (4,) times the offsets."""
         (tip, components), length = self._tip, self.scene.beam.length
         if not tip.mass:
             return 0.0
         return float(tip.mass * (length + tip.offset) ** power * (coefficients @ components))
 
     def _of_sections(self, coefficients: np.ndarray, power: int) -> Iterator[tuple[float, Profile]]:
-        """Yield nonzero moments of the sections by component of c and t (4,), each with its coefficient."""
+        """Yield nonzero moments of section masses by component of the offsets, with coefficients (4,)."""
         beam = self.scene.modelled_beam
         for component, value in enumerate(coefficients.tolist()):
             if value and (moment := _moment(beam, component, power)) is not None:
                 yield value, moment
 
     def _outboard(self, coefficients: np.ndarray, power: int) -> Profile | None:
-        """Sum the moments outboard of each section, with coefficients of c and t (4,); None if 0."""
+        """Sum the moments of masses beyond each section, with coefficients of offsets (4,); None if 0."""
         of_tip, length = self._of_tip(coefficients, power), self.scene.beam.length
         parts = [moment.scaled(value * length) for value, moment in self._of_sections(coefficients, power)]
         outboard = [part.outboard_integral() for part in parts] + [ONE.scaled(of_tip)] * bool(of_tip)
@@ -260,7 +263,10 @@ class Offsets:
     def _integrate(
         self, rows: SectionMotion, columns: SectionMotion, coefficients: np.ndarray, power: int
     ) -> np.ndarray | None:
-        """Integrate two motions times mass, x^power and coefficients (4,) times c and t; None if 0."""
+        """Integrate the product of two motions, mass, x^power and a linear function of offsets; None if 0.
+
+        The four coefficients multiply the components of the mass and tension centres.
+        """
         orders = rows.order, columns.order
         found = [
             value * self._along(moment, rows.conditions, columns.conditions, orders)
@@ -283,7 +289,7 @@ class Offsets:
     # Terms --------------------------------------------------------------------------------------------
 
     def terms(self) -> Iterator[Term]:
-        """Yield the terms by offsets, summed over those of the same name and place."""
+        """Yield all terms due to offsets; terms of the same name and the same fields are summed."""
         sums: dict[tuple[str, str, Quantity, int], np.ndarray] = {}
         parts = self._moved, self._carried, self._drawn_in, self._sheared, self._turned, self._tightened
         for part in chain.from_iterable(each() for each in parts):
@@ -293,7 +299,7 @@ class Offsets:
             yield Term(NAMES[quantity, order], rows, columns, order, matrix, quantity)
 
     def _moved(self) -> Iterator[_CoupledMatrix]:
-        """Yield inertia, Coriolis, Euler and centrifugal matrices of first-order displacements."""
+        """Yield inertia, Coriolis, Euler and centrifugal matrices of displacements of first order."""
         B, P = self.frame
         kinds: list[tuple[np.ndarray, float, list[tuple[Quantity, int, float]]]] = [
             (np.eye(3), 1.0, [("unity", 2, 1.0)]),
@@ -308,7 +314,7 @@ class Offsets:
             for a, b in zip(*np.nonzero(np.triu(moved.any(axis=2), 1)), strict=True):
                 rows, columns = self.motions[a], self.motions[b]
                 if mirrored < 0 and rows.order + columns.order:
-                    continue  # Coriolis and Euler forces of a tilt are left out
+                    continue  # Coriolis and Euler forces of a tilt are neglected
                 if (found := self._integrate(rows, columns, moved[a, b], 0)) is not None:
                     for quantity, order, factor in uses:
                         yield _CoupledMatrix(
@@ -316,7 +322,7 @@ class Offsets:
                         )
 
     def _carried(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the axis' acceleration on second-order displacements by rotations."""
+        """Yield the work of the axis' acceleration on displacements of second order, by rotations."""
         rotations = [motion for motion in self.motions if motion.rotation is not None]
         for rows, columns in combinations_with_replacement(rotations, 2):
             for quantity, vector, power in self._parametric:
@@ -326,7 +332,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field, columns.field, quantity, 0, found, mirrored)
 
     def _drawn_in(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the axial force as bending and torsion shorten the line of centres of tension."""
+        """Yield the work of the axial force as bending and torsion shorten the line of tension centres."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for trial in self.trials if vector[0] else ():
@@ -338,7 +344,7 @@ class Offsets:
                     yield _CoupledMatrix(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
 
     def _sheared(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of shear forces on the displacement of the axis along the slope of bending."""
+        """Yield the work of shear forces on the axis' displacement, which follows the slope of bending."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for rows, columns in product(self.tilting, repeat=2):
@@ -348,7 +354,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field.name, columns.field.name, quantity, 0, force * matrix)
 
     def _turned(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the twisting moment as bending in both directions turns the sections."""
+        """Yield the work of the twisting moment, as bending in two directions twists the sections."""
         for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
             for quantity, vector, power in self._parametric:
                 if (moment := self._outboard(vector @ self.turn.beside, power)) is not None:
@@ -356,7 +362,7 @@ class Offsets:
                     yield _CoupledMatrix(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
 
     def _tightened(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the axial force from masses off the axis on the slopes of the beam."""
+        """Yield the work of axial forces by masses off the axis on the slopes of the beam."""
         ahead = self._tip[0].offset
         parametric = [quantity for quantity, _, _ in self._parametric]
         for quantity, matrix in self._beside_axis:
@@ -373,7 +379,7 @@ class Offsets:
     # Loads --------------------------------------------------------------------------------------------
 
     def loads(self) -> Iterator[Load]:
-        """Yield the loads by accelerations of the axis, and of the mass centres relative to the axis."""
+        """Yield the loads by accelerations of the axis, and of mass centres relative to the axis."""
         sums: dict[tuple[str, Quantity], np.ndarray] = {}
         for motion in self.motions:
             for quantity, coefficients, power in self._accelerated(motion):
@@ -395,9 +401,9 @@ class Offsets:
                 yield Load(NAMES_OF_LOADS[quantity], name, vector, quantity)
 
     def _accelerated(self, motion: SectionMotion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
-        """Yield coefficients of c and t (4,) in the work on a motion, with the power of x.
+        """Yield coefficients of the offsets c and t (4,) in the work on a motion, each with the power of x.
 
-        The work of the axial force, which acts at the centre of tension, is a load of its own.
+        The work of the axial force, which acts at the centre of tension, is a separate load.
         """
         of_mass = motion.beside * np.array([1.0, 1.0, 0.0, 0.0])
         for quantity, vector, power in self.accelerations:

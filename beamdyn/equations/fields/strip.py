@@ -1,4 +1,4 @@
-"""Functions across the width of a strip, and integrals over its area with functions along it."""
+"""Functions across the width of a strip, and integrals of their products with functions along the strip."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
 _ORDERS = (0, 0), (0, 1), (0, 2), (1, 0), (2, 0), (1, 1)  # orders of the derivatives along and across
-_ZERO = 1e-12  # averages over the width below this fraction of the largest are 0 by symmetry
+_ZERO = 1e-12  # averages over the width below this fraction of the largest are exactly 0 by symmetry
 
 
 class Derivative(NamedTuple):
-    """Part of a derivative of the deflection: a factor times a derivative of u_k times a function of eta.
+    """Summand of a derivative of the deflection: factor(x), derivative of u_k(x), function of eta.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Derivative(NamedTuple):
 
 
 class WidthFunctions:
-    """Functions across a strip's width, and the deflection's derivatives as sums of `Derivative` parts.
+    """Functions across a strip's width, and derivatives of the deflection as sums of `Derivative`.
 
     Parameters
     ----------
@@ -52,11 +52,11 @@ class WidthFunctions:
     field : str
         Name of the field.
     numbers : sequence of int
-        Numbers k of the field's functions across.
+        Numbers k of the field's functions across the width.
     conditions : RootConditions
-        Conditions at the root of the field's functions along the beam.
+        Boundary conditions at the root of the field's functions along the beam.
     points : int
-        Number of Gauss points across.
+        Number of Gauss points across the width.
     """
 
     def __init__(
@@ -71,8 +71,8 @@ class WidthFunctions:
         self.field, self.conditions = field, conditions
         eta, _ = gauss_rule(points)
         self.tip, (p, dp, ddp) = _polynomials(tuple(numbers), points)
-        half = _inverse(section.width).scaled(2.0)  # d eta/dy
-        self.parts = {  # parts of the deflection and of its derivatives
+        half = _inverse(section.width).scaled(2.0)  # derivative of eta by y
+        self.parts = {  # summands of the deflection and of its derivatives
             "w": [Derivative(ONE, 0, p)],
             "w_y": [Derivative(half, 0, dp)],
             "w_yy": [Derivative(half * half, 0, ddp)],
@@ -96,14 +96,14 @@ class WidthFunctions:
 
 @lru_cache(maxsize=64)
 def _polynomials(numbers: tuple[int, ...], points: int) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Evaluate functions across at the corner, and their derivatives of orders 0 to 2 at Gauss points."""
+    """Evaluate functions across at the corner, and their derivatives 0 to 2 at Gauss points across."""
     edge, series = np.sqrt(2 * np.array(numbers) + 1), np.eye(max(numbers) + 1)[:, [*numbers]]
     eta, _ = gauss_rule(points)
     return edge, [edge[:, None] * legendre.legval(eta, legendre.legder(series, order)) for order in range(3)]
 
 
 def _is_uniform(width: Profile) -> bool:
-    """Whether the width is the same along the whole beam."""
+    """Return whether the width is the same along the whole beam."""
     return not width.degree and len(width.breakpoints) == 2
 
 
@@ -115,7 +115,7 @@ def over_tip(width: Profile) -> Profile:
 def _parts_over_fixed_width(
     width: Profile, numbers: tuple[int, ...], eta: np.ndarray
 ) -> dict[str, list[Derivative]]:
-    """Split derivatives of p_k(2 y/b(L)) u_k by powers of 2 y/b and of the width over its tip value."""
+    """Split derivatives of p_k(2 y/b(L)) u_k by powers of 2 y/b and of the ratio of width to tip width."""
     r, dy = over_tip(width), 2 / float(width.end_values()[1][-1])
     series = (np.sqrt(2 * k + 1) * legendre.leg2poly(np.eye(k + 1)[k]) for k in numbers)
     coefficients = np.array([np.pad(c, (0, max(numbers) + 1 - len(c))) for c in series])
@@ -124,7 +124,7 @@ def _parts_over_fixed_width(
         powers.append(powers[-1] * r)
 
     def of(along: int, across: int) -> list[Derivative]:
-        """List the parts of the derivative of w of given orders by x (along) and y (across)."""
+        """List the summands of the deflection's derivative of given orders by x (along) and y (across)."""
         return [
             Derivative(
                 powers[m - across].scaled(math.perm(m, across) * dy**across),
@@ -146,7 +146,7 @@ def _inverse(b: Profile) -> Profile:
 
 @lru_cache(maxsize=64)
 def _relative_slopes(b: Profile, length: float) -> tuple[Profile, Profile]:
-    """Compute the relative slope b'/b of the width [1/m] and its derivative [1/m2], over x/L."""
+    """Compute the relative slope b'/b of the width b [1/m] and its derivative [1/m2], over x/L."""
     first, second = b.derivative(), b.derivative().derivative()
     beta, change = combine(lambda b, d, dd: np.stack([d / b, dd / b - (d / b) ** 2]), b, first, second)
     return beta.scaled(1 / length), change.scaled(1 / length**2)
@@ -154,7 +154,7 @@ def _relative_slopes(b: Profile, length: float) -> tuple[Profile, Profile]:
 
 @dataclass(frozen=True)
 class Strip:
-    """A rectangular strip, with integrals over its area.
+    """Rectangular strip, with integrals over its area.
 
     Parameters
     ----------
@@ -169,23 +169,23 @@ class Strip:
 
     @property
     def section(self) -> Rectangle:
-        """The section."""
+        """Cross-section of the strip."""
         assert self.scene.beam.strip is not None, "a scene of a plate has a section"
         return self.scene.beam.strip
 
     @property
     def points(self) -> int:
-        """Number of Gauss points across the width; products of two functions and a parabola are exact."""
+        """Number of Gauss points across the width; exact for products of two functions and a parabola."""
         return self.spaces.across + 3
 
     @property
     def rotary_inertia(self) -> Profile:
-        """Rotary inertia of the thickness per length [kg m], which acts when sections twist."""
+        """Rotary inertia per length of the thickness [kg m], which acts when sections twist."""
         t = self.section.thickness
         return (self.scene.beam.mass_per_length * t * t).scaled(1 / 12)
 
     def functions(self, field: Field, numbers: Sequence[int], conditions: RootConditions) -> WidthFunctions:
-        """Build a field's functions across the width that have given numbers k."""
+        """Build a field's functions across the width for the given numbers k."""
         return WidthFunctions(
             self.section, self.scene.beam.length, field.name, numbers, conditions, self.points
         )
@@ -197,7 +197,7 @@ class Strip:
         columns: tuple[WidthFunctions, str],
         across: np.ndarray | float = 1.0,
     ) -> np.ndarray:
-        """Integrate over x a weight times the width mean of two derivatives and a factor across.
+        """Integrate over x a weight times the width mean of two derivatives times a function across.
 
         Each derivative is named by the functions and a label such as "w_xx".
         """
@@ -223,7 +223,7 @@ class Strip:
         along: Space,
         across: np.ndarray | float = 1.0,
     ) -> np.ndarray:
-        """Integrate over x a weight times the width mean of one derivative and a factor across."""
+        """Integrate over x a weight times the width mean of one derivative times a function across."""
         _, of_points = gauss_rule(self.points)
         functions, name = rows
         L, total = self.scene.beam.length, 0.0
@@ -233,7 +233,7 @@ class Strip:
         return np.atleast_1d(total)
 
     def stiffness(self, rows: WidthFunctions, columns: WidthFunctions, warping: Profile = ONE) -> np.ndarray:
-        """Compute the plate's stiffness [N/m]; `warping` scales its bending along the beam."""
+        """Compute the stiffness matrix of the plate [N/m]; `warping` scales its bending along the beam."""
         section, EI = self.section, self.scene.beam.bending_stiffness
         D, bend = EI * section.camber_stiffening, self.integrate
         cross = D * _root(warping) * section.camber_ratio
@@ -249,13 +249,13 @@ class Strip:
 
 @lru_cache(maxsize=64)
 def _root(factor: Profile) -> Profile:
-    """Compute the square root of a property."""
+    """Compute the square root of a property along the beam."""
     return combine(lambda values: np.sqrt(values)[None], factor)[0]
 
 
 @dataclass(frozen=True)
 class StackedSpace:
-    """Coordinates of a plate field: each function across, times all functions along the beam.
+    """Coordinates of a plate field: each function across the width, times all functions along the beam.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ class StackedSpace:
     fewer : int
         Number of functions across in the coarser discretization.
     stretch : Profile
-        Local width over the width that scales y in the functions across.
+        Ratio of the local width to the width by which y is scaled in the functions across.
     """
 
     along: Space
@@ -276,12 +276,12 @@ class StackedSpace:
 
     @property
     def size(self) -> int:
-        """Number of coordinates; those of the first function across come first."""
+        """Number of coordinates; the coordinates of the first function across the width come first."""
         return self.along.size * len(self.numbers)
 
     @property
     def of_each(self) -> int:
-        """Number of coordinates of each function across, which are consecutive."""
+        """Number of coordinates of each function across the width; they are consecutive."""
         return self.along.size
 
     @property
@@ -300,7 +300,7 @@ class StackedSpace:
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
         """Evaluate second derivatives by eta at x/L (k,), averaged over the width: shape (n, k).
 
-        An even Legendre polynomial's second derivative has the mean k(k + 1)/2, its slope at an edge.
+        The second derivative of an even Legendre polynomial has the mean k(k + 1)/2.
         """
         numbers = np.array(self.numbers)
         means = np.where(numbers % 2, 0, numbers * (numbers + 1) / 2) * np.sqrt(2 * numbers + 1)
@@ -308,7 +308,7 @@ class StackedSpace:
 
     @property
     def coarse(self) -> np.ndarray | None:
-        """Indices of coordinates that span the coarser discretization; None where none do."""
+        """Indices of coordinates that span the coarser discretization; None if no subset does."""
         kept = self.along.coarse
         if kept is None:
             return None

@@ -1,24 +1,24 @@
-"""Sections that twist, and strips that also camber, as plates.
+"""Torsion of beams of any cross-section; torsion and camber of strips, modelled as plates.
 
-Torsion of sections of any form is by their constants (Saint-Venant, with Vlasov's warping).
-With the twist theta (positive from e2 to e1), the stiffness G J and E Cw, the rotary inertias R1 = rho I1 and
-R2 = rho I2 per length about the two axes of the section, and the tension T of the beam of mass m per length,
-the energies are
+Torsion of any cross-section uses section constants (Saint-Venant, with Vlasov's warping). With the twist
+theta (positive from e2 to e1), the stiffness G J and E Cw, the rotary inertias R1 = rho I1 and R2 = rho I2
+per length about the section's two axes, the mass m per length, and the tension T in the beam, the energies
+are
 
     1/2 int [G J theta'^2 + E Cw theta''^2 + T ((R1 + R2)/m + t^2) theta'^2] dx,
     1/2 int (R11 + R22) (d theta/dt)^2 dx,
 
 t being the distance of the centre of tension from the shear centre, and R the tensor of rotary inertia about
-the latter along e1, e2.  Rotation at the speed omega turns the section with its broad side into the plane of
-rotation (propeller moment): with the components a1, a2 of the axis of rotation along e1 and e2, the energy is
-omega^2/2 int [(a1^2 - a2^2) (R22 - R11) - 4 a1 a2 R12] theta^2 dx, and the load per length
--omega^2 [a1 a2 (R22 - R11) + (a1^2 - a2^2) R12].
+the latter along e1, e2.  Rotation at the speed omega twists the section until its broad side is in the plane
+of rotation (propeller moment): with the components a1, a2 of the axis of rotation along e1 and e2, the energy
+is omega^2/2 int [(a1^2 - a2^2) (R22 - R11) - 4 a1 a2 R12] theta^2 dx, and the load per length -omega^2 [a1 a2
+(R22 - R11) + (a1^2 - a2^2) R12].
 
-The tension straightens fibres that the twist makes helices; in a twisted beam they are helices at rest.  A
-body at the tip turns with the section there.  Where a warping stiffness is given, the root cannot warp:
-theta' = 0.  The coupling of torsion with bending is in `beamdyn.equations.fields.offsets`.
+The tension straightens fibres that twist deforms to helices; in a pretwisted beam they are helices at rest.
+A tip body rotates with the tip section.  If a warping stiffness is given, the root cannot warp: theta' = 0.
+The coupling of torsion with bending is in `beamdyn.equations.fields.offsets`.
 
-A strip is a plate, whose sections twist and camber as far as the clamped root lets them.
+A strip is modelled as a plate, whose sections twist and camber except at the clamped root.
 The deflection of a thin rectangular section of width b and thickness t is
 
     w(x, y) = sum_k u_k(x) p_k(eta),    eta = 2 y/b,    p_k = (2 k + 1)^(1/2) P_k (Legendre),
@@ -37,15 +37,15 @@ the unit vector a adds
     omega^2/2 int int [T w_x^2 + N_y w_y^2 - (1 - a1^2) rho t w^2] dy dx,
     N_y = rho t (1 - a2^2) (b^2/4 - y^2)/2,
 
-where omega^2 T is the tension by rotation per width, and a1, a2 are the components of a in the directions
-of bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle).
-N_y pulls the width apart, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation
-also twists the strip, by the load -omega^2 a1 a2 rho t y per area, less what the inertia of the thickness
-resists.  In a tapered strip the functions of torsion are p_k(2 y/b(L)), which lets it bend smoothly where
-the width has a kink or jumps; of the even ones d/dx at constant y is d/dx - eta (b'/b) d/d eta.
+where omega^2 T is the tension by rotation per width, and a1, a2 are the components of a in the directions of
+bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle). N_y is
+a tension across the width, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation also
+twists the strip, by the load -omega^2 a1 a2 rho t y per area, reduced by the rotary inertia of the thickness.
+In a tapered strip the functions of torsion are p_k(2 y/b(L)), which lets it bend smoothly where the width has
+a kink or jumps; of the even ones d/dx at constant y is d/dx - eta (b'/b) d/d eta.
 
-Bodies at the tip and along the beam, springs and accelerations of the root act on the mean over the width;
-a tip body also turns with the mean twist there.  Derivation: docs/conventions.md and
+Bodies at the tip and along the beam, springs and accelerations of the root act on the mean deflection over
+the width; a tip body also rotates with the mean twist of the tip.  Derivation: docs/conventions.md and
 tests/invariants/test_plates.py.
 """
 
@@ -78,13 +78,13 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor, tip_inertia
 
 _NAME = "torsion"
-_TURNED = FIXED._replace(stiffness="torsion_stiffness")  # conditions of torsion at the root
+_TURNED = FIXED._replace(stiffness="torsion_stiffness")  # boundary condition of torsion at the root
 _WARPED = CLAMPED._replace(stiffness="warping_stiffness")
 
 
 @dataclass(frozen=True)
 class TurnedSections:
-    """Deflection of twisting sections of unknown width: the torsion functions along the beam.
+    """Deflection of twisting cross-sections of unknown width: the torsion functions along the beam.
 
     Parameters
     ----------
@@ -96,30 +96,30 @@ class TurnedSections:
 
     @property
     def of_each(self) -> int:
-        """Number of coordinates of each function across, which are consecutive."""
+        """Number of coordinates of each function across the width; they are consecutive."""
         return self.along.size
 
     @property
     def corner(self) -> np.ndarray:
-        """Twist at the tip per coordinate (n,), which stands for the deflection of a corner."""
+        """Twist of the tip per unit coordinate (n,), which replaces the deflection of the tip's corner."""
         return self.along.end(0)
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Return zeros: twisting sections keep their shape."""
+        """Return zeros: twisting sections keep their shape, without curvature across."""
         return np.zeros((self.along.size, len(xi)))
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Raise a ValueError: no surface can be drawn, as the width of the section is not known."""
+        """Raise a ValueError: no surface can be drawn, as the section width is not known."""
         raise ValueError("the width of the sections is not known: make the beam by Beam.rectangular")
 
 
 def assemble_section_torsion(
     scene: Scene, spaces: Spaces, partners: Sequence[TransverseField], stretched: RootConditions | None
 ) -> FieldEquations:
-    """Assemble torsion of a beam with a torsional stiffness and two rotary inertias.
+    """Assemble torsion of a beam that has a torsional stiffness and two rotary inertias.
 
-    Offsets couple torsion with the partners (fields that deflect the beam), and with a stretch that has the
-    conditions given at the root.
+    Offsets couple torsion with `partners` (fields that deflect the beam) and with stretch, whose boundary
+    conditions are `stretched`.
     """
     beam = scene.modelled_beam
     conditions = _TURNED if beam.warping_stiffness is None else _WARPED
@@ -163,7 +163,7 @@ def _terms(scene: Scene, space: Space) -> Iterator[Term]:
 
 
 def _loads(scene: Scene, space: Space) -> Iterator[Load]:
-    """Yield the loads on torsion, without those of offsets."""
+    """Yield the loads on torsion, except for those due to offsets."""
     beam, (a1, a2) = scene.modelled_beam, axis_in_section(scene)
     _, broad, oblique = _inertias(beam)
     L, B = beam.length, tip_inertia(_tip_body(scene), beam.tip_twist).centrifugal
@@ -188,16 +188,16 @@ def _tip_body(scene: Scene) -> TipMass:
 
 @lru_cache(maxsize=64)
 def _inertias(beam: Beam) -> tuple[Profile, Profile, Profile | None]:
-    """Compute R11 + R22, R22 - R11, and R12 if it is not 0, about the shear centre, where sections turn."""
+    """Compute R11 + R22, R22 - R11, and R12 if not 0, about the shear centre, the axis of twist."""
     R = section_tensor(replace(beam, tension_offset=None), "rotary_inertia")
     return R[0, 0] + R[1, 1], R[1, 1] + R[0, 0].scaled(-1.0), R.get((0, 1))
 
 
 @lru_cache(maxsize=64)
 def _pulled_straight(beam: Beam) -> list[Profile]:
-    """Compute tension per root acceleration and per squared speed, times the fibres' squared radius.
+    """Compute tension per root acceleration and per squared speed, times the fibres' mean squared radius.
 
-    The fibres are taken to be distributed as the mass is, about the centre of tension.
+    The fibres are assumed to be distributed about the centre of tension as the mass is.
     """
     R1, R2 = beam.rotary_inertia, beam.second_rotary_inertia
     assert R1 is not None and R2 is not None, "a scene with torsion has its properties"
@@ -213,8 +213,8 @@ def _term(name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: f
 
 # Plates ----------------------------------------------------------------------------------------------
 
-_HELD = CLAMPED._replace(stiffness="bending_stiffness", direction=0)  # conditions at the root, as for bending
-_SOME_RATIO = 0.3  # Poisson's ratio for the list of all terms, where none is given
+_HELD = CLAMPED._replace(stiffness="bending_stiffness", direction=0)  # boundary conditions, as for bending
+_SOME_RATIO = 0.3  # Poisson's ratio in the list of all terms, if none is given
 
 _IS_TWISTED = Condition(lambda s: s.scene.modelled_beam.twist is not None, "the beam is not twisted")
 _IS_OBLIQUE = Condition(
@@ -224,12 +224,13 @@ _IS_OBLIQUE = Condition(
 
 
 class SectionField(Field):
-    """Base of the fields that deform a strip's sections: torsion, odd across, and camber, even across."""
+    """Base class of fields that deform a strip's sections: torsion (odd across) and camber (even across)."""
 
-    first: ClassVar[int]  # number k of the first function across; the others follow in steps of two
+    # Number k of the first function across the width; further ones follow in steps of two.
+    first: ClassVar[int]
 
     def complete(self, scene: Scene) -> Scene:
-        """Return the scene with this field and, for a rectangle, a flat strip with Poisson's ratio."""
+        """Return the scene with this field and, if rectangular, as a flat strip with Poisson's ratio."""
         section = scene.beam.section
         if section is None:
             return scene
@@ -238,11 +239,11 @@ class SectionField(Field):
         return replace(scene, beam=beam, physics=replace(scene.physics, **{self.name: True}))
 
     def numbers(self, count: int) -> range:
-        """Return the numbers k of the functions of this field among `count` functions beyond the mean."""
+        """Return the numbers k of this field's functions, out of `count` functions across (and the mean)."""
         return range(self.first, count + 1, 2)
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
-        """Assemble the terms of the plate's energy, with its coupling to bending."""
+        """Assemble the terms of the plate's energy, with the coupling to bending."""
         strip = Strip(scene, spaces)
         numbers = tuple(self.numbers(spaces.across))
         fewer, is_odd = len(self.numbers(spaces.fewer_across)), self.first % 2
@@ -282,24 +283,24 @@ class SectionField(Field):
             yield stiffness("pull across", matrix, "speed_squared", 1 - c2**2)
 
     def warping(self, section: Rectangle) -> Profile:
-        """Compute the factor of the plate's bending stiffness along the beam; by default 1."""
+        """Compute the factor of the plate's bending stiffness along the beam; 1 by default."""
         return ONE
 
     def _coupling(self, strip: Strip, own: WidthFunctions) -> Iterator[Term]:
-        """Yield the coupling terms with bending; by default none, as for deflections that are odd across."""
+        """Yield the coupling terms with bending; none by default, as for deflections that are odd across."""
         return iter(())
 
     def _of_body(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Term]:
-        """Yield the terms of a tip body, which the mean twist of the section turns; by default none."""
+        """Yield the terms of a tip body, which rotates with the mean twist of the tip; none by default."""
         return iter(())
 
     def _loads(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Load]:
-        """Yield the loads; by default none, as loads act on the mean over the width."""
+        """Yield the loads; none by default, as loads act on the mean over the width."""
         return iter(())
 
 
 def _explanations(name: str) -> dict[str, Explanation]:
-    """Explain the terms that torsion and camber share."""
+    """Explain the terms that torsion and camber have in common."""
     return {
         f"mass of {name}": Explanation("Mkk qk''", "the strip is a plate"),
         f"stiffness of {name}": Explanation("Kk qk", "the strip is a plate"),
@@ -345,7 +346,7 @@ class Torsion(SectionField):
     }
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
-        """Assemble torsion: of a strip as a plate, of another section by its constants."""
+        """Assemble torsion: of a strip as a plate, of another beam by section constants."""
         if scene.beam.section is None:
             deflecting = [field for field in self.partners if field.is_modelled(scene)]
             stretched = STRETCHED if Stretch().is_modelled(scene) else None
@@ -353,7 +354,7 @@ class Torsion(SectionField):
         return super().assemble(scene, spaces)
 
     def warping(self, section: Rectangle) -> Profile:
-        """Compute the warping constant of the section over that of a thin one."""
+        """Compute the ratio of the section's warping constant to that of a thin section."""
         return section.warping_factor
 
     def _terms(self, strip: Strip, rows: WidthFunctions, columns: WidthFunctions) -> Iterator[Term]:
@@ -368,7 +369,7 @@ class Torsion(SectionField):
         if tip is None:
             return
         width = float(strip.section.width(np.ones(1))[0])
-        turn = np.kron(own.tip * 2 / width, along.end(0))  # mean twist of the section at the tip
+        turn = np.kron(own.tip * 2 / width, along.end(0))  # mean twist of the tip section
         turns, (c1, c2) = np.outer(turn, turn), axis_in_section(strip.scene)
         yield Term("mass of the tip body in torsion", self.name, self.name, 2, tip.axial_inertia * turns)
         spin = (tip.inertia_about_bending_direction - tip.inertia) * turns

@@ -1,20 +1,21 @@
-"""Fields that deflect the beam transversely, and the terms that each pair of these fields shares.
+"""Displacement fields that deflect the beam transversely, and the terms that each pair of them shares.
 
 The deflection is u2 = sum d_i v_i in the plane of rotation and u3 = sum n_i v_i out of it, over the fields
 v_i, each of which bends or shears the beam in one of two directions e1, e2 fixed to the root:
 
     e1 = c b2 + s b3,  e2 = -s b2 + c b3,  so that  d = (c, -s),  n = (s, c),
 
-with c, s the cosine and sine of the bending angle.  Two fields thus share the mass, the tension, and what
-rotation does to the mass; bending also turns the sections and the tip body, shear does not.
+with c, s the cosine and sine of the bending angle.  Two fields are thus coupled by mass, tension and the
+inertial forces of rotation; bending also rotates the sections and the tip body, shear does not.
 
-A body with the centrifugal inertia B (of sections -R, with R their rotary inertia) and the tilt
-u' = (u2', u3') has the centrifugal potential energy omega^2/2 u3' (B u')_3: a body slender along the beam,
-B > 0, is held in the plane of rotation; a section, -R < 0, is turned out of it.  And as no section is free to
-twist, bending in both planes turns them about the beam by int (u2' u3'' - u3' u2'')/2, on which their product
-of inertia works.  Derivation: docs/conventions.md and tests/invariants/test_two_planes_derivation.py.
+A body with the centrifugal inertia B (of sections -R, with R their rotary inertia) and the tilt u' = (u2',
+u3') has the centrifugal potential energy omega^2/2 u3' (B u')_3: a body slender along the beam, B > 0, is
+kept in the plane of rotation; a section, -R < 0, is rotated out of it. As sections are not free to twist,
+bending in both planes rotates them about the beam by int (u2' u3'' - u3' u2'')/2, on which the moment of
+their product of inertia does work.  Derivation: docs/conventions.md and
+tests/invariants/test_two_planes_derivation.py.
 
-**Precone** eta turns the beam out of the plane of rotation.  With C, S = cos eta, sin eta the axis of
+**Precone** eta inclines the beam to the plane of rotation.  With C, S = cos eta, sin eta the axis of
 rotation is S b1 + C b3: tension has the factor C^2, spin softening d_i d_j + S^2 n_i n_j, the energy above
 C^2, plus -S^2 u'^T B u'; Coriolis forces couple the two directions, and rotation causes a load along b3.
 Derivation: tests/invariants/test_precone_derivation.py.
@@ -50,7 +51,7 @@ _ROOT_ACCELERATIONS: tuple[Quantity, Quantity] = "root_transverse", "root_across
 
 @dataclass(frozen=True)
 class Trial:
-    """Trial functions of a transverse field of a scene, with their values at the tip.
+    """Trial functions of a transverse field of a scene, with values at the tip.
 
     Symbols are those of docs/conventions.md.
 
@@ -67,15 +68,15 @@ class Trial:
     tip : TipMass
         Rigid body at the tip, of mass 0 if there is none.
     inertia : TipInertia
-        Inertia of the body against tilts.
+        Moments of inertia of the body against tilts.
     conditions : RootConditions
-        Conditions at the root.
+        Boundary conditions at the root.
     space : Space
         The n trial functions.
     rotation : ndarray, shape (n,)
-        Rotation D of the section at the tip per coordinate [1/m].
+        Rotation D of the tip section per unit of each coordinate [1/m].
     centre : ndarray, shape (n,)
-        Deflection t of the tip body's centre of gravity per coordinate.
+        Deflection t of the tip body's centre of gravity per unit of each coordinate.
     """
 
     field: TransverseField
@@ -103,14 +104,14 @@ class Trial:
         return cls(field, scene, spaces, beam, tip, inertia, conditions, space, rotation, centre)
 
     def loads(self) -> tuple[Deflection, list[Load]]:
-        """Build the deflection with its loads under unit accelerations, and the loads of the equations."""
+        """Build the deflection with its loads under unit accelerations, and the equations' load terms."""
         beam, tip, space, i, name = self.beam, self.tip, self.space, self.field.direction, self.field.name
         (d, n), (cosine, sine) = plane_components(self.scene), exact_cos_sin(self.scene.mount.precone)
         sections = section_tensor(beam, "rotary_inertia") if self.field.rotates else {}
         P, moment = loads_by_mass(beam, space)
         P = P + tip.mass * self.centre
         moment = moment + tip.mass * (beam.length + tip.offset) * self.centre
-        tilting = []  # angular accelerations tilt sections and tip body towards either direction
+        tilting = []  # angular accelerations tilt sections and tip body in either direction
         for k, inertia in enumerate(self.inertia.tilting[i]):
             load = inertia * self.rotation
             tilting.append(load + space.load(sections[i, k], 1) if (i, k) in sections else load)
@@ -132,7 +133,7 @@ class Trial:
 
 @dataclass(frozen=True)
 class Pair:
-    """Integrals of products of two transverse fields, which may be the same field.
+    """Integrals of products of the functions of two transverse fields, which may be the same field.
 
     Parameters
     ----------
@@ -141,7 +142,7 @@ class Pair:
     directions : tuple of int
         Directions in which the two fields deflect the beam.
     rotate : bool
-        Whether both fields turn the sections.
+        Whether both fields rotate the sections.
     tilts : ndarray, shape (n, m)
         Products of the two fields' rotations D at the tip [1/m2].
     """
@@ -154,7 +155,7 @@ class Pair:
 
     @classmethod
     def of(cls, rows: Trial, columns: Trial) -> Pair:
-        """Pair the trial functions of two fields, with the products of their rotations at the tip."""
+        """Pair the trial functions of two fields, and multiply their rotations at the tip."""
         directions = rows.field.direction, columns.field.direction
         rotate = rows.field.rotates and columns.field.rotates
         return cls(rows, columns, directions, rotate, np.outer(rows.rotation, columns.rotation))
@@ -166,7 +167,7 @@ class Pair:
         return Term(name, self.rows.field.name, self.columns.field.name, order, matrix, quantity, factor)
 
     def integrate(self, weight: Profile, *orders: int) -> np.ndarray:
-        """Integrate over x a weight times derivatives of both fields by x, of one order or one each."""
+        """Integrate over x a weight times x-derivatives of both fields, of one order or one for each."""
         first, last = orders[0], orders[-1]
         length = self.rows.beam.length
         if self.rows is self.columns and first == last:
@@ -183,7 +184,7 @@ class Pair:
 
     @cached_property
     def translation(self) -> np.ndarray:
-        """Mass matrix of sections, point masses and tip body moving with their centres of gravity [kg]."""
+        """Mass matrix [kg] of sections, point masses and tip body for the motion of their mass centres."""
         rows, columns = self.rows, self.columns
         by_mass = self.integrate(rows.beam.mass_per_length, 0)
         if rows.beam.point_masses:
@@ -196,7 +197,7 @@ class TransverseField(Field):
 
     direction: ClassVar[int]
     rotates: ClassVar[bool]
-    # The transverse fields that precede this one in `FIELDS`, in their order there.
+    # Transverse fields that precede this one in `FIELDS`, in the same order.
     partners: ClassVar[tuple[TransverseField, ...]]
     explanations: ClassVar[Mapping[str, Explanation]] = {
         "mass": Explanation("M22 q2''", why.say_mass),
@@ -239,11 +240,11 @@ class TransverseField(Field):
     }
 
     def conditions(self, mount: Mount) -> RootConditions:
-        """Return the conditions at the root."""
+        """Return the boundary conditions at the root."""
         raise NotImplementedError
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
-        """Yield the terms of the elastic stiffness of this field with another, or with itself."""
+        """Yield the elastic stiffness terms that couple this field with another field, or act on itself."""
         raise NotImplementedError
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
@@ -264,19 +265,19 @@ class TransverseField(Field):
 
 
 def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Compute components of the directions of bending e1 and e2: two along b2, then two along b3."""
+    """Compute the components of both bending directions e1 and e2 along b2, then along b3."""
     c, s = aligned_cos_sin(scene.mount.bending_angle)
     return (c, -s), (s, c)
 
 
 def axis_in_section(scene: Scene) -> tuple[float, float]:
-    """Compute the axis of rotation's components in the direction of bending at the root, and across."""
+    """Compute the rotation axis' components in the direction of bending at the root, and across."""
     (c, s), (cosine, _) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
     return cosine * s, cosine * c
 
 
 def _terms(pair: Pair) -> Iterator[Term]:
-    """Yield mass and stiffness: elastic, of springs, by tension and by rotation."""
+    """Yield mass and stiffness terms: elastic, of springs, by tension and by rotation."""
     rows, columns, (i, j) = pair.rows, pair.columns, pair.directions
     scene, beam, tip, sections = rows.scene, rows.beam, rows.tip, section_tensor(rows.beam, "rotary_inertia")
     cosine, sine = exact_cos_sin(scene.mount.precone)
@@ -290,7 +291,7 @@ def _terms(pair: Pair) -> Iterator[Term]:
             xi, springs = beam.springs(i)
             held = (rows.space.evaluate(xi) * springs) @ columns.space.evaluate(xi).T
             yield pair.term("point springs", held)
-        # Tension acts on the slope of the whole deflection (Engesser).
+        # Tension acts on the slope of the total deflection, shear included (Engesser).
         (n_a, n_b), reach = axial_tension(beam), beam.length + tip.offset
         KGB = pair.integrate(n_b, 1) + tip.mass * reach * tip.offset * pair.tilts
         KGA = pair.integrate(n_a, 1) + tip.mass * tip.offset * pair.tilts
@@ -302,7 +303,7 @@ def _terms(pair: Pair) -> Iterator[Term]:
 
 
 def _spin(pair: Pair, cosine: float, sine: float) -> Iterator[Term]:
-    """Yield the work of centrifugal forces on masses that move in the plane of rotation or tilt out of it."""
+    """Yield the work of centrifugal forces on masses that move in the plane of rotation, or tilt."""
     (i, j), beam, (d, n) = pair.directions, pair.rows.beam, plane_components(pair.rows.scene)
     if softening := d[i] * d[j] + sine**2 * n[i] * n[j]:
         yield pair.term("spin softening", pair.translation, "speed_squared", -softening)
@@ -329,16 +330,16 @@ def _spin(pair: Pair, cosine: float, sine: float) -> Iterator[Term]:
             yield pair.term("twisting by inertia", matrix, "speed_squared", cosine**2 / 2)
 
 
-# Coupling by the part of the rotation about the beam (precone) --------------------------------------
+# Coupling by the rotation component about the beam axis (precone) ----------------------------------
 
 
 def _coriolis(pair: Pair) -> Iterator[Term]:
-    """Yield the skew-symmetric coupling of the two directions by Coriolis and Euler forces."""
+    """Yield the skew-symmetric coupling of both directions by Coriolis and Euler forces."""
     _, sine = exact_cos_sin(pair.rows.scene.mount.precone)
     (i, j), tip = pair.directions, pair.rows.tip
     if not sine or i == j:
         return
-    # The second moment of the tip body along the beam does not depend on its rotation about the beam.
+    # The tip body's second moment along the beam is invariant to rotations about the beam.
     along = (tip.inertia + tip.inertia_about_bending_direction - tip.axial_inertia) / 2
     mass, across = pair.translation + along * pair.tilts, sine if i == 0 else -sine
     yield pair.term("Coriolis coupling of planes", mass, "speed", 2 * across, order=1)
@@ -346,9 +347,10 @@ def _coriolis(pair: Pair) -> Iterator[Term]:
 
 
 def _euler_of_turned(pair: Pair, sine: float) -> Iterator[Term]:
-    """Yield the work of Euler forces on sections and tip body that bending tilts, and turns about the beam.
+    """Yield the work of Euler forces on sections and tip body, which bending tilts and twists.
 
-    The matrix is the symmetric part of B T, with the inertia B and a quarter turn T about the beam.
+    The matrix is the symmetric part of B T, with the inertia B and the rotation T by 90 degrees about the
+    beam.
     """
     (i, j), beam, tip, T = pair.directions, pair.rows.beam, pair.rows.tip, _QUARTER_TURN
     turned = pair.rows.inertia.centrifugal @ T

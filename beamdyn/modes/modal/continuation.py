@@ -1,7 +1,7 @@
-"""Continuation of the equilibria of a beam in a parameter, through turning points.
+"""Continuation of the equilibria of a beam over a parameter, through turning points.
 
-A curve of solutions of r(q, p) = 0 is followed by its arc length, measured by the slope angles of the beam
-and by the parameter over its scale (Keller's pseudo-arclength method).
+A curve of solutions of r(q, p) = 0 is computed in steps of its arc length, measured by the beam's slope
+angles and by the parameter over its scale (Keller's pseudo-arclength method).
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from beamdyn.equations.root_motion import Quantity
 # First, longest and shortest step along a curve, as an arc length (see `_metric`).
 _FIRST, _LONGEST, _SHORTEST = 0.05, 0.2, 1e-7
 _ITERATIONS = 12  # largest number of iterations of Newton's method in a step
-_EASY = 4  # number of iterations of a step up to which the next step is longer
-# Change of the slope angles by an iteration, below which the iteration has converged [rad].
+_EASY = 4  # number of iterations in a step up to which the next step is longer
+# Change of slope angles [rad] in an iteration, below which the iteration has converged.
 _CONVERGED = 1e-14
-# Change of the slope angles by an iteration, below which rounding may end the iteration [rad].
+# Change of slope angles [rad] in an iteration, below which rounding may stop the iteration.
 _STALLED = 1e-9
-_STRAYED = 0.5  # correction of a step over its length, above which the step may have met another curve
-_LOOSE = 2.0  # largest correction of a step over its length where both sides are known to be on one curve
-_SYMMETRIC = 1e-9  # relative skew-symmetric part of a matrix that counts as rounding
-_MOST_TURNS = 20 * np.pi  # angle [rad] by which a load may bend or twist a section
-_NEAR = 1e-4  # arc length within which directions of another sign are a bifurcation, and no other curve
+_STRAYED = 0.5  # ratio of correction to step length above which a step may have reached another curve
+_LOOSE = 2.0  # largest ratio of correction to step length if both ends are known to be on one curve
+_SYMMETRIC = 1e-9  # relative skew-symmetric part of a matrix, below which it counts as rounding
+_MOST_TURNS = 20 * np.pi  # largest angle [rad] by which a load may bend or twist a section
+_NEAR = 1e-4  # arc length within which a reversal of direction is a bifurcation, not another curve
 
 
 class NotConverged(ArithmeticError):
@@ -37,7 +37,7 @@ class NotConverged(ArithmeticError):
 
 
 class NoEquilibrium(ArithmeticError):
-    """Raised when the beam has no equilibrium on the branch at this speed.
+    """Raised if the beam has no equilibrium on the branch at this speed.
 
     Examples
     --------
@@ -48,18 +48,19 @@ class NoEquilibrium(ArithmeticError):
 
 @dataclass(frozen=True)
 class Loading:
-    """Equations r(q, p) = 0 of equilibrium under loads that grow in proportion to a parameter p.
+    """Equilibrium equations r(q, p) = 0 under loads that grow in proportion to a parameter p.
 
     Parameters
     ----------
     elastica : RotatingBeam
         Equations of motion.
     growing : dict of str to float
-        Quantities of the root's motion per p, or "unity" for the load at the tip: see `BentState.under`.
+        Quantities of the root's motion per unit of p, or "unity" for the load at the tip: see
+        `BentState.under`.
     scale : float
-        Change of p that counts as much as an angle of 1 rad.
+        Change of p that counts like an angle of 1 rad in the arc length.
     given : dict of str to float
-        Quantities that act besides, or the load at the tip.
+        Constant quantities or tip load that act in addition.
     """
 
     elastica: RotatingBeam
@@ -69,11 +70,11 @@ class Loading:
 
     @property
     def angles(self) -> np.ndarray:
-        """Slope angles along the beam per coordinate (n, k), the measure of changes of the coordinates."""
+        """Slope angles along the beam per unit coordinate (n, k), the measure of changes of coordinates."""
         return self.elastica.beam.angles
 
     def at(self, q: np.ndarray, p: float) -> Work:
-        """Compute the residual r (n,) at coordinates q (n,) and p, and its derivative (n, n) by q."""
+        """Compute the residual r (n,) at coordinates q (n,) and parameter p, and dr/dq (n, n)."""
         state, K = self.elastica.at(q), self.elastica.beam.stiffness
         force, change = state.under(self.growing)
         sums = K @ q + p * force, K + p * change
@@ -85,12 +86,12 @@ class Loading:
 
     @cached_property
     def at_rest(self) -> np.ndarray:
-        """Coordinates (n,) in equilibrium at p = 0: 0 but for a load at the tip, which grows from nothing.
+        """Equilibrium coordinates (n,) at p = 0: 0 unless there is a tip load, which is applied gradually.
 
         Raises
         ------
         NoEquilibrium
-            If the branch does not reach the whole load.
+            If the branch ends before the full load.
         """
         straight = np.zeros(self.elastica.beam.size)
         if not self.at(straight, 0.0).work.any():
@@ -104,13 +105,13 @@ class Loading:
 
     @cached_property
     def bends(self) -> bool:
-        """Whether what grows, or a load at the tip, loads the straight beam otherwise than along it."""
+        """Whether the growing load, or a tip load, bends the straight beam."""
         return bool(self.at_rest.any() or self.rate(self.at_rest).any())
 
 
 @dataclass(frozen=True)
 class Point:
-    """A point of a curve of solutions, with the direction in which it is followed.
+    """Point on a curve of solutions, with the direction in which the curve is continued.
 
     Parameters
     ----------
@@ -136,19 +137,19 @@ def solve_at(load: Loading, q: np.ndarray, p: float) -> np.ndarray:
     Raises
     ------
     NotConverged
-        If it does not converge.
+        If the iteration does not converge.
     """
     return _newton(load, q, p, None)[0]
 
 
 def start_curve(load: Loading, q: np.ndarray, p: float, towards: float) -> Point:
-    """Find the direction of a curve at a solution, towards larger (1) or smaller (-1) parameters."""
+    """Find the tangent of a curve at a solution, towards larger (1) or smaller (-1) parameters."""
     q_rate = -np.linalg.solve(load.at(q, p).change, load.rate(q)) * load.scale
     return _normalized(load, q, p, towards * q_rate, towards)
 
 
 def follow(load: Loading, start: Point, longest: float = _LONGEST, easy: int = _EASY) -> Iterator[Point]:
-    """Yield the points of a curve beyond `start`, in steps adapted to its curvature, and turning points.
+    """Yield the points of a curve beyond `start` in steps adapted to its curvature, and its turning points.
 
     Parameters
     ----------
@@ -157,20 +158,20 @@ def follow(load: Loading, start: Point, longest: float = _LONGEST, easy: int = _
     start : Point
         A point of the curve.
     longest : float
-        Longest step, as a change of the slope angles, or of the parameter over its size.
+        Longest step, as a change of the slope angles [rad], or of the parameter over its value.
     easy : int
-        Iterations of Newton's method up to which the next step is longer.
+        Number of Newton iterations in a step up to which the next step is longer.
 
     Raises
     ------
     NotConverged
-        If the curve cannot be followed further.
+        If the curve cannot be continued.
     """
     point, step, before = start, _FIRST, count_negative(load, start.q, start.p)
     while True:
         try:
             following, iterations = advance(load, point, step)
-            # If stability changes other than at a turning point, the point is on another curve.
+            # A change of stability that is not at a turning point means that the point is on another curve.
             stability = count_negative(load, following.q, following.p)
             if abs(stability - before) != int(following.p_rate * point.p_rate < 0) and step > _NEAR:
                 raise NotConverged
@@ -183,19 +184,21 @@ def follow(load: Loading, start: Point, longest: float = _LONGEST, easy: int = _
             yield find_turning_point(load, point, following)
         point, before = following, stability
         yield point
-        # The slope angles change by 1, or the parameter by its size, at least by the smaller of arc lengths.
+        # The longest step changes slope angles by `longest` [rad], or the parameter by that fraction of its
+        # value.
         by_angles, by_parameter = _metric(load, point.q_rate, 0.0), 1 / (1 + abs(point.p) / load.scale)
         most = longest * (1 / max(by_angles, by_parameter))
         step = min(most, 1.5 * step) if iterations <= easy else max(step / 2, _SHORTEST)
 
 
 def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
-    """Compute coordinates (k, n) at parameters, in the order in which a curve meets them.
+    """Compute coordinates (k, n) at given parameters, in the order in which a curve passes them.
 
     Raises
     ------
     NotConverged
-        If the curve ends, or turns back, before; its arguments are why, and the parameter at that point.
+        If the curve ends or turns back before; the exception's arguments are the reason and the parameter
+        there.
     """
     found, before, towards, why = [], start, np.sign(start.p_rate), "could not be followed beyond"
     with suppress(NotConverged):
@@ -211,17 +214,18 @@ def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
 
 
 def count_negative(load: Loading, q: np.ndarray, p: float) -> int:
-    """Number of negative eigenvalues of the Jacobian at a solution: 0 where it is stable, if symmetric."""
+    """Count negative eigenvalues of the Jacobian at a solution; if symmetric, 0 means that it is stable."""
     matrix = load.at(q, p).change
     return int((scaled_eigenvalues(matrix, np.diag(matrix)) < 0).sum())
 
 
 def scaled_eigenvalues(matrix: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
-    """Compute the eigenvalues of a matrix (n, n) scaled so that a given diagonal is +-1, the lowest first.
+    """Compute ascending eigenvalues of a matrix (n, n), scaled so that a given diagonal becomes +-1.
 
-    Their signs are those of the unscaled eigenvalues (Sylvester), which rounding hides where coordinates have
-    unlike sizes, as with short elements.  Of a matrix that is not symmetric, as under a load without
-    potential, only the real eigenvalues are returned: complex pairs do not change the determinant's sign.
+    Scaling does not change their signs (Sylvester), but avoids rounding errors if coordinates have very
+    different sizes, as with short elements.  If the matrix is not symmetric, as under a load without
+    potential, only the real eigenvalues are returned: complex pairs do not change the sign of the
+    determinant.
     """
     size = np.sqrt(np.where(diagonal == 0, 1.0, np.abs(diagonal)))
     scaled = matrix / np.outer(size, size)
@@ -232,9 +236,9 @@ def scaled_eigenvalues(matrix: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
 
 
 def advance(load: Loading, point: Point, step: float, strayed: float = _STRAYED) -> tuple[Point, int]:
-    """Advance along a curve by an arc length; return the number of iterations, too.
+    """Advance along a curve by an arc length; also return the number of iterations.
 
-    A correction larger than the step times `strayed` is refused.
+    A correction larger than `strayed` times the step raises `NotConverged`.
     """
     q, p = point.q + step * point.q_rate, point.p + step * point.p_rate * load.scale
     corrected, p_corrected, iterations = _newton(load, q, p, point)
@@ -247,13 +251,14 @@ def advance(load: Loading, point: Point, step: float, strayed: float = _STRAYED)
 
 
 def find_turning_point(load: Loading, before: Point, after: Point) -> Point:
-    """Find the point between two successive points of a curve at which the parameter is extreme."""
+    """Find the point between two successive points of a curve at which the parameter has an extremum."""
     return replace(_find_between(load, before, after, lambda point: point.p_rate), p_rate=0.0)
 
 
 def find_loss_between(load: Loading, before: Point, after: Point) -> float:
     """Find the parameter between two successive points of a curve at which stability is lost or gained."""
-    from scipy.optimize import brentq  # imported here, because it takes as long to import as all the rest
+    # The import is inside the function because it takes as long as all other imports.
+    from scipy.optimize import brentq
 
     diagonal = np.diag(load.at(before.q, before.p).change)
 
@@ -281,7 +286,8 @@ def find_at(load: Loading, before: Point, after: Point, p: float) -> np.ndarray:
 
 def _find_between(load: Loading, before: Point, after: Point, function: Callable[[Point], float]) -> Point:
     """Find the root of a function between two successive points of a curve, along its arc."""
-    from scipy.optimize import brentq  # imported here, because it takes as long to import as all the rest
+    # The import is inside the function because it takes as long as all other imports.
+    from scipy.optimize import brentq
 
     reach = _metric(load, after.q - before.q, (after.p - before.p) / load.scale)
 
@@ -294,7 +300,7 @@ def _find_between(load: Loading, before: Point, after: Point, function: Callable
 
 
 def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tuple[np.ndarray, float, int]:
-    """Iterate to a solution, at fixed p or in the plane across a curve's direction at `point`."""
+    """Iterate to a solution, at fixed p, or in the plane normal to a curve's direction at `point`."""
     last = np.inf
     for iteration in range(1, _ITERATIONS + 1):
         r, A = load.at(q, p)
@@ -312,18 +318,18 @@ def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tupl
 
 
 def _bordered(load: Loading, q: np.ndarray, p: float, point: Point) -> np.ndarray:
-    """Compute the Jacobian by coordinates and scaled parameter, bordered by the direction of the curve."""
+    """Compute the Jacobian by coordinates and scaled parameter; its last row is the curve's direction."""
     weights = load.angles @ (load.angles.T @ point.q_rate) / load.angles.shape[1]
     A, rate = load.at(q, p).change, load.rate(q)[:, None] * load.scale
     return np.block([[A, rate], [weights[None], np.array([[point.p_rate]])]])
 
 
 def _metric(load: Loading, q: np.ndarray, p: float) -> float:
-    """Compute the arc length of a change: the root mean square of angles, and the scaled parameter."""
+    """Compute the arc length of a change: root mean square of angles, and the scaled parameter."""
     return float(np.sqrt(np.mean((q @ load.angles) ** 2) + p**2))
 
 
 def _normalized(load: Loading, q: np.ndarray, p: float, q_rate: np.ndarray, p_rate: float) -> Point:
-    """Make a point of a curve whose direction is scaled to an arc length of 1."""
+    """Build a point of a curve, with its direction scaled to an arc length of 1."""
     size = _metric(load, q_rate, p_rate)
     return Point(q, p, q_rate / size, p_rate / size)

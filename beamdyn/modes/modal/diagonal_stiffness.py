@@ -1,4 +1,4 @@
-"""Batches of symmetric eigenproblems with a diagonal stiffness, diag(d) z = w^2 M z, by their inverse."""
+"""Batches of symmetric eigenproblems with diagonal stiffness, diag(d) z = w^2 M z, solved by the inverse."""
 
 from __future__ import annotations
 
@@ -8,14 +8,15 @@ import scipy.linalg
 from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
-# Rounding errors in addition to those of `equations_of_motion`.
-# Ratios of rounding errors of beams in two planes, and on springs, to those of a clamped beam in one plane.
+# Rounding errors in addition to those of `equations_of_motion`: ratios of the rounding errors of beams in two
+# planes, and of beams on root springs, to those of a clamped beam in one plane.
 _TWO_PLANES, _ON_SPRINGS = 3.0, 2.0
-_CANCELLED = 0.5 * _EPS  # relative error by stiffness entries that cancel where twist couples two planes
-_FORWARD = 0.5 * _EPS  # error of mu relative to the largest mu, five times the error measured at mode 100
-LEAST_STIFFNESS = 0.1  # fraction of the stiffness at rest below which the eigenproblem is shifted
-_LARGEST_SHIFT = 256  # largest exponent of 4 in a shift: beyond it numbers overflow
-_LARGEST_BATCHED = 64  # largest size of matrices whose eigenvectors are all computed in one batched call
+_CANCELLED = 0.5 * _EPS  # relative error by stiffness entries that cancel if pretwist couples two planes
+# Error of mu = 1/w^2 relative to the largest mu, five times the error measured at mode 100.
+_FORWARD = 0.5 * _EPS
+LEAST_STIFFNESS = 0.1  # ratio of stiffness to that at rest below which the eigenproblem is shifted
+_LARGEST_SHIFT = 256  # largest exponent of 4 in a shift: larger ones overflow
+_LARGEST_BATCHED = 64  # largest size of matrices for which one batched call computes all eigenvectors
 
 
 def solve_diagonal(
@@ -26,7 +27,7 @@ def solve_diagonal(
     Parameters
     ----------
     mass : ndarray, shape (n, n) or (S, n, n)
-        Mass matrix M of all problems, or of each.
+        Mass matrix M, common to all problems or one for each.
     stiffness : ndarray, shape (S, n)
         Diagonal stiffness d of each problem.
     count : int
@@ -99,14 +100,14 @@ def _solve_largest(A: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     n = A.shape[-1]
     if n <= _LARGEST_BATCHED:
         mu, z = np.linalg.eigh(A)
-    else:  # most of the time is spent on vectors, so only a few are computed
+    else:  # most of the time is needed for eigenvectors, so only the requested ones are computed
         modes = [scipy.linalg.eigh(a, subset_by_index=(n - count, n - 1)) for a in A]
         mu, z = (np.array(values) for values in zip(*modes, strict=True))
     return above_rounding(mu[:, : -count - 1 : -1]), z[:, :, : -count - 1 : -1]
 
 
 def above_rounding(mu: np.ndarray) -> np.ndarray:
-    """Raise eigenvalues (..., k), descending, to half their rounding error, so that none is negative."""
+    """Raise eigenvalues (..., k), descending, to at least half their rounding error: none is negative."""
     return np.maximum(mu, _FORWARD / 2 * mu[..., :1])
 
 
@@ -121,9 +122,9 @@ def _find_shift(M: np.ndarray, d: np.ndarray, smallest: np.ndarray) -> np.ndarra
     Raises
     ------
     LinAlgError
-        If rounding hides whether a shift makes it positive definite.
+        If rounding makes it impossible to decide whether the shifted matrix is positive definite.
     """
-    # Exponents that fail, and exponents being tried.
+    # Exponents that are too small, and exponents to be tried.
     low, high = np.full(len(d), -1), np.zeros(len(d), dtype=int)
     failing, M = np.arange(len(d)), np.broadcast_to(M, (len(d), *M.shape[-2:]))
     while (
@@ -140,7 +141,7 @@ def _find_shift(M: np.ndarray, d: np.ndarray, smallest: np.ndarray) -> np.ndarra
 
 
 def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray:
-    """Whether diag(d) + shift M is positive definite beyond rounding, for M (S, n, n), d and shifts."""
+    """Return whether diag(d) + shift M, with M (S, n, n), is positive definite beyond rounding errors."""
     n = d.shape[1]
     K = shift[:, None, None] * M
     K[:, np.arange(n), np.arange(n)] += d
@@ -151,7 +152,7 @@ def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray
 def rounding_of_matrices(
     terms: np.ndarray, squared: np.ndarray, z: np.ndarray, size: np.ndarray, mass: np.ndarray
 ) -> np.ndarray:
-    """Estimate the relative error (S, k) of frequencies by rounding of conservative equations' matrices.
+    """Estimate relative errors (S, k) of frequencies by rounding of the matrices of conservative equations.
 
     Parameters
     ----------
@@ -160,16 +161,16 @@ def rounding_of_matrices(
     squared, z : ndarray, shapes (S, k) and (S, n, k)
         Squared frequencies and modes, in coordinates in which the stiffness is diagonal.
     size : ndarray, shape (S, n, k)
-        Absolute values of the modes in the coordinates of the pencil.
+        Absolute values of the modes in the coordinates of the original equations.
     mass : ndarray, shape (n, n) or (S, n, n)
-        Absolute values of the mass matrix of the pencil.
+        Absolute values of the mass matrix of the original equations.
     """
     modal_terms = np.einsum("snk,sn->sk", z**2, terms)  # modal stiffness without cancellation
     modal_norm = (z**2).sum(axis=1) * terms.max(axis=1, keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):
         by_terms, by_norm = modal_terms / np.abs(squared), modal_norm / np.abs(squared)
     modal_mass = (size * (mass @ size)).sum(axis=1)  # modal mass without cancellation
-    growth = max(1.0, terms.shape[1] / ROUNDING_SIZE)  # rounding errors add up over the functions
+    growth = max(1.0, terms.shape[1] / ROUNDING_SIZE)  # rounding errors accumulate over the functions
     return growth * (BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
 
 
@@ -178,8 +179,8 @@ def rounding_of_scene(
 ) -> np.ndarray:
     """Estimate the relative rounding error (S, k) of frequencies from that of a clamped beam in one plane.
 
-    With two planes, cancelling large stiffness entries of a stiff plane add to it.  The absolute values
-    `size` of the modes have shape (S, n, k).
+    With two planes, cancellation of large stiffness entries of the stiffer plane increases the error.  The
+    absolute values `size` of the modes have shape (S, n, k).
     """
     if pencil.planes == 1:
         return _ON_SPRINGS * rounding if pencil.shift else rounding

@@ -24,26 +24,28 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor
 
 DEFAULT_TARGET = 1e-11  # default relative error of eigenvalues: two digits below the promised 1e-9
-TOLERANCES = 1e-14, 0.1  # smallest and largest tolerance that is accepted
-MOMENTS_TARGET = 1e-10  # smallest target of moment bases, whose stated errors are some 30 times the true ones
-FEM_TARGET = 1e-7  # smallest target of finite elements, whose rounding error grows with their number
-# Smallest targets of beams in space, of few segments and of many, where each function is expensive.
+TOLERANCES = 1e-14, 0.1  # smallest and largest accepted tolerance
+# Smallest target for moment bases, because the errors stated for them are some 30 times the true errors.
+MOMENTS_TARGET = 1e-10
+FEM_TARGET = 1e-7  # smallest target for finite elements, whose rounding error grows with their number
+# Smallest targets for large deflection in space, with few segments and with many: functions are costly.
 SPACE_TARGET, SEGMENTED_SPACE_TARGET = 1e-7, 1e-4
-PLATE_TARGET = 1e-4  # smallest target of a strip as a plate, whose convergence is algebraic
+PLATE_TARGET = 1e-4  # smallest target for a strip as a plate, whose convergence is algebraic
 _MOST_SEGMENTS = 200  # largest number of segments of a beam between its stations and breakpoints
-# Largest number of Ritz functions on all segments together: solving their eigenproblem takes a second.
+# Largest number of Ritz functions on all segments together: their eigenproblem takes about a second.
 _MOST_IN_ALL = 1000
-_FEW_SEGMENTS = 6  # segments up to which polynomials on each need fewer functions than moments over the beam
-_MANY_ON_EACH = 2  # modes per segment beyond which moments need more functions, and lose digits
-# Number of forces in each direction beyond that of modes, and per digit of accuracy, as public blades need;
-# twisted sections need fewer, as they bend under the forces in both directions.
+# Number of segments up to which piecewise polynomials need fewer functions than moments over the beam.
+_FEW_SEGMENTS = 6
+_MANY_ON_EACH = 2  # number of modes per segment above which moments need more functions, and lose digits
+# Number of forces in each direction, in addition to the number of modes, and per digit of accuracy, as
+# published blades need.  Twisted sections need fewer, because forces in both directions bend them.
 _IN_STRAIGHT, _IN_TWISTED = (11, 2.5), (6, 2.3)
-# Least number of elements on a segment for a boundary layer, so that half as many resolve the layer, too.
+# Smallest number of elements on a segment with a boundary layer, so that half as many resolve it too.
 _ON_LAYERS = 8
-_OF_ELEMENTS = 0.1  # accuracy that sets the length of boundary layers with finite elements
-_MANY = 10_000  # a number of modes that no discretization gives
+_OF_ELEMENTS = 0.1  # accuracy that determines the length of boundary layers with finite elements
+_MANY = 10_000  # a number of modes that exceeds any discretization
 _NAMES = "ritz", "fem"
-# Least number of functions: with fewer, the coarser basis lacks only one, which may not affect a mode.
+# Smallest number of functions: with fewer, the coarser basis lacks only one, which may not affect a mode.
 _FEWEST_FUNCTIONS = 9
 
 DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
@@ -59,7 +61,7 @@ def solve_to_tolerance(
 ) -> EstimatedModes:
     """Solve the smallest model whose modes meet the tolerance at every speed.
 
-    Without a tolerance, `choose_model` aims at `DEFAULT_TARGET`.  The other parameters are those of
+    Without a tolerance, `choose_model` is called with `DEFAULT_TARGET`.  The other parameters are as for
     `choose_model` and `solve_with_error`.
     """
     target = DEFAULT_TARGET if tolerance is None else tolerance
@@ -77,7 +79,7 @@ def solve_to_tolerance(
 def _solve_finer(
     found: EstimatedModes, speeds: np.ndarray, modes: int, extra: int = 0
 ) -> EstimatedModes | None:
-    """Solve the modes of the next finer model; None if there is none, or it fails by rounding."""
+    """Compute the modes of the next finer model; None if there is none, or if it fails by rounding."""
     if (finer := refine_model(found.model)) is None:
         return None
     try:
@@ -119,7 +121,7 @@ def choose_model(
     modes : int
         Number of modes.
     target : float
-        Relative error of the eigenvalues to be met; at least 1e-7 for finite elements.
+        Required relative error of the eigenvalues; at least 1e-7 for finite elements.
 
     Returns
     -------
@@ -141,7 +143,7 @@ def model_to_tolerance(
     modes: int,
     tolerance: float | None,
 ) -> Model:
-    """Find the model as `solve_to_tolerance` does, or without a tolerance as `choose_model` does."""
+    """Choose the model as `solve_to_tolerance` does or, without a tolerance, as `choose_model` does."""
     if tolerance is None:
         return choose_model(scene, discretization, speeds, modes)
     tolerance = within("tolerance", tolerance, *TOLERANCES)
@@ -156,9 +158,9 @@ def _choose(
     target: float,
     cheapest: bool,
 ) -> tuple[Model, EstimatedModes | None]:
-    """Find the model of `choose_model`, and its modes at the slowest and fastest speed if it solved them.
+    """Choose the model of `choose_model`; also return its modes at the slowest and fastest speed, if solved.
 
-    `cheapest` begins with the smallest sensible model, instead of one that usually meets the default target.
+    `cheapest` starts with the smallest sensible model, instead of one that usually meets the default target.
     """
     check_discretization(discretization)
     ends = np.unique(np.abs(speeds))[[0, -1]] if len(speeds) > 1 else speeds
@@ -182,7 +184,7 @@ def _choose(
 
 
 def affordable_target(scene: Scene, discretization: DiscretizationChoice, target: float) -> float:
-    """Limit the target of the error to what elements, plates and beams in space can reach at fair cost."""
+    """Limit the error target to what elements, plates and beams in space can reach at acceptable cost."""
     if not isinstance(discretization, str):
         return target
     if scene.bends_in_space:
@@ -193,7 +195,7 @@ def affordable_target(scene: Scene, discretization: DiscretizationChoice, target
 
 
 def within_reach(discretization: Discretization, target: float) -> float:
-    """Limit the target of the error for moment bases, whose estimated errors are too large."""
+    """Limit the error target for moment bases, whose estimated errors are too large."""
     return target if discretization.converges_regularly else max(target, MOMENTS_TARGET)
 
 
@@ -205,11 +207,11 @@ def list_models(
     cheapest: bool,
     has_layers: bool = False,
 ) -> Iterator[Model]:
-    """List the models to try, from the smallest sensible one to the finest; an instance is the only one.
+    """List the models to try, from the smallest sensible to the finest; a given instance is the only model.
 
-    `cheapest` begins with the smallest sensible model, instead of one that usually meets the default target;
-    `has_layers` says whether segments were made for boundary layers, which need several elements.
-    The other parameters and what is raised are those of `choose_model`.
+    `cheapest` starts with the smallest sensible model, instead of one that usually meets the default target;
+    `has_layers` states whether segments were added for boundary layers, which need several elements. Other
+    parameters and errors raised are as for `choose_model`.
     """
     segments = len(scene.modelled_beam.breakpoints) - 1
     if segments > _MOST_SEGMENTS:
@@ -232,9 +234,9 @@ def list_models(
 
 
 def refine_model(model: Model) -> Model | None:
-    """Build the next finer model; None if there is none that is affordable."""
+    """Build the next finer model; None if no affordable one is left."""
     finer = model.discretization.finer()
-    if isinstance(finer, Ritz):  # finite elements have their own limit
+    if isinstance(finer, Ritz):  # finite elements have a separate limit
         segments = _count_segments(model.scene) if finer.on_each_segment else 1
         across = 1 + finer.functions if model.scene.models_width else 1
         finer = finer if finer.functions * segments * across <= _MOST_IN_ALL * min(across, 2) else None
@@ -270,8 +272,8 @@ def _first_ritz(
 def _first_fem(
     scene: Scene, segments: int, modes: int, target: float, cheapest: bool, has_layers: bool
 ) -> Discretization:
-    """Choose a mesh with enough elements on each segment; segments made for boundary layers need several."""
-    # Imported here, because scikit-fem is slow to import.
+    """Choose a mesh with enough elements per segment; segments added for boundary layers need several."""
+    # The import is inside the function because scikit-fem is slow to import.
     from beamdyn.equations.fem import MOST_ELEMENTS, MOST_REFINED, Fem
 
     least, on_each = min(16 * segments, MOST_REFINED) if cheapest else 80, _ON_LAYERS if has_layers else 2
@@ -294,7 +296,7 @@ def most_modes(scene: Scene, discretization: DiscretizationChoice, modes: int) -
 
 
 def _most_that_fit(discretization: Discretization, modes: int, segments: int) -> int:
-    """Find the largest number up to `modes` for which a discretization has functions enough."""
+    """Find the largest number up to `modes` for which a discretization has enough functions."""
     if _fits(discretization, modes, segments):
         return modes
     fewer = range(1, min(modes, _MANY))
@@ -302,30 +304,32 @@ def _most_that_fit(discretization: Discretization, modes: int, segments: int) ->
 
 
 def _fits(discretization: Discretization, modes: int, segments: int) -> bool:
-    """Whether a discretization has functions enough for `modes` modes on a number of segments."""
+    """Return whether a discretization has enough functions for `modes` modes on a number of segments."""
     on_each = segments > 1 and isinstance(discretization, Ritz) and discretization.on_each_segment
     return discretization.fits(-(-modes // segments) if on_each else modes)
 
 
 def check_discretization(discretization: object) -> None:
-    """Refuse an argument that is neither a discretization nor the name of one."""
+    """Raise an error for an argument that is neither a discretization nor the name of one."""
     named = isinstance(discretization, str) and discretization in _NAMES
     if not named and (isinstance(discretization, str | type) or not hasattr(discretization, "spaces")):
         bound = f"give {', '.join(map(repr, _NAMES))}, a beamdyn.Ritz or a beamdyn.Fem"
         raise InvalidValue("discretization", discretization, bound)
 
 
-_LENGTHS = 5.0  # length of a layer in decay lengths, to which each factor e of accuracy adds half of one
-_SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4  # longest parts of the beam that get functions of their own
-_SHORTEST = 1e-4  # length of the shortest layer
-# Breakpoints x/L added near the tip for a boundary layer whose length is not known, as the speed is not.
+# Length of a boundary layer in decay lengths; each factor e of accuracy adds half a decay length.
+_LENGTHS = 5.0
+# Longest boundary layers, over the length, that get separate functions.
+_SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4
+_SHORTEST = 1e-4  # length of the shortest boundary layer, over the length of the beam
+# Breakpoints x/L added near the tip for a boundary layer whose length is unknown, like the speed.
 _TOWARD_TIP = (0.7, 0.95, 0.992)
 
 
 def split_layers(scene: Scene, speed: float, target: float) -> Scene:
-    """Add breakpoints where the boundary layers at a speed [rad/s] end, if they are short.
+    """Add breakpoints at the ends of the boundary layers at a speed [rad/s], if the layers are short.
 
-    Beyond the breakpoints a layer's contribution to an eigenvalue is below the target.
+    The part of a layer beyond its breakpoint changes an eigenvalue by less than the target.
     """
     if not speed:
         return scene
@@ -344,19 +348,19 @@ def split_layers(scene: Scene, speed: float, target: float) -> Scene:
 
 @lru_cache(maxsize=64)
 def _stiffness_of_ends(beam: Beam) -> list[float]:
-    """Compute the smaller of both bending stiffnesses [N m2] at the root and at the tip."""
+    """Compute the smaller of the two bending stiffnesses [N m2], at the root and at the tip."""
     profiles = (beam.bending_stiffness, beam.second_bending_stiffness)
     return np.min([each(np.array([0.0, 1.0])) for each in profiles if each is not None], axis=0).tolist()
 
 
 def split_tip(scene: Scene) -> Scene:
-    """Add breakpoints that resolve a boundary layer at the tip at any speed, if tension makes one."""
+    """Add breakpoints that resolve a boundary layer at the tip at any speed, if tension causes one."""
     beam = scene.beam
     has_layer = beam.tip is not None and steady_tension(beam, scene.mount)[-1] > 0
     return _split(scene, _TOWARD_TIP) if has_layer else scene
 
 
 def _split(scene: Scene, places: Sequence[float]) -> Scene:
-    """Return the scene with additional breakpoints of its beam at x/L."""
+    """Return the scene with additional breakpoints x/L in its beam."""
     mass = scene.beam.mass_per_length.split((0.0, *places, 1.0))
     return replace(scene, beam=replace(scene.beam, mass_per_length=mass))

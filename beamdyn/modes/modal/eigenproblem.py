@@ -1,9 +1,9 @@
-"""Eigenvalues and modes of the equations at steady speed, for a batch of speeds.
+"""Eigenvalues and modes of the equations of motion at steady speed, for a batch of speeds.
 
-The inverse problem M v = mu K v is solved: the lowest modes are those of the largest eigenvalues mu, which
-keep all digits whatever the size of the basis.  At one speed that is done by a factorization of the stiffness
-there.  For many speeds, coordinates are used in which the stiffness is diagonal at every speed; they cost an
-eigenproblem of their own, which at one speed would be most of the work (`diagonal_stiffness`).
+The inverse problem M v = mu K v is solved: its largest eigenvalues mu belong to the lowest modes, and keep
+all digits whatever the size of the basis.  For one speed, the stiffness is factorized.  For many speeds,
+coordinates are used in which the stiffness is diagonal at every speed; these require an additional
+eigenproblem, which for one speed would be most of the work (`diagonal_stiffness`).
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Eigen:
     Parameters
     ----------
     eigenvalue : ndarray, shape (S, k)
-        Eigenvalues s of q = v exp(s t) [1/s]: of each conjugate pair the one with Im s > 0, of each real
+        Eigenvalues s of q = v exp(s t) [1/s]: from each conjugate pair the one with Im s > 0, from each real
         pair the larger.
     vector : ndarray, shape (S, n, k)
         Mass-normalised eigenvectors v; real if the equations are conservative.
@@ -62,13 +62,13 @@ class Eigen:
 
     @classmethod
     def joined(cls, parts: Iterable[Eigen]) -> Eigen:
-        """Join the modes at some speeds with those at others."""
+        """Join the modes at several batches of speeds."""
         values = zip(*((p.eigenvalue, p.vector, p.rounding) for p in parts), strict=True)
         return cls(*map(np.concatenate, values))
 
 
 class Eigensolver(ABC):
-    """Base of solvers that find eigenvalues and modes of one beam at any steady speed.
+    """Base class of solvers that compute eigenvalues and modes of one beam at any steady speed.
 
     Parameters
     ----------
@@ -81,11 +81,11 @@ class Eigensolver(ABC):
 
     @property
     def conservative(self) -> bool:
-        """Whether the equations have neither damping nor gyroscopic terms, so that modes are real."""
+        """Whether the equations have neither damping nor gyroscopic terms, so that the modes are real."""
         return self.pencil.conservative
 
     def energies_at_rest(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute products (S,) of vectors (S, n) with themselves by stiffness at rest, and by mass."""
+        """Compute the products v K v at rest and v M v of vectors v (S, n): shape (S,) each."""
         of_stiffness, of_mass = (
             np.real(v.conj() * (v @ A)).sum(axis=1) for A in (self.pencil.K0, self.pencil.M)
         )
@@ -99,7 +99,7 @@ class Eigensolver(ABC):
     @property
     @abstractmethod
     def softening(self) -> float:
-        """Largest relative loss of stiffness per squared speed [s2], relative to rest; 0 within rounding."""
+        """Largest loss of stiffness per squared speed [s2], relative to the stiffness at rest; or 0."""
 
     @property
     def critical_speed(self) -> float:
@@ -118,7 +118,7 @@ class Eigensolver(ABC):
         Raises
         ------
         LinAlgError
-            A ValueError: if stiffness and mass span more digits than double precision has.
+            If stiffness and mass span more digits than double precision has (a ValueError).
         """
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
@@ -127,27 +127,27 @@ class Eigensolver(ABC):
 
     @abstractmethod
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Compute linear functions of the coordinates in static equilibrium under the rotation.
+        """Compute linear functions of the coordinates in static equilibrium under rotation.
 
         Parameters
         ----------
         speeds : ndarray, shape (S,)
             Speeds [rad/s].
         outputs : ndarray, shape (d, n)
-            The functions per coordinate, such as the tip deflections.
+            Coefficients of the functions, such as the tip deflections per unit coordinate.
 
         Returns
         -------
         ndarray, shape (S, d)
-            Values of the functions; nan from the critical speed on.
+            Values of the functions; nan at and above the critical speed.
         """
 
 
 class Solver(Eigensolver):
     """Eigensolver by full matrices, which computes all modes.
 
-    For many speeds it uses coordinates in which K = diag(1 + speed^2 growth), minus `pencil.shift`
-    times the mass.
+    For many speeds it uses coordinates in which K = diag(1 + speed^2 growth) - `pencil.shift` times the mass
+    matrix.
     """
 
     @cached_property
@@ -159,7 +159,7 @@ class Solver(Eigensolver):
 
     @cached_property
     def _diagonal(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Growth (n,) of the diagonal stiffness, basis (n, n) of these coordinates, and mass in them."""
+        """Growth (n,) of the diagonal stiffness, basis (n, n) and mass matrix of these coordinates."""
         L = self._at_rest
         K2, M = (_symmetric(transformed(L, A)) for A in (self.pencil.K2, self.pencil.M))
         growth, Q = np.linalg.eigh(K2)
@@ -172,7 +172,7 @@ class Solver(Eigensolver):
 
     @property
     def softening(self) -> float:
-        """Largest relative loss of stiffness per squared speed [s2], from its lowest growth."""
+        """Largest relative loss of stiffness per squared speed [s2], from the smallest growth."""
         return self._softening[0]
 
     @property
@@ -192,9 +192,9 @@ class Solver(Eigensolver):
         return (lowest, float(lost / lowest)) if lowest > lost else (0.0, np.inf)
 
     def factor(self, speeds: np.ndarray) -> np.ndarray | None:
-        """Factor the stiffness of conservative equations at one speed [rad/s]: Cholesky factor L (n, n).
+        """Factorize the stiffness of conservative equations at one speed [rad/s]: Cholesky factor L (n, n).
 
-        Returns None for more speeds, and where less than `LEAST_STIFFNESS` of the stiffness at rest is left.
+        Returns None for more speeds, or if the stiffness is below `LEAST_STIFFNESS` times that at rest.
         """
         if len(speeds) > 1 or self.pencil.shift or not self.pencil.conservative:
             return None
@@ -203,7 +203,7 @@ class Solver(Eigensolver):
         return None if failed or dpotrf(((1 - LEAST_STIFFNESS) * K0 + spin).T)[1] else upper.T
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Compute the `count` lowest modes, of conservative equations at all speeds at once."""
+        """Compute the `count` lowest modes; of conservative equations at all speeds at once."""
         with explained():
             if not self.pencil.conservative:
                 modes = [self._solve_coupled(speed, count) for speed in speeds]
@@ -222,7 +222,7 @@ class Solver(Eigensolver):
             return Eigen(1j * np.sqrt(squared)[None], v[None], rounding)
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Compute the eigenvalues at each speed, without vectors where conservative equations allow it."""
+        """Compute the eigenvalues at each speed, without eigenvectors if the equations are conservative."""
         if (L := self.factor(speeds)) is not None:
             mu, _, failed = dsyevd(transformed(L, self.pencil.M), compute_v=0)
             if failed:
@@ -235,10 +235,10 @@ class Solver(Eigensolver):
         return 1j / np.sqrt(inverse_squares(mass, stiffness, count))
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Compute linear functions of the coordinates in static equilibrium under the rotation.
+        """Compute linear functions of the coordinates in static equilibrium under rotation.
 
-        At one speed it is by a factorization, at several in coordinates in which the stiffness is diagonal:
-        see `Eigensolver.solve_static`.
+        One speed uses a factorization, several use coordinates in which the stiffness is diagonal; for the
+        parameters see `Eigensolver.solve_static`.
         """
         if self.pencil.shift:
             return np.array([springs.solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
@@ -275,7 +275,7 @@ class Solver(Eigensolver):
         return has_massless(self._diagonal[2])
 
     def _solve_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute eigenvalues (k,), vectors (n, k) and rounding (k,) of coupled equations at one speed."""
+        """Compute eigenvalues (k,), vectors (n, k), rounding errors (k,) of damped or gyroscopic beams."""
         pencil, n = self.pencil, self.size
         on_springs = pencil.shift and not pencil.C.any() and not self._has_massless
         if on_springs and (graded := springs.factor_graded(pencil, speed)):
@@ -293,7 +293,7 @@ class Solver(Eigensolver):
             gyroscopic = not pencil.C.any() and stiffness.min() > 0
             solve = solve_gyroscopic if gyroscopic else solve_general
             inverse, y = solve(mass / time**2, damping / time, stiffness)
-        turns = np.empty((n, 0))  # rotations about hinges on which neither stiffness nor damping acts
+        turns = np.empty((n, 0))  # rotations about hinges without stiffness and damping
         if pencil.shift:
             undamped = self._solve_diagonal(np.array([speed]), min(pencil.planes, n))
             turns = springs.find_free_turns(pencil, undamped.eigenvalue[0], undamped.vector[0])
@@ -304,14 +304,14 @@ class Solver(Eigensolver):
         norm = np.sqrt(np.maximum(np.einsum("nk,nm,mk->k", z.conj(), mass, z).real, 0.0))
         condition = (1 + speed**2 * np.abs(growth)).max() / np.abs(stiffness).min()
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
-        lost = norm == 0  # the modal mass is below rounding: nothing is known of such a mode
+        lost = norm == 0  # the modal mass is below rounding, so the mode is unknown
         modes = s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)
         return springs.insert_free_turns(turns, *modes, count) if turns.size else modes
 
     def _solve_graded(
         self, speed: float, count: int, basis: np.ndarray, condition: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute gyroscopic modes of a beam on springs, in coordinates with the identity as stiffness."""
+        """Compute gyroscopic modes of a beam on root springs, in coordinates with unit stiffness matrix."""
         M, C = (basis.T @ A @ basis for A in (self.pencil.M, speed * self.pencil.G))
         time = np.sqrt(np.trace(M) / len(M))
         inverse, y = solve_gyroscopic(M / time**2, C / time, np.ones(len(M)))
@@ -322,10 +322,10 @@ class Solver(Eigensolver):
 
 
 class LoadedSolver(Solver):
-    """Eigensolver of equations whose stiffness a load at the tip may make indefinite and not symmetric."""
+    """Eigensolver for a stiffness that a tip load may make indefinite and not symmetric."""
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Solve the eigenproblem at one speed after the other, by the inverse of the stiffness."""
+        """Solve the eigenproblem for one speed after the other, by the inverse of the stiffness."""
         modes = [self._solve_loaded(speed, count) for speed in speeds]
         return Eigen(*(np.array(values) for values in zip(*modes, strict=True)))
 
@@ -338,20 +338,20 @@ class LoadedSolver(Solver):
         inverse, y = np.concatenate([r := np.sqrt(-mu + 0j) / time, -r]), np.concatenate([y, y], axis=1)
         if C.any():
             inverse, y = solve_general(by_mass / time**2, np.linalg.solve(K, C) / time, np.ones(self.size))
-        # Leave out eigenvalues of modes so high that they are rounding errors.
+        # Omit eigenvalues of very high modes, which are rounding errors.
         lost = np.abs(inverse) < np.sqrt(self.size * _EPS)
         s, z = select_lowest(inverse[~lost] * time, y[: self.size, ~lost], count)
         norm = np.sqrt(np.einsum("nk,nm,mk->k", z.conj(), M, z).real)
         return s + 0.0, z / norm, 8 * _EPS * self.size * np.abs(s) * np.abs(inverse).max() * time
 
     def _at(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the stiffness, and the damping with the gyroscopic matrix, at a speed."""
+        """Return the stiffness, and the sum of damping and gyroscopic matrix, at a speed."""
         return self.pencil.K0 + speed**2 * self.pencil.K2, self.pencil.C + speed * self.pencil.G
 
 
 @contextmanager
 def explained() -> Iterator[None]:
-    """Explain a factorization that fails within this context, in the error's message."""
+    """Add an explanation to the error message of a factorization that fails within this context."""
     try:
         yield
     except np.linalg.LinAlgError as error:
@@ -362,7 +362,7 @@ def explained() -> Iterator[None]:
 
 
 def transformed(L: np.ndarray, A: np.ndarray) -> np.ndarray:
-    """Compute L^-1 A L^-T for triangular L and symmetric A, symmetric but for rounding."""
+    """Compute L^-1 A L^-T for triangular L and symmetric A; the result is symmetric except for rounding."""
     return solve_lower(L, solve_lower(L, A).T)
 
 
@@ -389,6 +389,6 @@ def rounding_of_factored(
     size = np.abs(v)
     spin = speed**2 * (size * (np.abs(pencil.K2) @ size)).sum(axis=0)
     by_terms = ((v * (pencil.K0 @ v)).sum(axis=0) + spin) / squared
-    mass = (size * (np.abs(pencil.M) @ size)).sum(axis=0)  # 1 if nothing cancelled
-    growth = max(1.0, len(v) / ROUNDING_SIZE)  # rounding errors add up over the functions
+    mass = (size * (np.abs(pencil.M) @ size)).sum(axis=0)  # 1 without cancellation
+    growth = max(1.0, len(v) / ROUNDING_SIZE)  # rounding errors accumulate over the functions
     return growth * (BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)

@@ -1,4 +1,4 @@
-"""Equilibria at steady speed of a beam that bends by any angle, and the modes about them."""
+"""Equilibria at steady speed of a beam with arbitrarily large deflection, and the modes about them."""
 
 from __future__ import annotations
 
@@ -18,29 +18,29 @@ from beamdyn.modes.modal.continuation import Loading, NoEquilibrium, NotConverge
 from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, LoadedSolver, Solver
 
 Branch = Literal["straight", "bent"]
-_SAME = 1e-6  # difference of slope angles below which two equilibria count as the same one [rad]
-# Largest difference of slope angles between an equilibrium and that of a coarser discretization [rad].
+_SAME = 1e-6  # difference of slope angles [rad] below which two equilibria count as the same
+# Largest difference of slope angles [rad] between an equilibrium and that of a coarser discretization.
 _NEAR = 0.01
-_PUSH = 0.05  # transverse acceleration, over omega^2 L, by which the beam is pushed to the other branch
-_FASTEST = 100.0  # highest speed at which equilibria are followed, over the first angular frequency at rest
-# Speed over the first angular frequency at rest, up to which a loss of stability is sought: beyond, boundary
-# layers make steps short.
+_PUSH = 0.05  # transverse acceleration, over omega^2 L, that pushes the beam to the other branch
+_FASTEST = 100.0  # highest speed at which equilibria are computed, over the first angular frequency at rest
+# Ratio of speed to first angular frequency at rest up to which a loss of stability is searched: at higher
+# speeds, boundary layers require short steps.
 _SOUGHT = 30.0
-# Iterations of an easy step while a loss of stability is sought: in boundary layers the last ones gain a few
-# digits each.
+# Number of Newton iterations of an easy step (the next step is then longer) in the search for loss of
+# stability: with boundary layers, each of the last iterations gains only a few digits.
 _PATIENT = 8
-_COILED = 2 * math.pi  # angle of a section [rad] beyond which no loss of stability is sought
+_COILED = 2 * math.pi  # angle of a section [rad] above which no loss of stability is searched
 
 
 def load_by_rotation(elastica: RotatingBeam, scale: float) -> Loading:
-    """Load a beam by rotation: the parameter is the squared speed [rad2/s2], which matters at `scale`."""
+    """Build the load by rotation, whose parameter is the squared speed [rad2/s2], of magnitude `scale`."""
     return Loading(elastica, elastica.turning, scale, {"unity": 1.0} if elastica.load else {})
 
 
 def follow_to(
     load: Loading, speeds: np.ndarray, q: np.ndarray | None = None, start: float = 0.0
 ) -> np.ndarray:
-    """Follow the equilibria to each of some speeds [rad/s]: coordinates (S, n).
+    """Continue the equilibrium to each of several speeds [rad/s]: coordinates (S, n).
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def follow_to(
         If the branch turns back before a speed, or a speed is too large.
     """
     most = _FASTEST * math.sqrt(load.scale)
-    if np.abs(speeds).max(initial=0.0) > most:  # the beam bends too sharply for any basis
+    if np.abs(speeds).max(initial=0.0) > most:  # the beam would bend too sharply for any basis
         multiple = f"{_FASTEST:g} times the first angular frequency at rest"
         raise NoEquilibrium(f"equilibria are sought up to {most:.4g} rad/s, {multiple}")
     q = load.at_rest if q is None else q
@@ -65,7 +65,7 @@ def follow_to(
     for towards in (1.0, -1.0):
         order = np.argsort(towards * squares, kind="stable")
         pending = order[towards * (squares[order] - start**2) > 0]
-        # Without a load that bends it, the straight beam is in equilibrium at every speed.
+        # If no load bends the straight beam, it is in equilibrium at every speed.
         if pending.size and (load.bends or q.any()):
             try:
                 curve = continuation.start_curve(load, q, start**2, towards)
@@ -78,22 +78,21 @@ def follow_to(
 
 
 def find_loss_of_stability(load: Loading) -> tuple[float, bool]:
-    """Find the squared speed [rad2/s2] at which the equilibrium that follows from rest loses stability.
+    """Find the squared speed [rad2/s2] at which the equilibrium continued from rest loses stability.
 
     Returns
     -------
     squared : float
-        Squared speed; where no stability is lost, the largest one reached.
+        Squared speed [rad2/s2]; if stability is not lost, the largest one reached.
     is_lost : bool
-        Whether stability is lost, as the stiffness is singular: the branch turns back, or the beam buckles
-        out of the shape into which the rotation bends it.
+        Whether stability is lost by a singular stiffness: the branch turns back, or the bent beam buckles.
     """
     top = _SOUGHT**2 * load.scale
     if count_negative(load, load.at_rest, 0.0):
         return 0.0, True
     if not load.bends:
         change = load.elastica.at(load.at_rest).under(load.growing).change
-        # Both are symmetric, as every load here has a potential.
+        # Both matrices are symmetric, as every load here has a potential.
         softening = max(eigh(-change, load.at(load.at_rest, 0.0).change, eigvals_only=True)[-1], 0.0)
         return (float(1 / softening), True) if softening * top > 1 else (top, False)
     before = continuation.start_curve(load, load.at_rest, 0.0, 1.0)
@@ -110,19 +109,20 @@ def find_loss_of_stability(load: Loading) -> tuple[float, bool]:
 
 
 def find_bent(load: Loading, speed: float, natural: float = 0.0) -> np.ndarray:
-    """Find coordinates (n,) of the stable equilibrium that is bent to the other side than the one from rest.
+    """Find coordinates (n,) of the stable equilibrium that is bent to the opposite side of the one from rest.
 
-    The root is pushed so that the beam bends to the other side, and then released.  The side from rest is
-    that of the transverse acceleration of the root or, without one, the sign of `natural`.
+    A transverse acceleration of the root pushes the beam to the opposite side, and is then removed.  The side
+    of the equilibrium from rest follows from the root's acceleration or, without one, from the sign of
+    `natural`.
 
     Raises
     ------
     NoEquilibrium
-        If the beam does not stay on the other side at this speed, or has a load at the tip.
+        If the beam does not stay on the opposite side at this speed, or has a load at the tip.
     """
     if load.elastica.load is not None:
-        said = "beside a load at the tip no other branch is sought; "
-        raise NoEquilibrium(f"{said}a small force across leads to one if it is there")
+        said = "with a load at the tip, no other branch is searched; "
+        raise NoEquilibrium(f"{said}a small transverse force leads to one, if there is one")
     transverse, squared = load.growing.get("root_transverse", 0.0), speed**2
     natural = transverse or natural
     push = -2 * natural - math.copysign(_PUSH * load.elastica.beam.stations.length, natural + 0.0)
@@ -148,16 +148,16 @@ def find_bent(load: Loading, speed: float, natural: float = 0.0) -> np.ndarray:
 class DeflectedSolver(Solver):
     """Eigensolver for small motions about the equilibrium at each speed.
 
-    What it inherits concerns the straight beam: the lowest frequency at rest, and what softens it.
+    Inherited properties, such as the lowest frequency at rest, are those of the straight beam.
 
     Parameters
     ----------
     elastica : RotatingBeam
         Equations of motion.
     branch : {"straight", "bent"}
-        Branch of equilibria: the one that follows from rest, or the one next to it.
+        Branch of equilibria: the one continued from rest, or the one next to it.
     guide : DeflectedSolver, optional
-        Solver of another discretization; equilibria are sought near its own first.
+        Solver of another discretization, whose equilibria are used as initial guesses.
     """
 
     def __init__(self, elastica: RotatingBeam, branch: Branch, guide: DeflectedSolver | None = None) -> None:
@@ -168,12 +168,12 @@ class DeflectedSolver(Solver):
         self._solved: dict[tuple[float, int], Eigen] = {}
 
     def guiding(self, elastica: RotatingBeam) -> DeflectedSolver:
-        """Make another discretization's solver, which seeks equilibria near those of this solver."""
+        """Build another discretization's solver, with equilibria of this solver as initial guesses."""
         return DeflectedSolver(elastica, self.branch, guide=self)
 
     @property
     def conservative(self) -> bool:
-        """False, because a bent beam in the plane of rotation is gyroscopic."""
+        """False, because a beam that bends in the plane of rotation has gyroscopic coupling."""
         return False
 
     @cached_property
@@ -183,7 +183,7 @@ class DeflectedSolver(Solver):
 
     @property
     def critical_speed(self) -> float:
-        """Lowest speed at which the straight beam buckles [rad/s]; inf where it bends from rest on."""
+        """Lowest speed at which the straight beam buckles [rad/s]; inf if it bends at every speed."""
         if self.load.bends:
             return np.inf
         if self.elastica.load is None:
@@ -199,7 +199,7 @@ class DeflectedSolver(Solver):
         Raises
         ------
         NoEquilibrium
-            An ArithmeticError: if the branch of equilibria does not reach a speed.
+            If the branch of equilibria does not reach a speed (an ArithmeticError).
         """
         missing = np.array([v for v in np.unique(speeds) if (v, count) not in self._solved])
         for v, q in zip(missing.tolist(), self.equilibria(missing), strict=True):
@@ -213,13 +213,13 @@ class DeflectedSolver(Solver):
         return self.equilibria(speeds) @ outputs.T
 
     def tips(self, speeds: np.ndarray) -> np.ndarray:
-        """Compute the tip's deflection across the beam in equilibrium [m], shape (S, 1), in space (S, 2)."""
+        """Compute the tip's transverse deflection in equilibrium [m], shape (S, 1), or (S, 2) in space."""
         beam = self.elastica.beam
         moved = beam.at(self.equilibria(speeds)).tip - beam.at(np.zeros(self.size)).tip
         return moved[:, 1 : 2 if beam.is_planar else 3]
 
     def equilibria(self, speeds: np.ndarray) -> np.ndarray:
-        """Compute the coordinates (S, n) in equilibrium at each speed; results are cached."""
+        """Compute the equilibrium coordinates (S, n) at each speed; results are cached."""
         missing = np.array([v for v in np.unique(np.abs(speeds)) if v not in self._found])
         if self.guide is not None and len(missing):
             self._found |= self._find_near(self.guide, missing)
@@ -236,7 +236,7 @@ class DeflectedSolver(Solver):
         return np.array([self._found[abs(v)] for v in speeds])
 
     def _find_near(self, guide: DeflectedSolver, speeds: np.ndarray) -> dict[float, np.ndarray]:
-        """Find equilibria near another discretization's, of the same stability, at speeds that have them."""
+        """Find equilibria near those of another discretization, of the same stability, where they exist."""
         found: dict[float, np.ndarray] = {}
         for v, of_guide in zip(speeds.tolist(), guide.equilibria(speeds), strict=True):
             near = self.elastica.nearest(guide.elastica, of_guide)

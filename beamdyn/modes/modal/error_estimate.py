@@ -1,4 +1,4 @@
-"""Error estimates of eigenvalues by comparison with a coarser model."""
+"""Error estimates of eigenvalues by comparison with those of a coarser model."""
 
 from __future__ import annotations
 
@@ -15,33 +15,35 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.solvers import eigenvalues_over_speeds, solve_over_speeds, solver_of
 from beamdyn.scene.scene import Scene
 
-UNRESOLVED = 0.3  # relative error above which the comparison of two models gives no estimate
-# Ratios of the difference of two successive meshes to that of the two before: the smallest used, for an order
-# of convergence above 2; the one assumed where it is not known; the largest.
+UNRESOLVED = 0.3  # relative error above which a comparison of two models gives no estimate
+# Ratio of the difference between successive meshes to the previous difference: the smallest that is used, for
+# an order of convergence above 2; the one assumed if it is unknown; the largest.
 LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
-_HALVED = 0.7  # ratio of sizes of two meshes above which they do not show the order of convergence
-_OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the rounding of stiffness entries
-# Ratio of the difference of the two coarser meshes to the smallest stated error, as the difference of the two
-# finer ones may be small by chance.
+_HALVED = 0.7  # ratio of the sizes of two meshes above which they do not show the order of convergence
+_OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the rounding error of stiffness entries
+# Ratio of the difference between the two coarser meshes to the smallest stated error, as the difference
+# between the two finer ones may be small by chance.
 _LEAST_OF_BEFORE = 64.0
-# Largest ratio of differences that a higher mode takes over from a lower one: both meet the same steep
-# change.
+# Largest ratio of differences that is transferred from a lower mode to a higher one, as the same steep change
+# of properties affects both.
 _SHARED = 0.75
-# Ratio of the difference of two meshes to their rounding errors, up to which it may be rounding alone.
+# Ratio of the difference of two meshes to their rounding errors, below which it may be rounding alone.
 _OF_NOISE = 4.0
-# Fractions of a mode's own distance from the coarser basis, and of the largest of all modes, that count as
-# its error, and the relative distance above which margins for slow convergence are added: on a beam of one
-# segment, on several, whose functions converge at several rates, and where convergence is irregular.
+# Fractions that count as the error of a mode: of its own distance from the coarser basis, and of the largest
+# distance of all modes; then the relative distance above which margins for slow convergence are added. The
+# values are for a beam with one segment, with several (whose functions converge at different rates), and for
+# irregular convergence.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
-# For a coarser basis of one function less, which may change a mode less than the next does: always slow.
+# The same for a coarser basis with one function less, which may change a mode less than the next function
+# does: convergence always counts as slow.
 _BY_ONE = 1.0, 0.01, 0.0
-# Number of functions across plates up to which the margin is measured, as convergence slows down beyond, and
+# Number of functions across plates up to which the margin was measured (convergence slows down above it), and
 # the fraction of the largest distance of all modes that counts as error.
 _ACROSS_MEASURED, _OTHERS_OF_PLATES = 12, 0.01
-# Fraction of the lowest squared frequency at rest above which squared frequencies themselves are the scale of
-# their errors.
+# Fraction of the lowest squared frequency at rest above which a squared frequency's error is relative to
+# itself.
 _ABOVE = 0.99
-_FEW = 1e-9  # relative difference of two bases above which they may have too few functions of one field
+_FEW = 1e-9  # relative difference of two bases above which one field may have too few functions
 
 
 Parts: TypeAlias = tuple[float, float, float]
@@ -49,7 +51,7 @@ Parts: TypeAlias = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class EstimatedModes:
-    """Modes over a batch of speeds, with estimated errors of their eigenvalues.
+    """Modes for a batch of speeds, with estimated errors of their eigenvalues.
 
     Parameters
     ----------
@@ -67,13 +69,13 @@ class EstimatedModes:
     error: np.ndarray
 
     def meet(self, tolerance: float) -> bool:
-        """Whether all errors are below the tolerance or at the level of rounding."""
+        """Return whether all errors are below the tolerance or at the level of rounding."""
         rounding = self.eigen.rounding[:, : self.error.shape[1]]
         return bool((self.error <= np.maximum(tolerance, 3 * rounding)).all())
 
 
 def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 0) -> EstimatedModes:
-    """Solve a model and estimate the errors of its eigenvalues by its coarser model.
+    """Solve a model, and estimate the errors of its eigenvalues by the coarser model.
 
     Parameters
     ----------
@@ -95,18 +97,18 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     InvalidValue
         If the model has fewer functions than modes.
     """
-    if model.solver.size < modes:  # some moments may be linear combinations of others
+    if model.solver.size < modes:  # some moment functions may be linear combinations of others
         bound = f"{model.discretization} has {model.solver.size} functions for this beam"
         raise InvalidValue("modes", modes, bound, "ask for fewer")
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
-    compared = coarse.shape[1]  # there may be fewer independent moments than modes
+    compared = coarse.shape[1]  # there may be fewer independent moment functions than modes
     s = fine.eigenvalue[:, :compared]
     squared, distance = s**2, s**2 - coarse**2
     order = model.discretization.order
     if order is not None:  # Richardson extrapolation removes the leading term of the error
-        # If one value is within rounding of 0, there is no distance.
+        # If one value is a rounding error of 0, the distance is undefined.
         within_rounding = (fine.eigenvalue[:, :compared] == 0) | (coarse == 0)
         squared = squared + np.where(within_rounding, 0.0, distance / (2**order - 1))
         extrapolated = np.concatenate([_root(squared, s), fine.eigenvalue[:, compared:]], axis=1)
@@ -120,9 +122,10 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         else:
             truncation = _basis_error(model, fine, squared, distance)
     error = truncation + ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
-    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # this is False for nan, too
-    # A root without a spring may turn freely at rest, or if it lies on the axis: a frequency within rounding
-    # of 0 is then taken as 0.
+    # Comparisons with nan are False, so nan counts as unresolved.
+    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)
+    # A hinged root may rotate freely at rest, or if it lies on the rotation axis: a frequency within rounding
+    # of 0 then counts as 0.
     free = 0.0 in mount.root_stiffnesses[: scene.physics.planes]
     neutral = (s == 0) & (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
     resolved |= neutral
@@ -137,17 +140,18 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
 def _mesh_error(
     model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray, before: np.ndarray
 ) -> np.ndarray:
-    """Estimate the relative truncation error (S, k) of extrapolated squares by distances of meshes."""
+    """Estimate the relative truncation error (S, k) of extrapolated squares by differences between meshes."""
     compared = squared.shape[1]
     noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
     K, v = np.abs(model.solver.pencil.K0) ** 2, np.abs(fine.vector[:, :, :compared]) ** 2
-    # Short elements have stiff entries, of which the rounding is random.
+    # Short elements have large stiffness entries, whose rounding errors are random.
     noise += _OF_ENTRIES * np.sqrt(np.einsum("sik,ij,sjk->sk", v, K, v, optimize=True))
     least = LEAST_RATIO if len(model.scene.modelled_beam.breakpoints) == 2 else _UNKNOWN
     left = extrapolation_error(distance, before, noise, least)
     truncation = (left + noise) / (2 * np.abs(squared))
-    # Elements usually resolve lower modes better, so that no mode has less error than one below it.  A square
-    # below the lowest at rest has a large relative error by its size alone, and counts by its ratio to that.
+    # Elements usually resolve lower modes better, so no mode is given a smaller error than a lower mode.  A
+    # square below the lowest at rest has a large relative error only by its small size; its error is relative
+    # to the latter.
     size = np.abs(squared) / model.solver.lowest_at_rest
     known = (size > 0) & np.isfinite(truncation)
     of_lower = np.where(known, truncation * np.minimum(size, 1.0), 0.0)
@@ -155,11 +159,11 @@ def _mesh_error(
 
 
 def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.ndarray | float:
-    """Estimate the relative truncation error (S, k) by the functions across the width, on any mesh."""
+    """Estimate the relative truncation error (S, k) by the functions across the width, for any mesh."""
     if not model.scene.models_width:
         return 0.0
     kept = np.ones(model.equations.size, dtype=bool)
-    for name, functions in model.equations.sections:  # the last function across comes last
+    for name, functions in model.equations.sections:  # coordinates of the last function across come last
         end = model.equations.blocks[name].stop
         kept[end - functions.of_each : end] = False
     fewer = solver_of(model.equations, np.flatnonzero(kept)).eigenvalues(speeds, squared.shape[1])
@@ -168,7 +172,7 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
 
 def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray) -> np.ndarray:
     """Estimate the relative truncation error (S, k) of squared eigenvalues from a smaller basis."""
-    # The first mode's Rayleigh quotient at rest bounds the lowest square there from above.
+    # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
     are_above = np.abs(squared).min() >= _ABOVE * ((stiffness / mass).min() + model.equations.shift)
     lowest = np.asarray(0.0 if are_above else model.solver.lowest_at_rest)
@@ -181,24 +185,25 @@ def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.nd
 def extrapolation_error(
     distance: np.ndarray, before: np.ndarray, noise: np.ndarray, least: float = LEAST_RATIO
 ) -> np.ndarray:
-    """Estimate the error that remains after extrapolation, from distances over three meshes.
+    """Estimate the error that remains after Richardson extrapolation, from differences of three meshes.
 
-    Each mesh has twice the elements of the next.  Where elements resolve the mode, a distance is a sixteenth
-    of the one before; where they are longer than a layer, or cross a steep change, it falls less.
+    Each mesh has twice the elements of the next.  If elements resolve the mode, each difference is a
+    sixteenth of the previous one; if they are longer than a boundary layer or span a steep change, it
+    decreases less.
 
     Parameters
     ----------
     distance, before : ndarray, shape (..., k)
         Difference of the results of the two finest meshes, and of the second and third; nan if not known.
     noise : ndarray, shape (..., k)
-        Rounding error of the distances.
+        Rounding error of the differences.
     least : float
-        Smallest ratio of the two that is used; larger where segments converge at different rates.
+        Smallest ratio of the two that is used; it is larger if segments converge at different rates.
 
     Returns
     -------
     ndarray, shape (..., k)
-        Estimated error; inf where the differences do not fall.
+        Estimated error; inf if the differences do not decrease.
     """
     size = np.abs(distance)
     ratio = np.maximum(np.nan_to_num(size / (np.abs(before) + noise), nan=_UNKNOWN), least)
@@ -210,12 +215,12 @@ def extrapolation_error(
 
 
 def is_halved(mesh: Eigensolver, finer: Eigensolver) -> bool:
-    """Whether a mesh has about half the functions of a finer one, short segments aside."""
+    """Return whether a mesh has about half the functions of a finer one, except on short segments."""
     return mesh.size <= _HALVED * finer.size
 
 
 def _coarsest_squares(model: Model, speeds: np.ndarray, count: int) -> np.ndarray:
-    """Compute squared eigenvalues (S, count) of a mesh of a quarter of the elements; nan if it has none."""
+    """Compute squared eigenvalues (S, count) with a quarter of the elements; nan if that is not possible."""
     coarsest = model.coarser.coarser
     if not is_halved(coarsest.solver, model.coarser.solver):
         return np.full((len(speeds), count), np.nan)
@@ -245,7 +250,7 @@ def error_of_assumed_modes(
     lowest_at_rest : ndarray, shape (S,)
         Lowest squared frequency at rest of each problem.
     is_slender : bool
-        Whether the beams are slender, clamped, and bend in one plane.
+        Whether the beams are slender and clamped, and bend in one plane.
     parts : tuple of float
         How the basis converges: see `parts_of_distances`.
 
@@ -267,7 +272,7 @@ def error_of_assumed_modes(
 
 
 def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
-    """Choose the fractions of distances that count as error, and a limit, as in `REGULAR`."""
+    """Choose fractions of distances that count as error, and a limit for margins, as in `REGULAR`."""
     if not discretization.converges_regularly:
         return _IRREGULAR
     if scene.models_width:
@@ -277,17 +282,17 @@ def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
 
 
 def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Find the eigenvalues of given squares that lie near s.
+    """Compute the eigenvalues with the given squares that are nearest to s.
 
     The squares are smooth in speed and size, and real if the equations are conservative; the eigenvalues
-    themselves turn from imaginary to real where a square passes zero.
+    themselves change from imaginary to real where a square passes zero.
     """
     root = np.sqrt(squared)
     return np.where(np.real(root * s.conj()) < 0, -root, root)
 
 
 def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarray) -> np.ndarray:
-    """Whether an unresolved higher mode may in truth be lower than each mode: shape (S, k)."""
+    """Return whether an unresolved higher mode may in truth be lower than each mode: shape (S, k)."""
     reach = np.where(resolved, np.inf, -np.real(squared) - np.abs(distance))
     lowest = np.minimum.accumulate(reach[:, ::-1], axis=1)[:, ::-1]
     return -np.real(squared) > lowest
@@ -299,12 +304,11 @@ def _ritz_error(
     """Estimate the relative truncation error of Ritz eigenvalues from the squares of a smaller basis.
 
     Squares and distances have shape (S, k), as has the error; the lowest squared frequency at rest has shape
-    () or (S,).
-    Usually further functions change an eigenvalue by less than the last ones did.  Exceptions are modes that
-    only every other function changes, and modes whose distance is small by accident: where convergence is
-    slow, a margin measured on random scenes is added, for the distances of all modes, relative to the higher
-    mode of two; this margin is `of_few` where a basis may have too few functions of one field.
-    Where an eigenvalue vanishes, the scale of its square is the lowest squared frequency at rest.
+    () or (S,). Usually further functions change an eigenvalue by less than the last ones did.  Exceptions are
+    modes that only every other function changes, and modes whose distance is small by chance.  If convergence
+    is slow, a margin is therefore added, which was measured on random scenes: a fraction of the distances of
+    all modes, relative to the higher mode of two.  The fraction is `of_few` if one field may have too few
+    functions. If an eigenvalue vanishes, its error is relative to the lowest squared frequency at rest.
     """
     half, size = np.abs(distance) / 2, np.abs(squared)
     scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), lowest[..., None, None])

@@ -1,4 +1,4 @@
-"""Speeds at which an excitation line meets a natural frequency, as roots of their distance."""
+"""Speeds at which an excitation line meets a natural frequency, as roots of the difference of both."""
 
 from __future__ import annotations
 
@@ -8,11 +8,12 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 ROUNDING = 4 * np.finfo(float).eps
-_COINCIDENT = 1e-8  # largest relative distance of a line from a frequency over all speeds that is rounding
+# Largest relative difference of line and frequency over all speeds that counts as rounding.
+_COINCIDENT = 1e-8
 
 
 def find_roots(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Iterator[tuple[float, float]]:
-    """Find the roots of a continuous function to rounding, also two between neighbouring nodes.
+    """Find the roots of a continuous function to rounding, also two roots between neighbouring nodes.
 
     Parameters
     ----------
@@ -41,7 +42,7 @@ def find_roots(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Ite
 
 
 def coincides(distance: np.ndarray, frequency: np.ndarray) -> bool:
-    """Whether a line equals a frequency (S,) at every speed by their distance (S,), as a hinge may cause."""
+    """Return whether a line equals a frequency (S,) at every speed, as with a hinge; distance (S,)."""
     return bool(np.abs(distance).max() <= _COINCIDENT * frequency.max())
 
 

@@ -1,16 +1,16 @@
-"""Modes of many designs of one beam in one basis, by batched eigenproblems.
+"""Modes of many designs of one beam in a common basis, by batched eigenproblems.
 
-The designs differ in their matrices and in speed.  Nothing is gyroscopic in them, and if they are damped,
-then by one ratio of all modes at rest.  Modes of undamped designs are real; the errors are those that
-`beamdyn.modes.modal.error_estimate` states of a single one.
+The designs differ in their matrices and in speed.  They have no gyroscopic coupling; damping, if any, is the
+same ratio for all modes at rest.  The errors are estimated as `beamdyn.modes.modal.error_estimate` does for a
+single design.
 
 Critical speeds and resonances need no search over speed: with B = m^2 M - K2,
 
     K0 v = speed^2 B v
 
 holds where the stiffness is singular (m = 0) or a frequency is m times the speed.  As K0 is positive
-definite, exactly j frequencies lie below the line m speed past the j-th lowest root (Sylvester's law of
-inertia): this is where mode j, counted at its speed, meets the line, and it meets it once at most.
+definite, exactly j frequencies lie below the line m speed above the j-th lowest root (Sylvester's law of
+inertia). There the j-th mode meets the line, and it does so at most once.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from beamdyn.modes.modal.error_estimate import REGULAR, Parts, error_of_assumed_
 from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
 
 _EPS = float(np.finfo(float).eps)
-_MOST_SPEEDS = 1000  # largest number of speeds of each design solved at once, which bounds the memory
+_MOST_SPEEDS = 1000  # largest number of speeds of each design solved together, which limits the memory
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ class PencilStack:
     Parameters
     ----------
     K0 : ndarray, shape (n, n) or (N, n, n)
-        Stiffness at rest of all designs, or of each.
+        Stiffness at rest, common to all designs or one for each.
     M, K2 : ndarray, shape (N, n, n)
-        Mass, and stiffness per squared speed, of each.
+        Mass, and stiffness divided by the squared speed, of each design.
     """
 
     K0: np.ndarray
@@ -53,7 +53,7 @@ class PencilStack:
     K2: np.ndarray
 
     def part(self, coordinates: np.ndarray) -> PencilStack:
-        """Extract the matrices of some of the coordinates."""
+        """Extract the matrices of a subset of the coordinates."""
         places = ..., *np.ix_(coordinates, coordinates)
         return PencilStack(self.K0[places], self.M[places], self.K2[places])
 
@@ -67,9 +67,9 @@ class ManyModes:
     eigenvalue : ndarray of complex, shape (N, S, k)
         Eigenvalue s of exp(s t) [1/s]: imaginary, or positive where the beam diverges; complex if damped.
     error, rounding : ndarray, shape (N, S, k)
-        Estimated relative error of the frequency, inf where unresolved; and the part of rounding in it.
+        Estimated relative error of the frequency, inf if unresolved; and the rounding part of it.
     static : ndarray, shape (N, S)
-        Magnitude of the static displacement; nan from the critical speed on.
+        Magnitude of the static displacement; nan at and above the critical speed.
     """
 
     eigenvalue: np.ndarray
@@ -78,14 +78,14 @@ class ManyModes:
     static: np.ndarray
 
     def meet(self, target: float) -> np.ndarray:
-        """Tell which designs (N,) have all errors below a target or at the level of rounding."""
+        """Return which designs (N,) have all errors below a target or at the level of rounding."""
         return np.all(self.error <= np.maximum(target, 3 * self.rounding), axis=(1, 2))
 
 
 class StackedSolver:
-    """Eigensolver of many designs, in coordinates in which each stiffness is diagonal at every speed.
+    """Eigensolver for many designs, in coordinates in which each stiffness is diagonal at every speed.
 
-    The method is that of `beamdyn.modes.modal.eigenproblem.Solver`, which solves one design.
+    The method is the same as in `beamdyn.modes.modal.eigenproblem.Solver`, which solves one design.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class StackedSolver:
 
     @cached_property
     def lowest_at_rest(self) -> np.ndarray:
-        """Lowest squared frequency at rest of each design (N,)."""
+        """Lowest squared angular frequency at rest of each design (N,)."""
         return 1 / np.linalg.eigvalsh(self.mass)[:, -1]
 
     def solve(self, speeds: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -143,7 +143,7 @@ class StackedSolver:
         time = np.sqrt(1 / self.lowest_at_rest)[design, None, None]
         stiffness = (1 + spin * self.growth[design])[:, :, None]
         n = stiffness.shape[1]
-        # Square roots of the mass give damping at a ratio of 1/2, as the stiffness at rest is 1.
+        # The square root of the mass matrix gives a damping ratio of 1/2, as the stiffness at rest is 1.
         value, vector = np.linalg.eigh(self.mass)
         root = (vector * np.sqrt(np.maximum(value, 0.0))[:, None, :]) @ np.swapaxes(vector, 1, 2)
         B = np.zeros((len(design), 2 * n, 2 * n))
@@ -157,10 +157,11 @@ class StackedSolver:
         return s, 8 * _EPS * (np.abs(s) * np.abs(inverse).max(axis=1)[:, None] + terms[:, None])
 
     def meeting(self, multiples: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute inverse squared speeds (N, L, k) where frequencies are multiples (L,) of the speed.
+        """Compute inverse squared speeds (N, L, k) at which frequencies are multiples (L,) of the speed.
 
-        At the multiple 0 the stiffness is singular.  Modes ascend; a value that is not positive
-        says that the mode meets the line at no speed.  The second result is the values' rounding error.
+        For the multiple 0, the stiffness is singular.  Modes are in ascending order; a value that is not
+        positive means that the mode meets the line at no speed.  The second result is the rounding error of
+        the values.
         """
         n = self.growth.shape[1]
         matrices = multiples[:, None, None] ** 2 * self.mass[:, None]
@@ -171,7 +172,7 @@ class StackedSolver:
         return inverse[..., : -count - 1 : -1], rounding
 
     def static(self, speeds: np.ndarray, load: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Compute magnitudes (N, S) of static outputs (d, n) under loads (N, n) per squared speed."""
+        """Compute magnitudes (N, S) of static outputs (d, n), for loads (N, n) per squared speed."""
         of_load = np.einsum("nik,ni->nk", self.basis, load)
         spin = speeds[:, :, None] ** 2
         stiffness = 1 + spin * self.growth[:, None, :]
@@ -183,12 +184,12 @@ class StackedSolver:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Parameters of the error estimate of a basis.
+    """Parameters of the error estimate for a basis.
 
     Parameters
     ----------
     is_slender : bool
-        Whether the designs are slender beams, clamped, in one plane.
+        Whether the designs are slender, clamped beams that bend in one plane.
     parts : tuple of float
         How the basis converges: see `parts_of_distances`.
     rounding : float
@@ -210,7 +211,7 @@ def solve_many(
     ratio: np.ndarray | None = None,
     estimate: Estimate = Estimate(),
 ) -> ManyModes:
-    """Solve the designs of a stack, and estimate the errors by a coarser basis.
+    """Compute the modes of the designs in a stack, and estimate the errors by a coarser basis.
 
     Parameters
     ----------
@@ -223,7 +224,7 @@ def solve_many(
     load : ndarray, shape (N, n)
         Static load per squared speed.
     outputs : ndarray, shape (d, n)
-        Components of the wanted static displacement, such as those of the tip.
+        Coefficients of the components of the requested static displacement, such as that of the tip.
     ratio : ndarray, shape (N,), optional
         Damping ratio of the modes at rest; undamped if not given.
     estimate : Estimate
@@ -252,7 +253,7 @@ def _solve_at(
     if ratio is None:
         squared, rounding = fine.solve(speeds, count)
         squared, distance = -squared, coarser.squares(speeds, count) - squared
-        # The eigenvalues s are imaginary where the beam vibrates: s^2 = -w^2.
+        # The eigenvalues s are imaginary if the beam vibrates: s^2 = -w^2.
         s = np.sqrt(np.abs(squared)) * np.where(squared < 0, 1j, 1.0)
     else:
         s, rounding = fine.damped(speeds, ratio, count)
@@ -285,15 +286,15 @@ def speeds_of_meeting(
     count : int
         Number k of modes.
     top : ndarray, shape (N,)
-        Speed [rad/s] up to which the search goes; inf without a limit.
+        Largest speed of the search [rad/s]; inf without a limit.
 
     Returns
     -------
     speed : ndarray, shape (N, L, k)
-        Speeds [rad/s]; inf where a mode does not meet the line up to the top.
+        Speeds [rad/s]; inf if a mode does not meet the line up to the largest speed.
     error, rounding : ndarray, shape (N, L, k)
-        Estimated relative error of the speed, inf where there is none or it is unresolved; and the part of
-        rounding in it.
+        Estimated relative error of the speed, inf if there is no speed or it is unresolved; and the rounding
+        part of it.
     """
     inverse, rounding = StackedSolver(stack).meeting(multiples, count)
     coarser, _ = StackedSolver(coarse).meeting(multiples, count)
@@ -301,7 +302,7 @@ def speeds_of_meeting(
     squared = 1 / np.where(exists, inverse, 1.0)
     of_coarser = 1 / np.where(
         coarser > 0, coarser, np.where(exists, inverse / 2, 1.0)
-    )  # unresolved where the coarser basis meets none
+    )  # unresolved if no mode of the coarser basis meets the line
     distance = np.where(exists, of_coarser - squared, 0.0)
     relative = estimate.rounding * rounding * squared / 2
     of_rows, off, sure = (values.reshape(-1, count) for values in (-squared, distance, relative))

@@ -4,7 +4,7 @@ A modal basis has the lowest modes of the beam at rest, or at the slowest and fa
 The papers use modes at rest, which converge slowly under rotation.  Modes at the slowest and the fastest
 speed together reproduce the frequencies at both, and nearly those between.
 
-Modes are of a kind (bending, torsion, camber) by the kinetic energy of each.
+The kind of a mode (bending, torsion, camber) is the one with the largest kinetic energy.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Model(FieldsOnly):
-    """A scene with its discretization; equations and eigensolver are built when asked for.
+    """Scene with its discretization; equations and eigensolver are built at their first use.
 
     Parameters
     ----------
@@ -60,14 +60,14 @@ class Model(FieldsOnly):
 
     @cached_property
     def equations(self) -> Equations:
-        """Equations of motion, linear about the straight beam or, with section matrices, about its axis."""
+        """Equations of motion, linear about the straight beam or, with section matrices, its curved axis."""
         if self.scene.beam.matrices is not None:
             return self.bent.about_straight
         return self._of_fields
 
     @cached_property
     def _of_fields(self) -> Equations:
-        """Equations of motion built from the fields of the straight beam."""
+        """Equations of motion built from the displacement fields of the straight beam."""
         if self.scene.chooses_physics:  # other scenes have been checked: a curved axis needs other equations
             check_axis(self.scene.beam, self.scene.physics)
         beam = self.scene.modelled_beam
@@ -81,22 +81,23 @@ class Model(FieldsOnly):
 
     @cached_property
     def deflected(self) -> DeflectedSolver:
-        """Eigensolver about equilibria of any deflection."""
-        from beamdyn.modes.modal.equilibrium import DeflectedSolver  # imported here, as few scenes need it
+        """Eigensolver for small motions about equilibria with any deflection."""
+        # The import is inside the function because few scenes need the module.
+        from beamdyn.modes.modal.equilibrium import DeflectedSolver
 
         return DeflectedSolver(self.bent, self.scene.physics.branch)
 
     @cached_property
     def bent(self) -> RotatingBeam:
-        """Equations of motion for deflections of any size, of a scene with large deflection."""
-        # Imported here, as few scenes need it.
+        """Equations of motion for arbitrarily large deflections, of a scene with large deflection."""
+        # The import is inside the function because few scenes need the module.
         from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 
         return assemble_beam_in_space(self.scene, self.discretization, self._of_fields)
 
     @cached_property
     def coarse_solver(self) -> Eigensolver:
-        """Eigensolver of the coarser model that error estimates compare with."""
+        """Eigensolver of the coarser model that error estimates use for comparison."""
         if self.scene.physics.large_deflection:
             return self.deflected.guiding(self.compared.bent)
         if self.equations.coarse is None:
@@ -107,7 +108,7 @@ class Model(FieldsOnly):
     def exceeds_coarser(self) -> bool:
         """Whether each field has functions beyond the coarser model's, as the error estimate needs.
 
-        Where the coarser model has different functions, it is enough that it has fewer in total.
+        If the coarser model has different functions, it suffices that it has fewer in total.
         """
         coarse = self.equations.coarse
         if coarse is None:
@@ -131,7 +132,7 @@ class Model(FieldsOnly):
     def over_strip(self, along: int, across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Compute mesh points over a strip: x [m] (n,), eta from 1 to -1 (k,), and y = -eta b/2 [m] (n, k).
 
-        Returns None where the sections keep their shape, or their width is not known.
+        Returns None if the sections keep their shape, or if their width is not known.
         """
         section = self.scene.beam.strip
         if section is None or not self.scene.models_width:
@@ -142,29 +143,30 @@ class Model(FieldsOnly):
     def modal_equations(self, basis: ModalBasis | int) -> Equations:
         """Transform the equations to the coordinates of a modal basis, or of a number of modes at rest.
 
-        A harvester's circuit is added, with the flux as its coordinate.
+        The circuit of a harvester is added, with its flux as coordinate.
         """
         basis = ModalBasis(basis) if isinstance(basis, int) else basis
         return reduce_to_modes(self.equations, basis).with_flux()
 
     @cached_property
     def coarser(self) -> Model:
-        """The coarser model, whose results serve to estimate the error of this model."""
+        """Coarser model, whose results serve to estimate the error of this model."""
         return Model(self.scene, self.discretization.coarser())
 
     @property
     def lacks_one(self) -> bool:
-        """Whether the model that errors are estimated from has just one function less in each field.
+        """Whether the model for error estimates has only one function less in each field.
 
-        This holds for beams that bend in space, without inner breakpoints: their strains converge fast and
-        functions are costly; the distance from a much smaller model would only show the error of that.
+        This is so for large deflection in space without inner breakpoints, where strains converge fast and
+        functions are costly: comparison with a much smaller model would only show the error of the smaller
+        model.
         """
         is_whole = isinstance(self.discretization, Ritz) and len(self.scene.modelled_beam.breakpoints) == 2
         return is_whole and self.scene.bends_in_space
 
     @cached_property
     def compared(self) -> Model:
-        """The model from whose eigenvalues and equilibria the error of this model is estimated."""
+        """Model whose eigenvalues and equilibria are compared with this model's to estimate the error."""
         if self.lacks_one and isinstance(self.discretization, Ritz):
             return Model(
                 self.scene, replace(self.discretization, functions=self.discretization.functions - 1)
@@ -173,14 +175,14 @@ class Model(FieldsOnly):
 
 
 def kinetic_energy(equations: Equations, vectors: np.ndarray) -> np.ndarray:
-    """Compute the part of each coordinate in the kinetic energy of modes (S, n, k): (S, n, k)."""
+    """Compute the fraction of kinetic energy in each coordinate of modes (S, n, k): shape (S, n, k)."""
     return np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
 
 
 def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
-    """Compute the shares of two directions in the deflection's kinetic energy of modes (S, n, k): (S, k, 2).
+    """Compute the fractions of kinetic energy in two directions of deflection of modes (S, n, k): (S, k, 2).
 
-    The energy of other fields, such as the stretch, is not counted: shares add up to 1, or to 0 without any.
+    The energy of other fields, such as stretch, is not counted: the sum is 1, or 0 without deflection.
     """
     if equations.planes == 1:
         return np.stack([np.ones(vectors[:, 0].shape), np.zeros(vectors[:, 0].shape)], axis=2)
@@ -193,7 +195,7 @@ def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
 
 
 def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the static tip deflection and axial strain by rotation.
+    """Compute the static tip deflection and axial strain due to rotation.
 
     Parameters
     ----------
@@ -205,7 +207,7 @@ def static_load(model: Model, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarra
     Returns
     -------
     deflection : ndarray, shape (S,)
-        Static tip deflection [m], in two planes its magnitude; nan from the critical speed on.
+        Static tip deflection [m], in two planes its magnitude; nan at and above the critical speed.
     strain : ndarray, shape (S,)
         Largest static axial strain; nan if the axial stiffness is not given.
     """
@@ -235,7 +237,7 @@ def warn_of_rotation(model: Model, speed: float) -> Iterator[Statement]:
 
 
 def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[Statement]:
-    """Yield a warning at speeds where the straight beam is unstable, as rotation would bend it before."""
+    """Yield a warning at speeds at which the straight beam is unstable: rotation bends it before."""
     lost = np.isnan(deflection)
     if lost.any() and bends(model):
         end = f" the straight beam is unstable; the rotation bends it before: the answer is {OUTSIDE}"
@@ -243,7 +245,7 @@ def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -
 
 
 def bends(model: Model) -> bool:
-    """Whether steady rotation loads the straight beam transversely, misalignments of 1e-8 rad aside."""
+    """Return whether steady rotation loads the straight beam transversely (misaligned by > 1e-8 rad)."""
     equations, scene = model.equations, model.scene
     load = np.abs(equations.steady().f2[equations.places(equations.deflecting)]).max(initial=0.0)
     along = max(np.abs(equations.P(d)).max() for d in range(scene.physics.planes))
@@ -252,11 +254,11 @@ def bends(model: Model) -> bool:
 
 # Modal bases -----------------------------------------------------------------------------------------
 
-FEWEST_MODES = 2  # number of modes of the first basis where no number is given
-SPEED_SAMPLES = 2001  # number of times at which a motion's slowest and fastest speed are sought
+FEWEST_MODES = 2  # number of modes of the first basis, unless a number is given
+SPEED_SAMPLES = 2001  # number of times at which a motion's slowest and fastest speed are searched
 _MOST_MODES = 60  # largest number of modes: with more, the fastest modes need too small steps
-_MASSLESS = 1e-14  # ratio of a mass pivot to the largest that is 0 within rounding
-_DEPENDENT = 1e-10  # relative singular value below which shapes are linearly dependent
+_MASSLESS = 1e-14  # ratio of a mass pivot to the largest, below which it is a rounding error of 0
+_DEPENDENT = 1e-10  # relative singular value below which mode shapes are linearly dependent
 
 
 @dataclass(frozen=True)
@@ -266,9 +268,10 @@ class ModalBasis:
     Parameters
     ----------
     modes : int or None
-        Number of modes at each speed of each set of coupled fields; None for all modes of the discretization.
+        Number of modes at each speed for each set of coupled fields; None for all modes of the
+        discretization.
     speeds : tuple of float
-        Speeds of the modes [rad/s].
+        Speeds at which the modes are computed [rad/s].
     """
 
     modes: int | None
@@ -299,7 +302,7 @@ class ModalBasis:
 
 
 def given_basis(modes: int | str) -> ModalBasis | None:
-    """Build a basis of a number of modes at rest; None for "auto", which leaves it to the tolerance."""
+    """Build a basis with a number of modes at rest; None for "auto": the tolerance then decides."""
     auto = isinstance(modes, str) and modes == "auto"
     return None if auto else ModalBasis(count("modes", modes, remedy='or "auto"'))
 
@@ -311,7 +314,7 @@ def find_speed_range(motion: Motion, t_end: float) -> tuple[float, ...]:
 
 
 def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
-    """Transform the equations to modal coordinates of unit mass, signed for a positive tip deflection."""
+    """Transform the equations to modal coordinates with unit mass and positive tip deflections."""
     pencil, count = equations.steady(), basis.modes or equations.size
     bases = {}
     for names in equations.coupled:
@@ -325,7 +328,7 @@ def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
 
 
 def _with_residual(equations: Equations, reduced: Equations, speed: float) -> Equations:
-    """Add the residual flexibility of the modes left out, at a speed [rad/s], to the capacitance."""
+    """Add the residual flexibility of the neglected modes, at a speed [rad/s], to the capacitance."""
     circuit, kept = equations.circuit, reduced.circuit
     assert circuit is not None and kept is not None
     stiffness = [p.K0 + speed**2 * p.K2 for p in (each.steady() for each in (equations, reduced))]
@@ -368,21 +371,21 @@ def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.
 
 
 def _orthonormal(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
-    """Combine shapes in columns to linearly independent ones, orthonormal in the mass."""
+    """Combine shapes in columns to linearly independent ones that are orthonormal in the mass matrix."""
     with suppress(np.linalg.LinAlgError):
         L = np.linalg.cholesky(M)
         pivots = np.diag(L) ** 2
         if pivots.min() >= _MASSLESS * pivots.max():
             directions, size, _ = np.linalg.svd(L.T @ shapes, full_matrices=False)
             return np.linalg.solve(L.T, directions[:, size > _DEPENDENT * size[0]])
-    # The mass is singular, as that of bending and shear without rotary inertia: it does not tell how much of
-    # a deflection is shear, only combinations of the given shapes do.
+    # The mass matrix is singular, as for bending and shear without rotary inertia.  It does not determine how
+    # much of a deflection is shear; only combinations of the given shapes do.
     values, vectors = np.linalg.eigh(M)
     root = np.sqrt(np.maximum(values, 0))[:, None] * vectors.T
     _, size, weights = np.linalg.svd(root @ shapes, full_matrices=False)
     known = size > _DEPENDENT * size[0]
     combined = shapes @ (weights[known].T / size[known])
-    L = np.linalg.cholesky(combined.T @ M @ combined)  # removes the rounding of nearly dependent shapes
+    L = np.linalg.cholesky(combined.T @ M @ combined)  # removes rounding errors of nearly dependent shapes
     return np.linalg.solve(L, combined.T).T
 
 
@@ -393,10 +396,10 @@ _TIE = 1e-9  # relative difference of kinetic energies below which the first kin
 
 
 def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | None:
-    """Name the kind (S, k) of each mode, of vectors (S, n, k), by the largest part of its kinetic energy.
+    """Name the kind (S, k) of each mode, for vectors (S, n, k), by the largest part of kinetic energy.
 
     Bending in both directions, torsion and camber are compared, and ties within 1e-9 go to the first; the
-    energy of stretch is not compared.  None where a model has neither torsion nor camber.
+    energy of stretch is not compared.  None if a model has neither torsion nor camber.
     """
     own = [name for name in (TORSION, CAMBER) if name in equations.blocks]
     if not own:
@@ -408,9 +411,9 @@ def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | No
 
 
 class TellsKinds(Result):
-    """Base class of results of modes that tells the kind of each mode; see `Result`.
+    """Base class of modal results that state the kind of each mode; see `Result`.
 
-    A subclass has the field `kinds`, which is None where all modes are bending modes.
+    A subclass has the field `kinds`, which is None if all modes are bending modes.
     """
 
     frequency: np.ndarray
@@ -418,9 +421,9 @@ class TellsKinds(Result):
 
     @property
     def kind(self) -> np.ndarray:
-        """Kind of each mode by its largest part of kinetic energy: "bending", "torsion" or "camber"."""
+        """Kind of each mode, by the largest part of its kinetic energy: "bending", "torsion" or "camber"."""
         return np.full(self.frequency.shape, BENDING) if self.kinds is None else self.kinds
 
     def to_dict(self) -> dict[str, Any]:
-        """Convert the result to numbers, lists and strings, with the kinds of modes where they differ."""
+        """Convert the result to numbers, lists and strings, with the kinds of modes if there are several."""
         return super().to_dict() | ({} if self.kinds is None else {"kind": self.kinds.tolist()})

@@ -6,12 +6,13 @@ import numpy as np
 import scipy.linalg
 
 _EPS = np.finfo(float).eps
-_REAL = 1e-8  # relative growth rate below which a mode counts as stable: rounding of a double root
-_MASSLESS = 16 * _EPS  # relative eigenvalue of a mass matrix that is 0 within rounding
+# Relative growth rate below which a mode counts as stable, as rounding of a double root causes it.
+_REAL = 1e-8
+_MASSLESS = 16 * _EPS  # relative eigenvalue of a mass matrix, below which it is a rounding error of 0
 
 
 def solve_gyroscopic(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + diag(d) q = 0 for skew-symmetric C and positive d: see `solve_general`."""
+    """Solve M q'' + C q' + diag(d) q = 0 for skew-symmetric C and positive d; results as `solve_general`."""
     n, scale = len(d), 1 / np.sqrt(d)
     mu, U = np.linalg.eigh(scale[:, None] * M * scale)
     root = np.sqrt(np.maximum(mu, 0))
@@ -23,7 +24,7 @@ def solve_gyroscopic(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.nd
 
 
 def solve_general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + diag(d) q = 0, d without zeros: 1/s (2 n,) and vectors (2 n, 2 n) with q first."""
+    """Solve M q'' + C q' + diag(d) q = 0, d nonzero: return 1/s (2 n,) and vectors (2 n, 2 n), q first."""
     n = len(d)
     B = np.zeros((2 * n, 2 * n))
     B[:n, :n], B[:n, n:], B[n:, :n] = -C / d[:, None], -M / d[:, None], np.eye(n)
@@ -31,9 +32,9 @@ def solve_general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarr
 
 
 def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + K q = 0 for any K: 1/s (m,) and vectors (2 n, m), which begin with q.
+    """Solve M q'' + C q' + K q = 0 for any K: return 1/s (m,) and vectors (2 n, m), which begin with q.
 
-    Eigenvalues that rounding cannot tell from infinite ones are left out of the 2 n.
+    Of the 2 n eigenvalues s, those that are infinite within rounding are omitted.
     """
     n, zero = len(M), np.zeros_like(M)
     A, B = np.block([[zero, np.eye(n)], [-K, -C]]), scipy.linalg.block_diag(np.eye(n), M)
@@ -45,7 +46,7 @@ def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.n
 
 
 def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Select the lowest modes by 1/s: one of a conjugate pair, a growing one, the slower of two decaying."""
+    """Select the lowest modes by 1/s: one of a conjugate pair, growing ones, the slower of two decaying."""
     inverse = np.where(np.abs(np.real(inverse)) < _REAL * np.abs(inverse), 1j * np.imag(inverse), inverse)
     inverse = np.where(inverse == 0, _EPS * np.abs(inverse).max(), inverse)
     s = 1 / inverse
@@ -60,17 +61,17 @@ def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.nd
     return s[modes], z[:, modes]
 
 
-# Coordinates without mass, such as shear against bending where sections have no rotary inertia ------
+# Coordinates without mass, such as shear versus bending if sections have no rotary inertia ---------
 
 
 def has_massless(mass: np.ndarray) -> bool:
-    """Whether some combination of coordinates has no mass within rounding, for a mass matrix (n, n)."""
+    """Return whether some combination of coordinates has no mass within rounding; mass matrix (n, n)."""
     values = np.linalg.eigvalsh(mass)
     return bool(values[0] < _MASSLESS * values[-1])
 
 
 def condense(mass: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
-    """Compute a basis (n, r) in which the mass is regular; massless coordinates follow in equilibrium.
+    """Compute a basis (n, r) with a regular mass matrix; massless coordinates then follow quasi-statically.
 
     Neither damping nor gyroscopic terms may act on massless coordinates.
     """

@@ -1,15 +1,15 @@
-"""Eigensolvers of whole models: of uncoupled and of large parts, and over many speeds.
+"""Eigensolvers of whole models: with uncoupled blocks, with many coordinates, and for many speeds.
 
-The equations decide which eigensolver serves, part by part where parts are uncoupled, such as two planes.
-Of a large part a few modes of many coordinates are wanted: they are found by Lanczos iteration on the inverse
-problem (by Arnoldi iteration with damping or Coriolis forces), with factorizations of the stiffness at each
-speed, in place of all eigenvalues of full matrices.
+The eigensolver is chosen by the equations, separately for uncoupled blocks such as two planes.  For a block
+with many coordinates, the lowest modes are found by Lanczos iteration on the inverse problem (by Arnoldi
+iteration with damping or Coriolis forces), with factorizations of the stiffness at each speed, in place of
+all eigenvalues of full matrices.
 
-Modes over many speeds are interpolated between those at a few.
-Without damping squared frequencies are smooth functions of the speed, and so are the modes, but for sharp
-veerings; without gyroscopic terms, of the squared speed.  They are interpolated in Chebyshev points of an
-interval.  The error of the interpolant is estimated by its coefficients of highest degree: where they exceed
-rounding, there are more points, and then the interval is halved, down to a few speeds, which are solved each.
+Modes over many speeds are interpolated between those at a few. Without damping, squared frequencies are
+smooth functions of the speed (without gyroscopic terms: of the squared speed), and so are the modes, except
+at sharp veerings.  They are interpolated in Chebyshev points of an interval.  The error of the interpolant is
+estimated by its coefficients of highest degree: while these exceed rounding, points are added; then the
+interval is halved, until few speeds are left, which are solved individually.
 """
 
 from __future__ import annotations
@@ -31,15 +31,15 @@ from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
 from beamdyn.modes.modal.springs import solve_definite
 
 _EPS = np.finfo(float).eps
-_MORE = 2  # number of further modes sought, as not every real eigenvalue found belongs to a mode
-_RESTARTS = 50  # largest number of restarts of the iteration, which converges after a few, if at all
+_MORE = 2  # number of additional modes computed, as not every real eigenvalue belongs to a mode
+_RESTARTS = 50  # largest number of restarts of the iteration, which converges after a few or not at all
 
 
 class LargeSolver(Eigensolver):
     """Eigensolver for the lowest few modes of many coordinates, by Lanczos iteration.
 
-    Where the stiffness is not safely positive definite, or the iteration does not converge, it uses
-    `Solver`.
+    If the stiffness is not safely positive definite, or the iteration does not converge, the eigensolver
+    `Solver` is used.
     """
 
     @cached_property
@@ -50,7 +50,7 @@ class LargeSolver(Eigensolver):
 
     @cached_property
     def dense(self) -> Solver:
-        """Eigensolver by full matrices, used where the iteration fails."""
+        """Eigensolver by full matrices, used if the iteration fails."""
         return Solver(self.pencil)
 
     @cached_property
@@ -76,14 +76,14 @@ class LargeSolver(Eigensolver):
         return Eigen(*(np.array(values) for values in zip(*each, strict=True)))
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Compute linear functions of the coordinates in static equilibrium under the rotation.
+        """Compute linear functions of the coordinates in static equilibrium under rotation.
 
-        The stiffness is factorized at each speed: see `Eigensolver.solve_static`.
+        The stiffness is factorized at each speed; for the parameters see `Eigensolver.solve_static`.
         """
         return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
 
     def _solve_at(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
+        """Compute eigenvalues (k,), vectors (n, k) and rounding errors (k,) at one speed."""
         with suppress(ArpackNoConvergence):
             found = None if self.pencil.shift else self._lowest(speed, count)
             if found is not None:
@@ -94,7 +94,7 @@ class LargeSolver(Eigensolver):
     # Conservative equations --------------------------------------------------------------------------
 
     def _lowest(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Compute the lowest undamped modes without gyroscopic terms; None if the stiffness is unsafe."""
+        """Compute the lowest undamped, non-gyroscopic modes; None if the stiffness may be indefinite."""
         try:
             L = np.linalg.cholesky(self.pencil.K0 + speed**2 * self.pencil.K2) if speed else self._at_rest
         except np.linalg.LinAlgError:
@@ -109,7 +109,7 @@ class LargeSolver(Eigensolver):
         return 1j / np.sqrt(mu), v, rounding
 
     def _largest(self, L: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the largest eigenvalues (k,) of the mass matrix in the stiffness' Cholesky coordinates.
+        """Compute the largest eigenvalues (k,) of the mass matrix, scaled by the stiffness' Cholesky factor.
 
         The matrix is L^-1 M L^-T; eigenvalues descend, and the vectors have the shape (n, k).
         """
@@ -127,7 +127,7 @@ class LargeSolver(Eigensolver):
     # Gyroscopic and damped equations -----------------------------------------------------------------
 
     def _lowest_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute the lowest modes of damped or gyroscopic equations from the largest inverse eigenvalues."""
+        """Compute the lowest modes of damped or gyroscopic equations, by the largest inverse eigenvalues."""
         n, M, C = self.size, self.pencil.M, self.pencil.C + speed * self.pencil.G
         factor = cho_factor(self.pencil.K0 + speed**2 * self.pencil.K2)
         time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
@@ -151,13 +151,13 @@ def _operator(product: Callable[[np.ndarray], np.ndarray], size: int) -> LinearO
     return LinearOperator((size, size), matvec=product, dtype=float)  # pyright: ignore[reportCallIssue]
 
 
-LARGE = 256  # number of coordinates of a part above which only its lowest modes are computed
+LARGE = 256  # number of coordinates of a block above which only the lowest modes are computed
 
 
 def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Eigensolver:
-    """Choose an eigensolver of equations at steady speed, which solves uncoupled parts separately.
+    """Choose an eigensolver for equations at steady speed, which solves uncoupled blocks separately.
 
-    If coordinates (ascending) are given, the others are held at 0.
+    If coordinates (ascending) are given, the others are fixed at 0.
     """
     if len(equations.connected) == 1:
         pencil = equations.steady()
@@ -166,19 +166,19 @@ def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Ei
 
 
 def solver_of_pencil(pencil: SteadyPencil) -> Eigensolver:
-    """Choose an eigensolver of equations at steady speed that are solved together."""
+    """Choose an eigensolver for equations at steady speed that are solved as one block."""
     return Solver(pencil) if len(pencil.M) <= LARGE else LargeSolver(pencil)
 
 
 class UncoupledSolver(Eigensolver):
-    """Eigensolver that solves uncoupled parts separately, such as two planes of a straight beam.
+    """Eigensolver that solves uncoupled blocks separately, such as two planes of a straight beam.
 
     Parameters
     ----------
     equations : Equations
-        Equations that consist of uncoupled parts.
+        Equations that consist of uncoupled blocks.
     coordinates : ndarray of int, optional
-        Coordinates that are kept, ascending; the others are held at 0.
+        Coordinates that are free, ascending; the others are fixed at 0.
     """
 
     def __init__(self, equations: Equations, coordinates: np.ndarray | None = None) -> None:
@@ -198,38 +198,38 @@ class UncoupledSolver(Eigensolver):
 
     @cached_property
     def pencil(self) -> SteadyPencil:
-        """Equations at steady speed of all parts together."""
+        """Equations at steady speed of all blocks together."""
         pencil = self._equations.steady()
         return pencil if self._coordinates is None else pencil.part(self._coordinates)
 
     @property
     def conservative(self) -> bool:
-        """Whether no part has damping or gyroscopic terms."""
+        """Whether no block has damping or gyroscopic terms."""
         return all(solver.conservative for solver in self.solvers)
 
     def energies_at_rest(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute products (S,) of vectors (S, n) with themselves by stiffness at rest, and by mass."""
+        """Compute the products v K v at rest and v M v of vectors v (S, n): shape (S,) each."""
         parts = zip(self.parts, self.solvers, strict=True)
         stiffness, mass = np.sum([solver.energies_at_rest(v[:, part]) for part, solver in parts], axis=0)
         return stiffness, mass
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """Lowest squared angular frequency at rest of all parts [rad2/s2], plus `pencil.shift`."""
+        """Lowest squared angular frequency at rest of all blocks [rad2/s2], plus `pencil.shift`."""
         return min(solver.lowest_at_rest for solver in self.solvers)
 
     @property
     def softening(self) -> float:
-        """Largest relative loss of stiffness per squared speed of all parts [s2]."""
+        """Largest relative loss of stiffness per squared speed of all blocks [s2]."""
         return max(solver.softening for solver in self.solvers)
 
     @property
     def critical_rounding(self) -> float:
-        """Relative rounding error of the critical speed, which is that of the softest part."""
+        """Relative rounding error of the critical speed, which is that of the softest block."""
         return max(self.solvers, key=lambda solver: solver.softening).critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Compute the `count` lowest modes of all parts at each speed [rad/s]."""
+        """Compute the `count` lowest modes of all blocks at each speed [rad/s]."""
         found = [solver.solve(speeds, min(count, solver.size)) for solver in self.solvers]
         vectors = []
         for part, eigen in zip(self.parts, found, strict=True):
@@ -248,15 +248,15 @@ class UncoupledSolver(Eigensolver):
         )
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Compute the `count` lowest eigenvalues of all parts at each speed [rad/s]."""
+        """Compute the `count` lowest eigenvalues of all blocks at each speed [rad/s]."""
         each = [solver.eigenvalues(speeds, min(count, solver.size)) for solver in self.solvers]
         together = np.concatenate(each, axis=1)
         return np.take_along_axis(together, _order(together)[:, :count], axis=1)
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Compute linear functions of the coordinates in static equilibrium under the rotation.
+        """Compute linear functions of the coordinates in static equilibrium under rotation.
 
-        They are summed over all parts: see `Eigensolver.solve_static`.
+        They are summed over all blocks; for the parameters see `Eigensolver.solve_static`.
         """
         each = zip(self.parts, self.solvers, strict=True)
         return np.sum([solver.solve_static(speeds, outputs[:, part]) for part, solver in each], axis=0)
@@ -271,13 +271,13 @@ def _order(eigenvalue: np.ndarray) -> np.ndarray:
 # Many speeds -----------------------------------------------------------------------------------------
 
 _FEW = 160  # largest number of speeds that are solved individually
-_INTERVALS = 8, 16, 32  # numbers of intervals between the points, doubled in turn
-# Part of a series' coefficients, the last third, whose size tells whether the series converges fast enough.
+_INTERVALS = 8, 16, 32  # numbers of intervals between Chebyshev points of the speed, tried in turn
+# The last third of a series' coefficients; their size shows whether the series converges fast enough.
 _HIGHEST = 3
-# Misfit of interpolated squared frequencies in addition to rounding, included in the stated error.
+# Interpolation error of squared frequencies in addition to rounding; the stated error includes it.
 _MISFIT = 1e-12
-_MISFIT_OF_MODES = 1e-7  # misfit of interpolated modes over their largest coordinate: modes are only compared
-_LEBESGUE = 3.0  # growth of rounding errors by interpolation: Lebesgue constant of 17 to 33 points
+_MISFIT_OF_MODES = 1e-7  # interpolation error of modes over their largest coordinate; modes are only compared
+_LEBESGUE = 3.0  # growth of rounding errors by interpolation: the Lebesgue constant of 17 to 33 points
 
 Solve = Callable[[np.ndarray], Eigen]  # a function that computes modes at given speeds [rad/s]
 
@@ -302,12 +302,12 @@ def eigenvalues_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int)
 
 
 def _solve_over(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
-    """Solve modes at speeds of either sign; reversed gyroscopic modes have conjugate vectors.
+    """Compute modes at speeds of either sign; for reversed rotation, gyroscopic modes are conjugate.
 
-    For a growing mode, the reversed rotation has the decaying one, which was not found: such speeds are
+    A growing mode corresponds to a decaying one in reversed rotation, which was not computed: such speeds are
     solved individually.
     """
-    # Both senses of rotation have the same frequencies.
+    # Both directions of rotation have the same frequencies.
     sizes, place = np.unique(np.abs(speeds), return_inverse=True)
     found, backwards = _solve_ascending(solver, sizes, solve), speeds < 0
     if len(sizes) < len(speeds) or backwards.any():
@@ -325,9 +325,9 @@ def _solve_over(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
 
 
 def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
-    """Compute modes at ascending speeds from 0, by Chebyshev points, doubled until they suffice.
+    """Compute modes at ascending speeds from 0 by interpolation, with Chebyshev points doubled as needed.
 
-    Without gyroscopic terms modes are smooth functions of the squared speed, else of the speed.
+    Modes are smooth functions of the speed; without gyroscopic terms, of the squared speed.
     """
     if len(speeds) <= _FEW:
         return solve(speeds)
@@ -350,12 +350,12 @@ def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> E
 
 
 def _nodes(intervals: int) -> np.ndarray:
-    """Compute the Chebyshev points of [-1, 1], including its ends, ascending."""
+    """Compute the Chebyshev points of the interval [-1, 1], including both ends, ascending."""
     return -np.cos(np.pi * np.arange(intervals + 1) / intervals)
 
 
 def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray, power: int) -> Eigen | None:
-    """Interpolate modes at ascending speeds from Chebyshev points; None where these are too few."""
+    """Interpolate modes at ascending speeds from Chebyshev points; None if there are too few points."""
     if (np.real(eigen.eigenvalue) * np.imag(eigen.eigenvalue)).any():  # flutter is not interpolated
         return None
     points, count = eigen.eigenvalue.shape
@@ -364,7 +364,7 @@ def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray, power: i
     at_nodes = np.concatenate([squared, vector.reshape(points, -1)], axis=1)
     series = np.linalg.solve(chebyshev.chebvander(t, points - 1), at_nodes)
     misfit = np.abs(series[-(points // _HIGHEST) :]).sum(axis=0)
-    # Relative misfits: 0 for values that are 0 at all speeds; inf for a value 0 at only one of them.
+    # Relative errors: 0 for values that are 0 at all speeds; inf for a value that is 0 at only one of them.
     size, of_squares = np.abs(squared).min(axis=0), np.where(misfit[:count] > 0, np.inf, 0.0)
     np.divide(misfit[:count], size, out=of_squares, where=size > 0)
     of_modes = misfit[count:].max(initial=0.0) <= _MISFIT_OF_MODES * np.abs(vector).max(initial=0.0)
@@ -381,7 +381,7 @@ def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray, power: i
 
 
 def _align(vector: np.ndarray, mass: np.ndarray) -> np.ndarray:
-    """Give modes (S, n, k) at successive speeds the same signs, or phases if they are complex."""
+    """Give modes (S, n, k) at successive speeds consistent signs, or consistent phases if complex."""
     if not vector.size:
         return vector
     products = np.einsum("snk,snk->sk", vector[:-1], mass @ vector[1:].conj())
@@ -390,7 +390,7 @@ def _align(vector: np.ndarray, mass: np.ndarray) -> np.ndarray:
     return np.concatenate([vector[:1], vector[1:] * np.cumprod(turns, axis=0)[:, None, :]])
 
 
-_NORMALIZED = 2e-6  # distance of a squared norm from 1 that counts as rounding
+_NORMALIZED = 2e-6  # difference of a squared norm from 1 that counts as rounding
 
 
 def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -399,7 +399,7 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     Parameters
     ----------
     vectors : ndarray, shape (S, n, k)
-        Mode vectors at each speed, by ascending frequency; mass-normalised, or nearly so where the mass
+        Mode vectors at each speed, by ascending frequency; mass-normalised, or nearly so if the mass matrix
         varies with the speed.
     mass : ndarray, shape (n, n)
         Mass matrix.
@@ -419,12 +419,12 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     mac /= squares[:-1, :, None] * squares[1:, None, :]
     S, _, k = vectors.shape
     order, confidence = np.tile(np.arange(k), (S, 1)), np.ones((S, k))
-    successor = mac.argmax(axis=2)  # successor of each mode, which has the largest sum of MACs
+    successor = mac.argmax(axis=2)  # successors of the modes, with the largest sum of MACs
     unique = (np.sort(successor, axis=1) == np.arange(k)).all(axis=1)
     for s in np.flatnonzero(~unique):
         successor[s] = assign(-mac[s])
     for s in np.flatnonzero((successor != np.arange(k)).any(axis=1)):
-        order[s + 1 :] = successor[s][order[s]]  # holds until the next exchange
+        order[s + 1 :] = successor[s][order[s]]  # valid until the next exchange of modes
     matched = np.take_along_axis(mac, successor[:, :, None], axis=2)[:, :, 0]
     others = mac.copy()
     np.put_along_axis(others, successor[:, :, None], -1.0, axis=2)

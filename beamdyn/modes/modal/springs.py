@@ -1,7 +1,7 @@
-"""Eigenproblems of a beam on root springs, whose stiffness at rest may be singular, or nearly so.
+"""Eigenproblems of a beam on root springs, whose stiffness at rest may be singular or nearly so.
 
 The eigensolver then adds a multiple of the mass, the shift, to the stiffness, and subtracts it from the
-squared frequencies.  This module treats the cases in which that loses digits.
+squared frequencies.  This module handles the cases in which that loses digits.
 """
 
 from __future__ import annotations
@@ -13,20 +13,22 @@ from beamdyn.common.numerics import solve_lower
 from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
-_LOW = 0.1  # ratio of squared frequency to shift below which subtraction would lose digits
-_GRADED = 1e-6  # lowest eigenvalue of a well-conditioned stiffness of unit diagonal
-_GRADED_AT_REST = 1e-12  # lowest eigenvalue of a stiffness at rest of unit diagonal that has digits left
-_UNDAMPED = 1e-6  # ratio of a rotation's damping to the clamped beam's frequency below which it is undamped
-# Relative squared speed at which the search ends, over that at which rotation matters.
+_LOW = 0.1  # ratio of squared frequency to shift below which the subtraction would lose digits
+_GRADED = 1e-6  # smallest eigenvalue of a well-conditioned stiffness that is scaled to unit diagonal
+# Smallest eigenvalue of a stiffness at rest, scaled to unit diagonal, that has correct digits.
+_GRADED_AT_REST = 1e-12
+# Ratio of a rotation's damping rate to the clamped beam's frequency below which the rotation is undamped.
+_UNDAMPED = 1e-6
+# Ratio of the largest squared speed of the search to that at which rotation affects the stiffness.
 _SMALLEST_TRIAL = 1e-12
 
 
 def remove_shift(
     pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, v: np.ndarray, rounding: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Subtract the shift from squared frequencies; for low ones use the Rayleigh quotient.
+    """Subtract the shift from squared frequencies; for low frequencies, use the Rayleigh quotient.
 
-    The error of the quotient is that of the vector squared, and nothing cancels.
+    The error of the quotient is the square of the vector's error, and no digits cancel.
 
     Parameters
     ----------
@@ -44,19 +46,20 @@ def remove_shift(
     Returns
     -------
     squared : ndarray, shape (S, k)
-        Squared frequencies; 0 where they are within their rounding error.
+        Squared frequencies [rad2/s2]; 0 if they are within their rounding error.
     rounding : ndarray, shape (S, k)
         Relative rounding error of the frequencies.
     """
     spin = speeds[:, None, None] ** 2
     K = pencil.K0 + spin * pencil.K2
-    # K2 of a turn about the root is a small difference of tension and spin softening, each as large as M.
+    # For a rotation about the root, K2 is a small difference of tension and spin softening, each as large as
+    # M.
     size = np.abs(pencil.K0) + spin * (np.abs(pencil.K2) + np.abs(pencil.M))
     quotient = np.einsum("snk,snk->sk", v, K @ v)
     count = max(1.0, len(K[0]) / ROUNDING_SIZE)
     lost = count * BACKWARD * np.einsum("snk,snk->sk", np.abs(v), size @ np.abs(v))
-    # The quotient has the error of the vector squared, which the condition of the shifted stiffness at rest
-    # with a unit diagonal magnifies: large with many elements.
+    # The quotient has the square of the vector's error, which is magnified by the condition number of the
+    # shifted stiffness at rest (scaled to unit diagonal): large with many elements.
     shifted = pencil.K0 + pencil.shift * pencil.M
     scale = 1 / np.sqrt(np.diag(shifted))
     values = np.linalg.eigvalsh(scale[:, None] * shifted * scale)
@@ -70,9 +73,10 @@ def remove_shift(
 
 
 def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Separate modes of frequency 0 by the stiffness that rotation adds to them, the softest first.
+    """Separate modes of frequency 0 by the stiffness that rotation gives them, the softest first.
 
-    At rest, all combinations of two such rotations are modes, among which rounding would choose.
+    At rest, every combination of two such rigid rotations is a mode, so that rounding would determine the
+    result.
 
     Parameters
     ----------
@@ -81,7 +85,7 @@ def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) ->
     squared : ndarray, shape (S, k)
         Squared frequencies.
     v : ndarray, shape (S, n, k)
-        Mass-normalised modes, as the result's are.
+        Mass-normalised modes; those of the result are too.
     """
     parted = v.copy()
     for s in np.flatnonzero((squared == 0).sum(axis=1) > 1):
@@ -93,7 +97,8 @@ def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) ->
 def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Select the modes (n, r) on which neither stiffness nor damping acts.
 
-    The eigenvalue 0 is double, and rounding of general equations would split it by its square root.
+    The eigenvalue 0 is double; in general equations, a rounding error would split it by the square root of
+    the error.
 
     Parameters
     ----------
@@ -111,7 +116,7 @@ def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray)
 def insert_free_turns(
     turns: np.ndarray, s: np.ndarray, v: np.ndarray, rounding: np.ndarray, count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Insert rotations (n, r) of eigenvalue 0 into the lowest modes, after those that diverge."""
+    """Insert rigid rotations (n, r) with eigenvalue 0 into the lowest modes, after those that diverge."""
     growing = int(((np.imag(s) == 0) & (np.real(s) > 0)).sum())
     zeros, unknown = np.zeros(turns.shape[1]), np.full(turns.shape[1], np.inf)
     return (
@@ -122,15 +127,16 @@ def insert_free_turns(
 
 
 def softening_of_graded(pencil: SteadyPencil) -> tuple[float, float] | None:
-    """Compute softening as `softening_on_springs` does, from a graded stiffness that is not singular.
+    """Compute softening as `softening_on_springs` does, for a stiffness with entries of very different sizes.
 
-    The springs' entries may be far smaller than others and still have all their digits, as in a Ritz basis,
-    whose other functions do not turn the root.
+    The entries of springs may be far smaller than others and still be accurate, as in a Ritz basis, whose
+    other functions do not rotate the root.
 
     Returns
     -------
     tuple of float, or None
-        Softening and rounding; None if the stiffness at rest with a unit diagonal is singular to rounding.
+        Softening and rounding; None if the stiffness at rest, scaled to unit diagonal, is singular to
+        rounding.
     """
     diagonal = np.diag(pencil.K0)
     if diagonal.min() <= 0:
@@ -153,16 +159,17 @@ def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> 
     """Compute 1/speed^2 at which the stiffness I - shift mass + speed^2 diag(growth) is singular.
 
     The stiffness's lowest eigenvalue is a concave function of the squared speed: once positive, it vanishes
-    at most once.  If a free rotation about the root is softened from rest on, the softening is infinite.
+    at most once.  If rotation softens a free rigid rotation about the root at every speed, the result is
+    infinite.
 
     Parameters
     ----------
     mass : ndarray, shape (n, n)
         Mass matrix.
     growth : ndarray, shape (n,)
-        Diagonal of the stiffness per squared speed.
+        Diagonal of the stiffness, divided by the squared speed.
     shift : float
-        Multiple of the mass.
+        Multiple of the mass matrix.
 
     Returns
     -------
@@ -177,7 +184,7 @@ def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> 
         stiffness = at_rest + squared * spin
         values = np.linalg.eigvalsh(stiffness)
         lowest = float(values[0])
-        if lowest > len(growth) * _EPS * values[-1]:  # definite beyond rounding
+        if lowest > len(growth) * _EPS * values[-1]:  # positive definite beyond rounding
             loss = float(scipy.linalg.eigh(-spin, stiffness, eigvals_only=True)[-1])
             lost = 2 * BACKWARD * float(np.abs(growth).max()) / lowest
             if loss <= lost:
@@ -190,13 +197,13 @@ def softening_on_springs(mass: np.ndarray, growth: np.ndarray, shift: float) -> 
 
 
 def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float] | None:
-    """Compute coordinates in which the stiffness at a speed is the identity, without the shift.
+    """Compute coordinates in which the stiffness at a speed, without the shift, is the identity.
 
     Returns
     -------
     tuple, or None
-        The coordinates in columns (n, n), and the condition number of the stiffness with a unit diagonal;
-        None where it is not positive definite beyond rounding.
+        The coordinates in columns (n, n), and the condition number of the stiffness scaled to unit diagonal;
+        None if the stiffness is not positive definite beyond rounding.
     """
     K = pencil.K0 + speed**2 * pencil.K2
     diagonal = np.diag(K)
@@ -212,7 +219,7 @@ def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float
 
 
 def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
-    """Solve static equilibrium (n,) at a speed; nan where the stiffness is not positive definite."""
+    """Solve static equilibrium (n,) at a speed; nan if the stiffness is not positive definite."""
     K = pencil.K0 + speed**2 * pencil.K2
     try:
         factor = scipy.linalg.cho_factor(K)

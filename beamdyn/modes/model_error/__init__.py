@@ -1,1 +1,1 @@
-"""Model error: changes of an answer by the effects that its model leaves out."""
+"""Model error: changes of a result by the physical effects that its model neglects."""

@@ -1,11 +1,11 @@
-"""Scenes with one more effect, where the beam has the data for it, and what it changes in frequencies.
+"""Scenes with one more physical effect, if the beam has the data, and the effect's change of frequencies.
 
-Changes are those of eigenvalues of reference modes of a model.
-The modes are sought over function spaces in which every effect can be added.  The equations with the effect,
-at the eigenvalue s and mode v of those without it, give a step of inverse iteration, z = D(s)^-1 D'(s) v with
-D(s) = s^2 M + s (C + omega G) + K, whence the new eigenvalue is the root of y^T D(s) z = 0 next to s, with y
-from the transposed equations.  The error of the vectors enters squared: no new eigenproblem is solved, and no
-modes are matched.  Further steps serve large effects and close modes.
+The changes are computed for the eigenvalues of a model's modes, over function spaces in which every effect
+can be added.  The equations with the effect, at the eigenvalue s and mode v of those without it, give a step
+of inverse iteration, z = D(s)^-1 D'(s) v with D(s) = s^2 M + s (C + omega G) + K, and the new eigenvalue is
+the root of y^T D(s) z = 0 nearest to s, with y from the transposed equations.  The error is the square of the
+vectors' error; no new eigenproblem is solved, and no modes are matched.  Large effects and close modes need
+further steps.
 """
 
 from __future__ import annotations
@@ -36,28 +36,28 @@ from beamdyn.scene.rectangle import shear_stiffness_of_rectangle
 from beamdyn.scene.scene import Scene
 
 ASSUMED_POISSONS_RATIO = 0.3
-# Assumed Poisson's ratio of a section without one: the largest of uniform materials, as the change rises with
-# the ratio; or a usual one, by which a frequency of torsion is known to 13 %.
+# Poisson's ratio assumed for sections without one: for camber the largest of uniform materials, as the change
+# rises with the ratio; for torsion a usual one, by which the frequency is known to 13 %.
 _ASSUMED_OF_SECTIONS = {
     effects.CAMBER: (0.5, "with Poisson's ratio 0.5, not given; 0 % with 0"),
     effects.TORSION: (ASSUMED_POISSONS_RATIO, f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"),
 }
 MOST_CAMBER = "as if no section cambered, which is the most"
-_RECTANGLE = 1e-9  # relative tolerance of a radius of gyration that equals that of a rectangle
+_RECTANGLE = 1e-9  # relative tolerance for a radius of gyration to be that of a rectangle
 
 
 @dataclass(frozen=True)
 class Addition:
-    """A scene to which one effect was added.
+    """Scene to which one effect was added.
 
     Parameters
     ----------
     effect : Effect
         The effect.
     scene : Scene
-        The scene that includes the effect, or one that bounds its change.
+        The scene that includes the effect, or a scene that bounds the change.
     assumed : str
-        What was assumed about the beam to include the effect; empty if nothing.
+        Assumption about the beam that was needed to include the effect; empty if none.
     """
 
     effect: effects.Effect
@@ -71,13 +71,14 @@ class Addition:
 
 
 def _assume_shear(beam: Beam) -> Beam | None:
-    """Return the beam with a usual material's shear stiffness; None unless its sections look rectangular.
+    """Return the beam with a usual material's shear stiffness; None unless the sections can be rectangles.
 
     For Poisson's ratios from 0 to 0.5, a rectangle's shear stiffness lies within 28 % of the assumed one.
     """
     if beam.shear_stiffness is not None or beam.axial_stiffness is None or beam.outer_fibre is None:
         return None
-    xi = np.linspace(0, 1, 33)  # rectangles with outer fibre h/2 have EI = EA h^2 / 12
+    # Rectangles of thickness h, with the outer fibre at h/2, have EI = EA h^2 / 12.
+    xi = np.linspace(0, 1, 33)
     gyration = np.sqrt(beam.bending_stiffness(xi) / beam.axial_stiffness(xi))
     if not np.allclose(np.sqrt(3) * gyration, beam.outer_fibre(xi), rtol=_RECTANGLE, atol=0.0):
         return None
@@ -86,7 +87,7 @@ def _assume_shear(beam: Beam) -> Beam | None:
 
 
 def _assume(scene: Scene, effect: effects.Effect) -> Iterator[tuple[Scene, str]]:
-    """Yield the scene and, where an effect lacks data, scenes with assumptions, each with its wording."""
+    """Yield the scene and, if an effect lacks data, scenes with assumed data, each with its description."""
     yield scene, ""
     section, electrodes = scene.beam.strip, scene.beam.electrodes
     if effect in _ASSUMED_OF_SECTIONS and section is not None and section.poissons_ratio is None:
@@ -102,21 +103,21 @@ def _assume(scene: Scene, effect: effects.Effect) -> Iterator[tuple[Scene, str]]
 
 
 def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[str, ...]]:
-    """List the effects that a scene leaves out, except large deflection, by whether they can be added.
+    """List the effects that a scene neglects (except large deflection), by whether they can be added.
 
     Returns
     -------
     additions : list of Addition
         Effects that can be added.
     not_known : dict of str to str
-        Effects that cannot be added, and what input they need.
+        Effects that cannot be added, and the input that they need.
     not_modelled : tuple of str
-        Effects that no model has.
+        Effects that no model can include.
     """
     left_out = [
         effect for effect in effects.effects_left_out(scene) if effect is not effects.LARGE_DEFLECTION
     ]
-    if effects.TWIST in left_out:  # twist needs the second plane: the two are one effect
+    if effects.TWIST in left_out:  # pretwist needs the second plane: the two count as one effect
         left_out.remove(effects.SECOND_PLANE)
     additions, not_known = [], {}
     for effect in (effect for effect in left_out if effect.switch and effect is not effects.TORSION):
@@ -133,9 +134,9 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
 
 
 def add_effect(scene: Scene, effect: effects.Effect) -> Addition:
-    """Add an effect that a scene leaves out, with an assumption about the beam if data are missing.
+    """Add an effect that a scene neglects, with an assumption about the beam if data are missing.
 
-    Camber, where no model has it (twisted beams, widths that jump), is replaced by a bound.
+    Camber that no model can include (twisted beams, widths that jump) is replaced by a bound.
 
     Raises
     ------
@@ -168,7 +169,7 @@ def without_camber(scene: Scene) -> Scene:
 
 
 def can_add(scene: Scene, effect: effects.Effect) -> bool:
-    """Whether an effect that a scene leaves out can be added with the data of its beam."""
+    """Return whether a neglected effect can be added to a scene with the data of its beam."""
     with suppress(InvalidValue):
         return bool(add_effect(scene, effect))
     return False
@@ -176,22 +177,23 @@ def can_add(scene: Scene, effect: effects.Effect) -> bool:
 
 # Reference modes -------------------------------------------------------------------------------------
 
-_MOST = 160  # largest number of coordinates of a model: an estimate of a change needs no more
-_APART = 1e-8  # relative distance kept from the eigenvalue, where the equations are singular
-_AT_CLAMP = 3  # functions along each segment, beyond the number of modes, that resolve camber near a clamp
-# Number of functions across the width, which miss 1 % of the change by the clamp, and 0.1 % of torsion.
+_MOST = 160  # largest number of coordinates of a model that suffices to estimate a change
+_APART = 1e-8  # relative distance kept from an eigenvalue, where the equations are singular
+_AT_CLAMP = 3  # number of functions along each segment, beyond that of modes, to resolve camber near a clamp
+# Number of functions across the width.  The error is 1 % of the change of camber by the clamp, and 0.1 % for
+# torsion.
 _ACROSS = 4
 _STEPS = 8  # largest number of inverse iterations: one suffices unless the effect is large or modes are close
-# The iteration ends at a step of this size relative to the change, or relative to the eigenvalue.
+# The iteration ends at a step of this size, relative to the change, or relative to the eigenvalue.
 _CONVERGED, _ROUNDING = 0.01, 1e-9
-KEPT = 0.5  # squared product, by the mass, of two modes of norm 1, below which they count as different modes
-# Number of higher modes computed in addition, with which the wanted modes may exchange their order.
+KEPT = 0.5  # squared mass product of two unit modes, below which they count as different modes
+# Number of additional higher modes, with which the requested modes may exchange their order.
 EXTRA_MODES = 2
 
 
 @dataclass(frozen=True)
 class BaseEquations:
-    """Equations of a scene without further effects, in function spaces in which each effect can be added.
+    """Equations of a scene without additional effects, in function spaces that allow adding each effect.
 
     Parameters
     ----------
@@ -209,14 +211,14 @@ class BaseEquations:
 
     @classmethod
     def of(cls, model: Model, modes: int) -> BaseEquations:
-        """Build equations over the spaces of a model, or of a coarser one that suffices for `modes` modes."""
+        """Build equations over a model's function spaces, or coarser ones that suffice for `modes` modes."""
         discretization, segments = model.discretization, len(model.scene.beam.breakpoints) - 1
         while model.equations.modes > _MOST and discretization.coarser() != discretization:
             if not discretization.coarser().fits(max(2, -(-modes // segments))):
                 break
             discretization = discretization.coarser()
             model = Model(model.scene, discretization)
-        # Where the width is modelled, the modelled beam has the breakpoints that any other effect needs.
+        # If the width is modelled, the modelled beam already has the breakpoints that other effects need.
         has_width = model.scene.models_width
         spaces = discretization.spaces(model.scene.modelled_beam if has_width else model.scene.beam)
         if spaces.shares_functions(discretization.spaces(model.scene.modelled_beam)):
@@ -224,9 +226,9 @@ class BaseEquations:
         return cls(model.scene, spaces, assemble_over(model.scene, spaces))
 
     def suited_to(self, extended: Scene, modes: int) -> BaseEquations:
-        """Return equations over spaces that resolve an effect of the extended scene, for `modes` modes.
+        """Return equations over function spaces that resolve an effect of the extended scene in modes.
 
-        A clamp hinders camber near the root, where the scene with camber has breakpoints.
+        The clamp hinders camber near the root, so that the scene with camber has breakpoints there.
         """
         if not extended.physics.camber or self.scene.physics.camber:
             return self
@@ -234,11 +236,11 @@ class BaseEquations:
         return BaseEquations(self.scene, spaces, assemble_over(self.scene, spaces))
 
     def extend(self, scene: Scene) -> Equations:
-        """Assemble the equations of the scene with an effect, over the same spaces."""
+        """Assemble the equations of the scene with an effect, over the same function spaces."""
         return assemble_over(scene, self.spaces)
 
     def embed(self, equations: Equations, vectors: np.ndarray) -> np.ndarray:
-        """Embed vectors (n, ...) in the coordinates (N, ...) of extended equations; further fields are 0."""
+        """Embed vectors (n, ...) in coordinates (N, ...) of extended equations; additional fields are 0."""
         embedded = np.zeros((equations.size, *vectors.shape[1:]), dtype=vectors.dtype)
         for name, place in self.equations.blocks.items():
             embedded[equations.blocks[name]] = vectors[place]
@@ -249,7 +251,7 @@ class BaseEquations:
         return solver_of(self.equations)
 
     def modes(self, speed: float, eigenvalue: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Find eigenvalues (m,) and modes (n, m) of these equations, each nearest to a given eigenvalue."""
+        """Compute eigenvalues (m,) and modes (n, m) of these equations, nearest to given eigenvalues."""
         count = min(len(eigenvalue) + EXTRA_MODES, self._solver.size)
         found = self._solver.solve(np.array([speed]), count)
         order = assign(np.abs(eigenvalue[:, None] - found.eigenvalue[0][None, :]))
@@ -263,7 +265,7 @@ def clamp_spaces(scene: Scene, modes: int) -> Spaces:
 
 
 def match_modes(equations: Equations, speed: float, vectors: np.ndarray, count: int) -> np.ndarray:
-    """Find the modes of equations that consist mostly of the given modes, by solving an eigenproblem.
+    """Find the modes of equations that consist mostly of given modes, by solving an eigenproblem.
 
     Parameters
     ----------
@@ -274,12 +276,12 @@ def match_modes(equations: Equations, speed: float, vectors: np.ndarray, count: 
     vectors : ndarray, shape (n, m)
         Modes of other equations in these coordinates.
     count : int
-        Number of modes that are solved for.
+        Number of modes that are computed.
 
     Returns
     -------
     ndarray of complex, shape (m,)
-        Eigenvalues [1/s]; nan where no mode contains more than half of the given one.
+        Eigenvalues [1/s]; nan if no mode contains more than half of the given one.
     """
     M, solver = equations.steady().M, solver_of(equations)
     found = solver.solve(np.array([speed]), min(count, solver.size))
@@ -291,7 +293,7 @@ def match_modes(equations: Equations, speed: float, vectors: np.ndarray, count: 
 
 
 def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Estimate the eigenvalues of a pencil next to the eigenvalues of simpler equations.
+    """Estimate the eigenvalues of equations with an effect, near those of equations without it.
 
     Parameters
     ----------
@@ -307,22 +309,22 @@ def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.n
     Returns
     -------
     ndarray of complex, shape (m,)
-        The eigenvalues [1/s]; nan where the equations give none.
+        The eigenvalues [1/s]; nan if there is none.
     """
     M, C, K = pencil.M, pencil.C + speed * pencil.G, pencil.K0 + speed**2 * pencil.K2
     scale = _scale(M, K)  # functions of high order have large entries
     M, C, K = (scale[:, None] * A * scale for A in (M, C, K))
     modes = (v / scale[:, None]).T
-    with np.errstate(divide="ignore", invalid="ignore"):  # singular equations give no mode
+    with np.errstate(divide="ignore", invalid="ignore"):  # singular equations have no mode
         each = [_shift(M, C, K, at, x) for at, x in zip(s.tolist(), modes, strict=True)]
     return np.array(each, dtype=complex)
 
 
 def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarray) -> complex:
-    """Find the eigenvalue next to s, starting from the mode x without the effect."""
+    """Find the eigenvalue nearest to s, starting from the mode x without the effect."""
     y, z, at = x.conj(), x, s
     for _ in range(_STEPS):
-        # One step of inverse iteration of left and right vectors; not finite where D is singular.
+        # One step of inverse iteration for left and right vectors; not finite if D is singular.
         near = at * (1 + _APART)
         derivative = 2 * near * M + C
         factors, pivots, _ = zgetrf(near * near * M + near * C + K, overwrite_a=True)
@@ -339,7 +341,7 @@ def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarra
 
 
 def _scale(M: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Compute factors (n,) that scale the diagonal of the stiffness, or else of the mass, to 1."""
+    """Compute factors (n,) that scale the diagonal of the stiffness, or otherwise of the mass, to 1."""
     size = np.where(np.diag(K) > 0, np.abs(np.diag(K)), np.abs(np.diag(M)))
     return 1 / np.sqrt(np.where(size > 0, size, 1.0))
 
@@ -353,7 +355,7 @@ def _root_near(s: complex, a: complex, b: complex, c: complex) -> complex:
 
 
 def shift_critical_speed(pencil: SteadyPencil, critical: float, v: np.ndarray) -> float:
-    """Estimate the critical speed of equations with an effect, next to that of simpler equations.
+    """Estimate the critical speed of equations with an effect, near that of equations without it.
 
     Parameters
     ----------
@@ -381,7 +383,7 @@ def shift_critical_speed(pencil: SteadyPencil, critical: float, v: np.ndarray) -
 
 
 def buckling_mode(pencil: SteadyPencil, critical: float) -> np.ndarray:
-    """Find the mode (n,) on which the stiffness vanishes at the critical speed [rad/s]."""
+    """Find the mode (n,) for which the stiffness vanishes at the critical speed [rad/s]."""
     scale = _scale(pencil.M, pencil.K0)
     K = scale[:, None] * (pencil.K0 + critical**2 * pencil.K2) * scale
     values, vectors = np.linalg.eigh(K)

@@ -1,10 +1,11 @@
-"""Choice of the physics: which effects an answer needs so that it meets a tolerance.
+"""Automatic choice of the physics: the effects that a result needs in order to meet a tolerance.
 
-The sizes of the effects are estimated about the plain beam.  The largest is added, and the rest estimated
-again about the beam with it, until the sizes of those left out, summed at each value of the answer, are at
-most half the tolerance: an estimate may be low by a factor of two.  So nothing below a tenth of the tolerance
-is added.  Large deflection excludes camber, and in motions, which have it in one plane alone, shear, stretch
-and a second plane: where both sides are needed, the set that leaves less out is taken.
+The size of an effect is the relative change that it causes.  Sizes are estimated for the plain beam.  The
+largest effect is added, and the others are estimated again for the beam with it, until the sizes of the
+neglected effects, summed for each value of the result, are at most half the tolerance, as an estimate may be
+too low by a factor of two.  Effects below a tenth of the tolerance are not added.  Large deflection excludes
+camber, and in transients, where it is in one plane only, shear, stretch and a second plane; if both are
+needed, the set with the smaller neglected effects is used.
 """
 
 from __future__ import annotations
@@ -38,29 +39,30 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import refuse_bending_in_space
 
 NOTHING_BARRED: Mapping[str, str] = MappingProxyType({})
-PHYSICS_TOLERANCE = 1e-3  # relative change by effects left out that is allowed unless a tolerance is given
-_SMALL = 0.1  # fraction of the tolerance below which no effect is added
-_SOLVED = 0.1  # fraction of the tolerance to which the modes that the effects change are solved
-_MODES = 3  # number of modes by which a motion is judged
-_SHORT = 0.2  # computing time [s] below which an answer is computed twice, and the shorter time counts
-_ROUGH = 2.0  # largest change of a frequency over the squared ratio of static deflection and length
+PHYSICS_TOLERANCE = 1e-3  # allowed relative change by neglected effects, unless a tolerance is given
+_SMALL = 0.1  # fraction of the tolerance below which an effect is not added
+_SOLVED = 0.1  # fraction of the tolerance to which the modes changed by effects are computed
+_MODES = 3  # number of modes by which the physics of a motion is chosen
+_SHORT = 0.2  # computing time [s] below which a result is computed twice, and the shorter time counts
+_ROUGH = 2.0  # largest relative change of a frequency, over the squared ratio of static deflection to length
 _BENDING = LARGE_DEFLECTION.name
 _NOTHING = "no mode vibrates and is stable"
 
 
 @dataclass(frozen=True)
 class EffectSizes:
-    """Sizes of the effects that a scene leaves out, in one answer.
+    """Sizes (relative changes) of the effects that a scene neglects, for one result.
 
     Parameters
     ----------
     sizes : dict of str to float
-        Largest relative change by each effect; inf where it changes which modes there are, nan if it is not
-        known.
+        Largest relative change by each effect; inf if the effect changes which modes exist, nan if the change
+        is not known.
     reasons : dict of str to str
-        Why an effect cannot be added, or its size is not known.
+        Reason why an effect cannot be added, or why its size is not known.
     strained : float
-        Order of magnitude of the relative change by the strain due to rotation, which no model includes.
+        Order of magnitude of the relative change by the axial strain due to rotation, which no model
+        includes.
     """
 
     sizes: dict[str, float]
@@ -69,10 +71,10 @@ class EffectSizes:
 
 
 Judge = Callable[[Scene], EffectSizes]
-Solve = Callable[[Scene], int]  # computes the answer for a scene, and returns the number of its coordinates
+Solve = Callable[[Scene], int]  # computes the result for a scene, and returns its number of coordinates
 
 
-# Choices for different answers -----------------------------------------------------------------------
+# Choices for different kinds of results --------------------------------------------------------------
 
 
 def choose_physics(
@@ -83,27 +85,27 @@ def choose_physics(
     barred: Mapping[str, str] = NOTHING_BARRED,
     in_space: bool = True,
 ) -> Scene:
-    """Choose the physics of a scene where it is "auto", by the frequencies at some speeds.
+    """Choose the physics of a scene with physics "auto", by the frequencies at some speeds.
 
     Parameters
     ----------
     scene : Scene
-        The scene; if its physics is not "auto", it is returned as it is.
+        The scene; if its physics is not "auto", it is returned unchanged.
     speeds : sequence of float
-        Speeds [rad/s]; the effects are judged at the slowest, the fastest and the middle one.
+        Speeds [rad/s]; effects are estimated at the slowest, the fastest and the middle one.
     modes : int
         Number of modes.
     tolerance : float, optional
-        Relative change of a frequency that may be left out; 1e-3 if not given.
+        Relative change of a frequency that may be neglected; 1e-3 if not given.
     barred : mapping of str to str
-        Names of effects that the analysis cannot include, and why.
+        Names of effects that the analysis cannot include, with the reason.
     in_space : bool
         Whether the analysis can include large deflection in space.
 
     Returns
     -------
     Scene
-        The scene with the physics, and how it was chosen.
+        The scene with the chosen physics and a record of the choice.
     """
     if not scene.chooses_physics:
         return scene
@@ -120,10 +122,11 @@ def choose_physics(
         found, bent, rough = solve(candidate), candidate.physics.large_deflection, math.nan
         s = found.eigen.eigenvalue[:, :modes]
         effects, counts = left_out_of_modes(found.model, some, s), vibrate(s)
-        if bent:  # other effects are then judged on the straight beam, where it is stable
+        if bent:  # other effects are then estimated for the straight beam, if the straight beam is stable
             counts &= vibrate(without_large_deflection(found.model).solver.eigenvalues(some, modes))
-        elif bends(found.model):  # the static deflection gives a generous estimate of large deflection
-            # Where the straight beam is unstable, though rotation bends it before, its results are wrong.
+        elif bends(found.model):  # the static deflection gives a conservative estimate of large deflection
+            # If the straight beam is unstable but rotation bends it at lower speeds, results for the straight
+            # beam are wrong.
             ratio = np.linalg.norm(found.model.static_tips(some), axis=1) / candidate.beam.length
             rough = math.inf if np.isnan(ratio).any() else float(_ROUGH * np.max(ratio) ** 2)
         sizes = _sizes_in_modes(candidate, effects, counts, rough)
@@ -132,33 +135,34 @@ def choose_physics(
     def count(candidate: Scene) -> int:
         return solve(candidate).model.solver.size
 
-    undamped = scene.undamped  # damped modes take long to find, and effects change them alike
+    # Damped modes take long to compute, and effects change them like undamped modes.
+    undamped = scene.undamped
     chosen = choose_by(undamped, judge, count, tolerance, some, barred)
     return replace(chosen, damping_ratio=scene.damping_ratio, damping=scene.damping)
 
 
 def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, tolerance: float) -> Scene:
-    """Choose the physics of a scene where it is "auto", for its motion over a range of speeds.
+    """Choose the physics of a scene with physics "auto", for its motion over a range of speeds.
 
-    The frequencies decide: of the modes that are asked for, or of the lowest three.  The tolerance is that of
-    the analysis, but at least 1e-3: the default tolerances of motions are for the numerical errors.  The
-    other parameters and what is returned are those of `choose_physics`.
+    The choice is made by the frequencies of the requested modes, or of the lowest three.  The tolerance is
+    that of the analysis, but at least 1e-3: default tolerances of transients refer to numerical errors.
+    Other parameters and the result are as for `choose_physics`.
     """
     tolerance = max(tolerance, PHYSICS_TOLERANCE)
     return choose_physics(scene, speeds, modes or _MODES, tolerance, in_space=False)
 
 
 def plain_physics(scene: Scene) -> Scene:
-    """Return the scene with the plain beam's physics where it is "auto", for analyses of the plain beam.
+    """Replace physics "auto" by that of the plain beam, for analyses that support only the plain beam.
 
-    A curved axis bends in both directions and twists under any load, as far as the beam has the data: it is
-    a beam in space from the start.
+    A beam with a curved axis bends in both directions and twists under any load, as far as it has the data:
+    it is always modelled in space.
     """
     return replace(scene, physics=_plain_of(scene.beam)) if scene.chooses_physics else scene
 
 
 def _plain_of(beam: Beam) -> Physics:
-    """Choose the least physics that can describe the axis of a beam: plain unless it is curved."""
+    """Choose the simplest physics that can describe the axis of a beam: plain unless the axis is curved."""
     if beam.matrices is not None:
         return Physics(2, shear=True, rotary_inertia=True, stretch=True, torsion=True, large_deflection=True)
     if not beam.is_curved:
@@ -170,9 +174,9 @@ def _plain_of(beam: Beam) -> Physics:
 
 
 def _change_by_strain(found: EstimatedModes, speeds: np.ndarray) -> float:
-    """Estimate the change of the first frequency by strain, as a stiffness change of the strain's size.
+    """Estimate the first frequency's relative change by axial strain, as a stiffness change of that size.
 
-    Where rotation softens the beam, the change relative to the remaining stiffness is larger accordingly.
+    If rotation softens the beam, the change is relative to the remaining stiffness.
     """
     _, strain = static_load(found.model, speeds)
     first = np.abs(found.eigen.eigenvalue[:, 0])
@@ -182,12 +186,12 @@ def _change_by_strain(found: EstimatedModes, speeds: np.ndarray) -> float:
 
 
 def _sizes_in_modes(scene: Scene, effects: LeftOutEffects, counts: np.ndarray, rough: float) -> EffectSizes:
-    """Find the sizes of effects: their largest relative changes of the values marked in `counts`.
+    """Compute the sizes of effects: their largest relative changes of the values marked in `counts`.
 
-    If its size is unknown, large deflection has the size `rough`. An effect that changes which modes there
-    are can be added, although its size is not known.
+    If the size of large deflection is unknown, it is `rough`.  An effect that changes which modes exist can
+    be added although its size is not known.
     """
-    sizes = {}  # inf if a value that counts is unknown, nan if none counts
+    sizes = {}  # inf if a marked value is unknown, nan if no value is marked
     for name, change in effects.changes.items():
         counted = np.abs(change[np.broadcast_to(counts, change.shape)])
         sizes[name] = float(np.nan_to_num(counted, nan=np.inf).max()) if counted.size else math.nan
@@ -221,7 +225,8 @@ def warn_of_peak(scene: Scene, deflection: float) -> Iterator[Statement]:
 def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
     """Add large deflection to chosen physics if it matters at a computed deflection [m].
 
-    Large deflection replaces the effects that it excludes, if they change less.  None if it is not added.
+    Large deflection replaces the effects that it excludes, if those are smaller.  None if large deflection is
+    not added.
     """
     choice, size = scene.physics_choice, _ROUGH * (deflection / scene.beam.length) ** 2
     if choice is None or choice.physics.large_deflection or size <= choice.tolerance:
@@ -249,19 +254,19 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
 
 
 def warn_of_plain(scene: Scene) -> Iterator[Statement]:
-    """Yield a warning if the physics is "auto" in an analysis that can only use the plain beam."""
+    """Yield a warning if physics "auto" is given to an analysis that supports only the plain beam."""
     if scene.chooses_physics:
         plain = "curved beam in space" if plain_physics(scene).physics.large_deflection else "plain beam"
         said = f"physics = auto: nothing is added here, the answer is that of the {plain}"
         yield Statement(said, kind=INPUT, quantity="physics")
 
 
-# The choice by any answer ----------------------------------------------------------------------------
+# The choice for any kind of result --------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class _Candidate:
-    """A scene with some effects included, and what is known of the other effects.
+    """Scene with some effects included, and the sizes of the other effects.
 
     Parameters
     ----------
@@ -272,9 +277,9 @@ class _Candidate:
     left_out : dict of str to float
         Sizes of the other effects.
     reasons : dict of str to str
-        Why an effect cannot be added, or its size is not known.
+        Reason why an effect cannot be added, or why its size is not known.
     strained : float
-        Order of magnitude of the relative change by the strain due to rotation.
+        Order of magnitude of the relative change by the axial strain due to rotation.
     """
 
     scene: Scene
@@ -285,13 +290,13 @@ class _Candidate:
 
     @property
     def beyond_models(self) -> float:
-        """Relative error that no model here covers: errors of included effects, and the strain."""
+        """Relative error that every model here has: errors of the included effects, and the axial strain."""
         missed = (NAMED[name].uncertainty * min(size, 1.0) for name, size in self.included.items())
         return sum(missed, self.strained)
 
     @property
     def model_error(self) -> float:
-        """Sum of the known sizes of the effects left out, a relative change."""
+        """Sum of the known sizes of the neglected effects, a relative change."""
         return sum(size for size in self.left_out.values() if not math.isnan(size))
 
     def addable(self) -> dict[str, float]:
@@ -300,24 +305,24 @@ class _Candidate:
         return {name: size for name, size in known.items() if name not in self.reasons}
 
     def without(self, name: str, reason: str) -> _Candidate:
-        """Return the candidate with a reason why an effect cannot be added."""
+        """Return the candidate with an effect marked as one that cannot be added, for a given reason."""
         return replace(self, reasons={name: reason} | self.reasons)
 
     def add(self, name: str, judge: Judge) -> _Candidate:
-        """Return the candidate with one more effect, about which the others are judged again.
+        """Return the candidate with one more effect, and with new sizes of the other effects.
 
         Raises
         ------
         InvalidValue
             If the beam lacks data for the combined effects.
         ArithmeticError
-            If there is no answer with the effect.
+            If there is no result with the effect.
         """
         scene = add_effects(self.scene, [NAMED[name]])
         judged, included = judge(scene), self.included | {name: self.left_out[name]}
         left_out = {}
         for other in (name for name in self.left_out if name not in included):
-            size = judged.sizes.get(other, math.nan)  # an effect of unknown size keeps its former size
+            size = judged.sizes.get(other, math.nan)  # an effect of unknown size keeps its previous size
             rough = other == _BENDING and other in judged.reasons
             left_out[other] = self.left_out[other] if rough or math.isnan(size) else size
         return _Candidate(scene, included, left_out, judged.reasons | self.reasons, judged.strained)
@@ -331,27 +336,27 @@ def choose_by(
     speeds: np.ndarray,
     barred: Mapping[str, str] = NOTHING_BARRED,
 ) -> Scene:
-    """Choose the physics by any answer of an analysis.
+    """Choose the physics by the result of any analysis.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     judge : callable
-        Function that returns the sizes of the effects that a scene leaves out.
+        Function that returns the sizes of the effects that a scene neglects.
     solve : callable
-        Function that computes the answer for a scene and returns its number of coordinates; it is timed.
+        Function that computes the result for a scene and returns its number of coordinates; it is timed.
     tolerance : float
-        Relative change that may be left out.
+        Relative change that may be neglected.
     speeds : ndarray
-        Speeds [rad/s] at which the effects are judged.
+        Speeds [rad/s] at which the effects are estimated.
     barred : mapping of str to str
-        Names of effects that the analysis cannot include, and why.
+        Names of effects that the analysis cannot include, with the reason.
 
     Returns
     -------
     Scene
-        The scene with the physics, and how it was chosen.
+        The scene with the chosen physics and a record of the choice.
     """
     plain = plain_physics(scene)
     judged = judge(plain)
@@ -362,13 +367,13 @@ def choose_by(
     needed = start.addable().get(_BENDING, 0.0) > _SMALL * tolerance
     if needed and best.model_error > EFFECTS.factor * tolerance:
         try:
-            # Large deflection with the effects that it can be combined with.
+            # Large deflection, with the effects that can be combined with it.
             bent = start.add(_BENDING, judge)
             bent = _grow(bent, judge, tolerance, {n for n in bent.left_out if not NAMED[n].bends_in_space})
             refused = [bent.reasons[name] for name in best.included if name in bent.reasons]
             if bent.model_error < best.model_error:
                 best = bent
-            elif refused:  # an effect already chosen cannot be combined with large deflection
+            elif refused:  # an effect already chosen excludes large deflection
                 best = best.without(_BENDING, refused[0])
         except (InvalidValue, ArithmeticError) as error:
             best = best.without(_BENDING, reason_of(error))
@@ -376,7 +381,7 @@ def choose_by(
 
 
 def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str]) -> _Candidate:
-    """Add effects, except barred ones, until the sizes of all that can be added sum to half the tolerance."""
+    """Add effects, except those in `barred`, until the other addable ones sum to half the tolerance."""
 
     def sizes(found: _Candidate) -> dict[str, float]:
         return {name: size for name, size in found.addable().items() if name not in barred}
@@ -399,7 +404,7 @@ def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str
 def _describe(
     best: _Candidate, plain: Scene, solve: Solve, tolerance: float, speeds: np.ndarray
 ) -> PhysicsChoice:
-    """Describe the choice in numbers: the size of each effect, and its cost."""
+    """Describe the choice in numbers: size and computing cost of each effect."""
     without, costs = _cost(plain, solve) if best.included else np.ones(2), {}
     for name in best.included:
         costs[name] = _cost(add_effects(plain, [NAMED[name]]), solve) / without
@@ -425,7 +430,7 @@ def _describe(
 
 
 def _why(name: str, best: _Candidate, tolerance: float) -> str:
-    """Say why an effect is left out; empty if its size decides, or it can be added."""
+    """Explain why an effect is neglected; empty if that follows from its size, or if it can be added."""
     if best.left_out[name] <= _SMALL * tolerance:
         return ""
     if name in best.reasons:
@@ -437,11 +442,11 @@ def _why(name: str, best: _Candidate, tolerance: float) -> str:
 
 
 def _cost(scene: Scene, solve: Solve) -> np.ndarray:
-    """Measure time [s] and number of coordinates of the answer for a scene."""
+    """Measure the computing time [s] and the number of coordinates of the result for a scene."""
     start = perf_counter()
     size = solve(scene)
     time = perf_counter() - start
-    if time < _SHORT:  # other work of the machine would distort short times
+    if time < _SHORT:  # other processes would distort short times
         solve(scene)
         time = min(time, perf_counter() - start - time)
     return np.array([time, size])

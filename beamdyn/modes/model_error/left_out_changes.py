@@ -1,12 +1,12 @@
-"""Changes by the effects that a model leaves out: in frequencies, critical speeds, or any answer.
+"""Changes by the effects that a model neglects: of frequencies, critical speeds, or any result.
 
-In frequencies and critical speeds most effects are estimated from the reference modes.  Large deflection, and
-changes of all other answers, are found by solving again.
+Most changes of frequencies and critical speeds are estimated from the model's modes.  Changes by large
+deflection, and changes of all other results, are computed by solving again.
 
-Modes of kinds that a model lacks are counted as the body has them below the highest listed mode.
-A beam that bends in one plane, and neither twists nor cambers nor stretches, has no modes of the other
-direction, of torsion, of camber and of stretch.  They are found where the beam has the data; those of the
-other direction with shear and the rotary inertia of sections, as far as there are data of these.
+Modes of the real body that the model lacks are listed too, up to its highest mode.  A model in one plane,
+without torsion, camber and stretch, lacks the modes of the other direction, of torsion, of camber and of
+stretch.  They are computed if the beam has the data; those of the other direction with shear and rotary
+inertia, if there are data.
 """
 
 from __future__ import annotations
@@ -45,14 +45,14 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, UnlistedM
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
-# Reasons why large deflection cannot be added, by the field named in the refusal.
-_TWO_PLANES = "in two planes it is not judged: modes may cross"
-_OF_BENDING = "it is solved of modes of bending"
+# Reasons why large deflection cannot be added, by the name of the field in the error raised.
+_TWO_PLANES = "not estimated for two planes, where modes may cross"
+_OF_BENDING = "computed only for bending modes"
 _HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
 _REFUSED = {
-    "mount.bending_angle": "it is solved where the bending angle is a multiple of 90 deg",
-    "mount.precone": "it is solved without precone",
-    "physics.large_deflection": "here it is solved in one plane of bending",
+    "mount.bending_angle": "computed only if the bending angle is a multiple of 90 deg",
+    "mount.precone": "computed only without precone",
+    "physics.large_deflection": "computed here only for one plane of bending",
 }
 EXCLUDED = _TWO_PLANES, _HINGED, *_REFUSED.values()
 _NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not buckle"
@@ -60,13 +60,14 @@ _BENT = Setting("physics", large_deflection=True, branch="bent")
 _BUCKLED = Words("the straight beam is unstable: ", _BENT, " bends it")
 _NOT_FOUND = "the equilibrium was not found"
 _LOST = "it turns a mode into others"
-_UNSTABLE = "it is judged on the straight beam, which is unstable"
+_UNSTABLE = "estimated for the straight beam, which is unstable"
 _STRAIGHT = "as of the straight beam"
-_STILL = "it is judged on the straight beam, which does not deflect"
-LOADED = "it is judged on the straight beam, which has no load at its tip"
-_AMONG = 4  # number of modes with the effect, for each mode without it, among which its partner is sought
-_REAL = 1e-8  # growth rate relative to the frequency, that is rounding
-_ROUNDING = 1e-13  # relative difference of two solutions of equations that an effect does not change
+_STILL = "estimated for the straight beam, which does not deflect"
+LOADED = "estimated for the straight beam, which has no load at its tip"
+# Number of modes with the effect, per mode without it, among which the corresponding mode is searched.
+_AMONG = 4
+_REAL = 1e-8  # ratio of growth rate to frequency below which the growth rate is a rounding error
+_ROUNDING = 1e-13  # relative difference between solutions of equations that an effect does not change
 
 Change: TypeAlias = Callable[[Addition], np.ndarray]
 
@@ -75,7 +76,7 @@ Change: TypeAlias = Callable[[Addition], np.ndarray]
 
 
 def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> LeftOutEffects:
-    """Estimate what the effects that a model leaves out would change in frequencies at some speeds.
+    """Estimate how much the effects that a model neglects change the frequencies at some speeds.
 
     Parameters
     ----------
@@ -89,8 +90,8 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
     Returns
     -------
     LeftOutEffects
-        Relative changes (S, m), nan for a mode that does not vibrate or is unstable, without the effect or
-        with it.
+        Relative changes (S, m), nan for a mode that does not vibrate or is unstable, with or without the
+        effect.
     """
     modes = eigenvalue.shape[1]
     if model.scene.tip_load.acts:
@@ -127,28 +128,29 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
 
 
 def vibrate(s: np.ndarray) -> np.ndarray:
-    """Whether modes have a frequency, and a growth rate that is 0 within rounding."""
+    """Return whether modes have a frequency, and a growth rate that is 0 within rounding."""
     return (np.imag(s) > 0) & (np.real(s) <= _REAL * np.abs(s))
 
 
 def _diverge(s: np.ndarray) -> np.ndarray:
-    """Whether modes grow without oscillating."""
+    """Return whether modes grow without oscillation."""
     return (np.imag(s) == 0) & (np.real(s) > 0)
 
 
 def _shifted(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Estimate with an effect the eigenvalues s (m,) of modes v (n, m) that vibrate or diverge without it."""
+    """Estimate, with an effect, the eigenvalues of modes s (m,), v (n, m) that vibrate or diverge without."""
     known = vibrate(s) | _diverge(s)
     shifted = np.full(len(s), np.nan, dtype=complex)
     shifted[known] = added_effects.shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
     lost = known & np.isnan(shifted)
-    if lost.any():  # a step of inverse iteration may lead to a neighbouring mode
+    if lost.any():  # inverse iteration may converge to a neighbouring mode
         shifted[lost] = added_effects.match_modes(equations, speed, v[:, lost], _AMONG * len(s))
-    return np.where(np.imag(shifted) < 0, shifted.conj(), shifted)  # the listed one of a conjugate pair
+    # The one with Im s > 0 of each conjugate pair is listed.
+    return np.where(np.imag(shifted) < 0, shifted.conj(), shifted)
 
 
 def _say_reversal(s: np.ndarray, shifted: np.ndarray) -> str:
-    """Say whether an effect makes a vibrating mode diverge, or a diverging one vibrate; else empty."""
+    """State whether an effect makes a vibrating mode diverge, or a diverging one vibrate; or empty."""
     if (vibrate(s) & _diverge(shifted)).any():
         return "with it a mode diverges that vibrates here"
     return "with it a mode vibrates that diverges here" if (_diverge(s) & vibrate(shifted)).any() else ""
@@ -157,11 +159,11 @@ def _say_reversal(s: np.ndarray, shifted: np.ndarray) -> str:
 def _large_deflection_change(
     model: Model, speeds: np.ndarray, eigenvalue: np.ndarray, of_bending: np.ndarray
 ) -> tuple[np.ndarray, str]:
-    """Find changes of frequencies (S, m) by large deflection, nan if unknown, and why they are unknown.
+    """Compute changes of frequencies (S, m) by large deflection, nan if unknown, and why they are unknown.
 
-    Effects that it cannot be combined with are left out of both beams compared: the change is then to first
-    order, and unknown for modes that are not bending modes (S, m).  Modes of a beam in one plane keep
-    their order.  At rest, and where the straight beam is in equilibrium, nothing changes.
+    Effects that exclude large deflection are omitted from both beams compared: the change is then accurate to
+    first order, and unknown for modes other than bending (S, m).  Modes of a beam in one plane keep their
+    order.  The change is 0 at rest, and if the straight beam is in equilibrium.
     """
     if not bends(model):
         unstable = (np.real(eigenvalue) > 0).any(axis=1, keepdims=True) & (speeds != 0)[:, None]
@@ -174,8 +176,8 @@ def _large_deflection_change(
         straight, bent = (Model(scene, model.discretization) for scene in _comparable(model.scene))
     except InvalidValue as refusal:
         return unknown, _REFUSED.get(refusal.field, _HINGED)
-    # The solver finds the equilibria at all speeds along one branch, and caches them.  If the branch does
-    # not reach all speeds, none is cached, and each is sought separately.
+    # The solver continues the equilibria through all speeds on one branch, and caches them.  If the branch
+    # does not reach all speeds, none is cached, and each is searched separately.
     with suppress(ArithmeticError, np.linalg.LinAlgError):
         bent.solver.solve_static(speeds, np.empty((0, bent.solver.size)))
     change, reasons = unknown, dict.fromkeys([] if of_bending.all() else [_OF_BENDING])
@@ -199,7 +201,7 @@ def _bent_change_at(
     order = assign(np.abs(eigenvalue[:, None] - without[None, :]))
     try:
         within = bent.solver.solve(speeds, count).eigenvalue[0]
-    except (ArithmeticError, np.linalg.LinAlgError) as error:  # a hinged beam has no single equilibrium
+    except (ArithmeticError, np.linalg.LinAlgError) as error:  # a hinged beam has no unique equilibrium
         unknown = np.full(len(eigenvalue), np.nan)
         return unknown, _NOT_FOUND if isinstance(error, np.linalg.LinAlgError) else reason_of(error)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -218,7 +220,7 @@ def _comparable(scene: Scene) -> tuple[Scene, Scene]:
 
 
 def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
-    """Estimate what the effects that a model leaves out would change in its critical speed.
+    """Estimate how much the effects that a model neglects change its critical speed.
 
     Parameters
     ----------
@@ -238,20 +240,20 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
         near = base.suited_to(added.scene, 1)
         pencil, equations = near.equations.steady(), near.extend(added.scene)
         v = added_effects.buckling_mode(pencil, critical)
-        # Both critical speeds are those in the function spaces that suit the effect.
+        # Both critical speeds are computed in the function spaces that suit the effect.
         known = added_effects.shift_critical_speed(pencil, critical, v)
         shifted = added_effects.shift_critical_speed(equations.steady(), known, near.embed(equations, v))
         return np.array(shifted / known - 1)
 
     bent, reason = None, ""
     if not model.scene.physics.large_deflection:
-        does = bends(model)  # without a load, the straight beam is an equilibrium until it buckles
+        does = bends(model)  # without transverse load, the straight beam is in equilibrium until it buckles
         bent, reason = np.array(np.nan if does else 0.0), _NO_CRITICAL_SPEED if does else ""
     return _gather(model.scene, base.scene, change, bent, reason)
 
 
 def nothing_known(scene: Scene, reason: str = "", shape: tuple[int, ...] = ()) -> LeftOutEffects:
-    """Return the effects that a scene leaves out, with unknown changes of values of a shape, and why."""
+    """Return the effects that a scene neglects, with unknown changes (of a given shape) and a reason."""
     additions, not_known, not_modelled = _list_effects(scene, _straightened(scene))
     names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION.name]
     unchanged = {name: np.full(shape, np.nan) for name in (*names, *(added.name for added in additions))}
@@ -260,7 +262,7 @@ def nothing_known(scene: Scene, reason: str = "", shape: tuple[int, ...] = ()) -
 
 
 def without_large_deflection(model: Model) -> Model:
-    """Return the model of the straight beam, for which all other effects are estimated."""
+    """Return the model of the straight beam, for which all effects except large deflection are estimated."""
     if not model.scene.physics.large_deflection:
         return model
     return Model(_straightened(model.scene), model.discretization)
@@ -271,9 +273,10 @@ def _straightened(scene: Scene) -> Scene:
 
 
 def _list_effects(scene: Scene, straight: Scene) -> tuple[list[Addition], dict[str, str], tuple[str, ...]]:
-    """List the effects that a scene leaves out, as `list_effects` does those of its straight beam.
+    """List the effects that a scene neglects, as `list_effects` does for its straight beam.
 
-    What the straight beam cannot have, but the scene has (torsion of a twisted strip), is not left out.
+    Effects that the scene includes although its straight beam cannot (torsion of a twisted strip) are
+    omitted.
     """
     additions, not_known, not_modelled = list_effects(straight)
     left_out = {effect.name for effect in list_left_out(scene)}
@@ -281,7 +284,7 @@ def _list_effects(scene: Scene, straight: Scene) -> tuple[list[Addition], dict[s
 
 
 def _reasons(scene: Scene) -> dict[str, str]:
-    """Say for each effect left out what the model assumes in its place, and how to include it."""
+    """State for each neglected effect what the model assumes without it, and how to include it."""
     return {effect.name: effect.reason for effect in list_left_out(scene)}
 
 
@@ -293,7 +296,7 @@ def _gather(
     reason: str,
     shape: tuple[int, ...] = (),
 ) -> LeftOutEffects:
-    """Gather the changes of values by all effects left out: by `change` of each, and by large deflection."""
+    """Collect the changes by all neglected effects: by `change` of each, and by large deflection."""
     additions, not_known, not_modelled = _list_effects(scene, straight)
     changes = {} if bent is None else {LARGE_DEFLECTION.name: bent}
     not_known |= {LARGE_DEFLECTION.name: reason} if reason else {}
@@ -304,25 +307,25 @@ def _gather(
     return LeftOutEffects(changes, not_known, assumed, not_modelled, _reasons(scene), shape)
 
 
-# Any answer, by solving again with each effect ----------------------------------------------------
+# Any result, by solving again with each effect --------------------------------------------------
 
 
 class SolvedValues(NamedTuple):
-    """Values of an answer, nan where there is none, with the reason for that, and what they assume."""
+    """Values of a result, nan where there is none, with the reason for that, and the assumptions made."""
 
     values: np.ndarray
     reason: str = ""
     assumed: str = ""
 
 
-# Solves a scene with the effect of a name, or "" for none.
+# Function that solves a scene with the named effect, or with "" for none.
 Solve: TypeAlias = Callable[[Scene, str], SolvedValues]
 
 
 def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
-    """Find the changes of values by each effect that a scene leaves out, by solving with the effect.
+    """Compute the changes of values by each effect that a scene neglects, by solving with the effect.
 
-    Effects that exclude large deflection are judged on the straight beam, if the scene has large deflection.
+    If the scene has large deflection, effects that exclude it are estimated for the straight beam.
 
     Parameters
     ----------
@@ -360,7 +363,7 @@ def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
 
 
 def _relative_change(without: SolvedValues, within: SolvedValues) -> SolvedValues:
-    """Compute the relative change between two solutions' values, nan where it is not known."""
+    """Compute the relative change between the values of two solutions, nan where it is not known."""
     with np.errstate(divide="ignore", invalid="ignore"):
         change = np.where(within.values == without.values, 0.0, within.values / without.values - 1)
     change = np.where(np.abs(change) < _ROUNDING, 0.0, change)
@@ -370,13 +373,14 @@ def _relative_change(without: SolvedValues, within: SolvedValues) -> SolvedValue
 
 
 def _bent_values(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedValues:
-    """Find the relative change of values by large deflection, solving with it."""
+    """Compute the relative change of values by large deflection, by solving with it."""
     unknown = np.full(np.shape(without.values), np.nan)
     if scene.physics.planes == 2:
         return SolvedValues(unknown, _TWO_PLANES)
     try:
         straight, bent = _comparable(scene)
-        within = solve(bent, LARGE_DEFLECTION.name)  # an analysis may model it in one plane only
+        # An analysis may support large deflection in one plane only.
+        within = solve(bent, LARGE_DEFLECTION.name)
     except InvalidValue as error:
         return SolvedValues(unknown, _REFUSED.get(error.field, str(error)))
     without = without if straight.physics == scene.physics else solve(straight, "")
@@ -385,16 +389,16 @@ def _bent_values(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedVal
 
 # Modes of kinds that a model lacks -------------------------------------------------------------------
 
-# Effects that add modes, and beginnings of the names of fields in which these modes move most.
+# Effects that add modes, and beginnings of the names of the fields that dominate these modes.
 _ADDED = {SECOND_PLANE: "second", TORSION: "torsion", CAMBER: "camber", STRETCH: "stretch"}
 _REFINING = (SHEAR, ROTARY_INERTIA)
-# Factor of the highest listed frequency up to which further modes are named, as these are known to 3 %.
+# Ratio to the highest listed frequency up to which additional modes are named, as these are known to 3 %.
 _MARGIN = 1.03
-_EXTRA = 2  # modes computed beyond the number listed
+_EXTRA = 2  # number of modes computed beyond those listed
 
 
 def left_out_with_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> LeftOutEffects:
-    """List the changes of frequencies by effects left out at some speeds, and modes that a model lacks.
+    """List the changes of frequencies by neglected effects at some speeds, and modes that a model lacks.
 
     The parameters are those of `left_out_of_modes`.
     """
@@ -425,7 +429,7 @@ def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> I
 
 
 def _add(scene: Scene, effect: Effect) -> Addition | None:
-    """Add an effect to a scene, and torsion together with camber; None if the effect cannot be added."""
+    """Add an effect to a scene (torsion together with camber); None if the effect cannot be added."""
     try:
         added = add_effect(scene, TORSION if effect is CAMBER and not TORSION.is_in(scene) else effect)
         extended = add_effects(added.scene, [effect])
@@ -435,7 +439,7 @@ def _add(scene: Scene, effect: Effect) -> Addition | None:
 
 
 def _refined(scene: Scene) -> Scene:
-    """Return the scene with shear and rotary inertia, as far as its beam has the data."""
+    """Return the scene with shear and rotary inertia, if its beam has the data."""
     for effect in _REFINING:
         if not effect.is_in(scene) and can_add(scene, effect):
             scene = add_effect(scene, effect).scene
@@ -443,16 +447,16 @@ def _refined(scene: Scene) -> Scene:
 
 
 def _spaces(scene: Scene, model: Model, modes: int) -> Spaces:
-    """Build function spaces for modes of a scene with an effect that a model lacks."""
+    """Build function spaces for the modes of a scene with an effect that a model lacks."""
     if scene.models_width:
         return clamp_spaces(scene, modes)
     return model.discretization.spaces(scene.beam)
 
 
 def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, count: int) -> np.ndarray:
-    """Compute angular frequencies (S, k), ascending, of modes that move most in fields of given names.
+    """Compute angular frequencies (S, k), ascending, of modes dominated by fields of given names.
 
-    Gyroscopic coupling with other fields is left out, as it changes these modes little.
+    Gyroscopic coupling with other fields is neglected, as it changes these modes little.
     """
     own = {name for name in equations.blocks if name.startswith(fields)}
     names = [name for together in equations.coupled if own.intersection(together) for name in together]

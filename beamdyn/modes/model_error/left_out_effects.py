@@ -1,4 +1,4 @@
-"""Effects that a model leaves out, with the change that each would make in an answer, also in words."""
+"""Effects that a model neglects, with the change that each would cause in a result, also in words."""
 
 from __future__ import annotations
 
@@ -18,28 +18,29 @@ from beamdyn.common.words import Words, percent
 from beamdyn.scene.physics import OfChosenPhysics
 from beamdyn.scene.validity import list_speeds
 
-LARGE_MODEL_ERROR = 0.01  # relative change by effects left out above which a warning is given
-_NEGLIGIBLE = 1e-9  # relative change that cannot be told from rounding
-_LARGE = 1000.0  # frequency [Hz] from which on frequencies are printed as whole numbers
-_MANY_TIMES, _COUNTLESS = 10.0, 1e4  # relative changes above which percent, and then any digits, tell little
+LARGE_MODEL_ERROR = 0.01  # relative change by neglected effects above which a warning is given
+_NEGLIGIBLE = 1e-9  # relative change below which the change may be a rounding error
+_LARGE = 1000.0  # frequency [Hz] above which frequencies are printed as whole numbers
+# Relative changes above which a factor is printed, and then only a power of ten.
+_MANY_TIMES, _COUNTLESS = 10.0, 1e4
 
 
 @dataclass(frozen=True)
 class UnlistedMode:
-    """A mode of the body that a model does not have, as it leaves out an effect.
+    """Mode of the real body that a model does not have, because it neglects an effect.
 
     Parameters
     ----------
     kind : str
         Kind of the mode: torsion, or the direction of bending.
     number : int
-        Number of the mode among those of its kind, from 1.
+        Number of the mode among all modes of its kind, from 1.
     effect : str
         Name of the effect that adds the mode to a model.
     frequency : ndarray
-        Frequency [Hz] at each speed; nan where it lies above the modes listed.
+        Frequency [Hz] at each speed; nan where it is above the listed modes.
     assumed : str
-        What was assumed to find the frequency; empty if nothing.
+        Assumption by which the frequency was computed; empty if none.
     """
 
     kind: str
@@ -72,29 +73,29 @@ def say_unlisted(modes: Sequence[UnlistedMode]) -> str:
 
 @dataclass(frozen=True)
 class LeftOutEffects:
-    """Changes of an answer by the effects that a model leaves out.
+    """Changes of a result by the effects that a model neglects.
 
     Parameters
     ----------
     changes : dict of str to ndarray
-        Relative change of each value of the answer by adding the effect of that name; nan where that is not
-        known.
+        Relative change of each value of the result by adding the effect of that name; nan where it is
+        unknown.
     not_known : dict of str to str
-        Effects whose change is not known for at least one value, with the reason or the missing input.
+        Effects whose change is unknown for at least one value, with the reason or the missing input.
     assumed : dict of str to str
-        Effects whose change rests on an assumption, with the assumption.
+        Effects whose change is based on an assumption, with the assumption.
     not_modelled : tuple of str
-        Effects that no model here has.
+        Effects that no model of this program can include.
     reasons : dict of str to str
-        What the model assumes in place of each effect, and how to include it.
+        What the model assumes without each effect, and how to include the effect.
     shape : tuple of int
-        Shape of the values of the answer, and of each change.
+        Shape of the values of the result, and of each change.
     unlisted : tuple of UnlistedMode
-        Modes of the body that the model does not have, below the highest that it lists.
+        Modes of the real body that the model does not have, up to the highest mode listed.
     reversals : dict of str to str
-        Effects that make a vibrating mode diverge, or a diverging one vibrate, and which of the two.
+        Effects that make a vibrating mode diverge or a diverging one vibrate, with a text that states which.
     counted : str
-        What the last axis of the values counts, such as "mode".
+        Noun for what the last axis of the values counts, such as "mode".
     """
 
     changes: dict[str, np.ndarray]
@@ -119,7 +120,7 @@ class LeftOutEffects:
 
     @property
     def lack_data(self) -> bool:
-        """Whether the beam lacks data for an effect, whose change is then missing from the sum."""
+        """Whether the beam lacks data for an effect, whose change is then missing in the sum."""
         return bool(self.not_known.keys() - self.changes.keys())
 
     def at(self, index: Any) -> LeftOutEffects:
@@ -127,29 +128,30 @@ class LeftOutEffects:
         changes = {name: np.asarray(change[index]) for name, change in self.changes.items()}
         first = (
             index[0] if isinstance(index, tuple) else index
-        )  # an index selects speeds where modes are the last axis
+        )  # if modes are the last axis, an index selects speeds
         unlisted = tuple(replace(mode, frequency=mode.frequency[first]) for mode in self.unlisted)
         return replace(self, changes=changes, shape=np.zeros(self.shape)[index].shape, unlisted=unlisted)
 
     # Changes in words ------------------------------------------------------------------------------
 
     def sentence(self, what: str | None = None, where: str = "", speeds: np.ndarray | None = None) -> Words:
-        """Summarize in one line: largest change by each effect, what is unknown, what is not modelled.
+        """Summarize in one line: largest change by each effect, unknown changes, and effects without a model.
 
         Parameters
         ----------
         what : str, optional
-            What the last axis of the values counts, in place of `counted`; "" where there is one value.
+            Noun for what the last axis of the values counts, in place of `counted`; "" if there is one value.
         where : str
-            Where the values hold, such as "at 100 rad/s", which begins the line.
+            Conditions of the values, such as "at 100 rad/s"; the line begins with it.
         speeds : ndarray, optional
-            Speeds [rad/s] of the first axis, named with changes that are largest elsewhere than `where`.
+            Speeds [rad/s] of the first axis; a change that is largest at another speed is printed with the
+            speed.
         """
         what = self.counted if what is None else what
         parts: list[str] = [
             joined(", ", self._say_changes(what, where, speeds)) or "nothing that can be computed"
         ]
-        reasons: dict[str, list[str]] = {}  # effects of one reason are named together
+        reasons: dict[str, list[str]] = {}  # effects with the same reason are named together
         for name, why in self.not_known.items():
             place = self.where_unknown(name, speeds)
             full = why if not place or place == where else Words(why, "; ", place)
@@ -200,11 +202,12 @@ class LeftOutEffects:
         Parameters
         ----------
         tolerance : float, optional
-            Largest accepted relative change; 1 % if not given.
+            Largest acceptable relative change; 1 % if not given.
         where : str
-            Where the largest change is: see `sentence`.
+            Conditions of the largest change: see `sentence`.
         where_unknown : callable
-            Function from an effect's name to words for where its change is unknown; empty words mean `where`.
+            Function from an effect's name to the conditions at which its change is unknown; empty means
+            `where`.
         """
         for name, how in self.reversals.items():
             begin = (where_unknown(name), " ") if where_unknown(name) else ()
@@ -243,7 +246,7 @@ def _largest(change: np.ndarray) -> float:
 
 
 def say_change(change: float) -> str:
-    """Format a relative change in percent, to two digits, with its sign."""
+    """Format a relative change in percent, with two digits and its sign."""
     if abs(change) < _NEGLIGIBLE:
         return "0 %" if change == 0 else "below 1e-7 %"
     if abs(change) < _MANY_TIMES:
@@ -252,7 +255,7 @@ def say_change(change: float) -> str:
 
 
 def say_size(size: float) -> str:
-    """Format a relative size in percent, to two digits, or in words where it is not known."""
+    """Format a relative size in percent, with two digits, or as words if it is not known."""
     return "not known" if np.isnan(size) else say_change(size).removeprefix("+")
 
 
@@ -260,26 +263,26 @@ def say_size(size: float) -> str:
 
 
 class NotJudged(LeftOutEffects):
-    """Placeholder for changes by effects left out that take long to compute and were not requested."""
+    """Placeholder for changes by neglected effects that take long to compute and were not requested."""
 
     def sentence(self, what: str | None = None, where: str = "", speeds: np.ndarray | None = None) -> Words:
-        """Say how the model error is requested."""
+        """Explain how to request the model error."""
         return Words(
             "What the model leaves out is not computed yet: ask for model_error, which takes some solutions."
         )
 
 
 class StatesModelError(OfChosenPhysics):
-    """Base class of results that state the changes by effects left out of the model; see `OfChosenPhysics`.
+    """Base class of results that state the changes by effects that their model neglects.
 
-    A subclass has the cached property `left_out_effects`, which is computed when asked for.
+    A subclass has the property `left_out_effects`, which is computed at its first use and cached.
 
     Attributes
     ----------
     judged_by_solving : bool
         Whether the model error takes longer to compute than the answer.
     judged_value, counted : str
-        Words for the values that have the model error, and for each one of several, used below a table.
+        Nouns for the values that have the model error, and for one of several values; used below a table.
     """
 
     kept = ("left_out_effects",)
@@ -289,7 +292,7 @@ class StatesModelError(OfChosenPhysics):
     counted: ClassVar[str] = ""
 
     def without_waiting(self) -> Any:
-        """Return a result that can be shown at once: slow model errors not computed yet are left out."""
+        """Return a result that can be shown at once: slow model errors not computed yet are omitted."""
         if not self.judged_by_solving or "left_out_effects" in vars(self):
             return self
         shape = np.shape(getattr(self, "left_out_speeds", 0.0))
@@ -299,9 +302,9 @@ class StatesModelError(OfChosenPhysics):
 
     @property
     def left_out(self) -> Mapping[str, np.ndarray]:
-        """Relative change of the values by adding each effect left out of the model, by effect name.
+        """Relative change of the values by adding each neglected effect, by name of the effect.
 
-        Effects that lack data, or that no model here has, are only in `left_out_effects`.
+        Effects without data, or that no model can include, are only in `left_out_effects`.
         """
         return MappingProxyType(self.left_out_effects.changes)
 
@@ -311,16 +314,16 @@ class StatesModelError(OfChosenPhysics):
         return self.left_out_effects.total
 
     def model_warnings(self, tolerance: float | None = None) -> list[Statement]:
-        """List warnings of a model error past a tolerance or 1 %, and of an unknown one."""
+        """List warnings of a model error above a tolerance or 1 %, and of an unknown one."""
         speeds = getattr(self, "left_out_speeds", None)
         effects = self.left_out_effects
         where = "" if speeds is None else where_worst(effects, speeds)
         return [*effects.warnings(tolerance, where, lambda name: effects.where_unknown(name, speeds))]
 
     def to_dict(self) -> dict[str, Any]:
-        """Convert the result to numbers, lists and strings, with model error and effects left out.
+        """Convert the result to numbers, lists and strings, with model error and neglected effects.
 
-        The warnings include those of a model error past 1 %.
+        The warnings include those of a model error above 1 %.
         """
         effects, values = self.left_out_effects, super().to_dict()
         values["warnings"] = [*values.get("warnings", ()), *self.model_warnings()]
@@ -331,7 +334,7 @@ class StatesModelError(OfChosenPhysics):
 
 
 def where_worst(effects: LeftOutEffects, speeds: np.ndarray) -> str:
-    """Format the speed with the largest model error, "at 100 rad/s", or all speeds (k,) if it is unknown."""
+    """Format the speed of the largest model error as "at 100 rad/s", or all speeds (k,) if it is unknown."""
     total = effects.total
     if not np.isfinite(total).any():
         return Words("at ", list_speeds(speeds, np.ones(len(speeds), bool))) if len(speeds) else ""

@@ -1,9 +1,9 @@
-"""Suppressed camber: a strongly bent strip cannot camber freely, and is nearly as stiff as one held flat.
+"""Suppressed camber: a strongly bent strip cannot camber freely and is nearly as stiff as a wide plate.
 
-A strip of width b and thickness t under the curvature kappa cambers freely while b^2 kappa/t (Searle's
-parameter) is small.  From about 1 on its camber is suppressed more and more, half of it at 10, as it would
-stretch the strip.  With theta = (3 (1 - nu^2))^(1/4) b
-(kappa/t)^(1/2) its energy per length, of bending and of the stress that camber causes along it, is
+A strip of width b and thickness t under the curvature kappa cambers freely if b^2 kappa/t (Searle's
+parameter) is small.  Above about 1, camber is suppressed more and more (half of it at 10), because it would
+stretch the strip.  With theta = (3 (1 - nu^2))^(1/4) b (kappa/t)^(1/2) its energy per length, of bending and
+of the stress that camber causes along it, is
 
     U = E I kappa^2 (1 - nu^2 f)/(2 (1 - nu^2)),    f = 2 h/theta,
     h = (cosh theta - cos theta)/(sinh theta + sin theta),
@@ -26,20 +26,21 @@ from beamdyn.common.words import Words, percent, told_from
 from beamdyn.modes.model_error.added_effects import ASSUMED_POISSONS_RATIO
 from beamdyn.scene.scene import Scene
 
-_CAMBER_DECLINES = 1.0  # Searle's parameter from which camber is suppressed
-_WIDEST = 50.0  # argument theta beyond which the functions of a curved strip have reached their limits
+_CAMBER_DECLINES = 1.0  # Searle's parameter above which camber is suppressed
+_WIDEST = 50.0  # argument theta above which the functions of a curved strip have reached their limits
 _STATIONS = 101
 
 
 def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
-    """Compute the tangent bending stiffness of a curved strip over E I.
+    """Compute the ratio of the tangent bending stiffness of a curved strip to E I.
 
-    The argument `theta`, above 0, is this module's measure of width and curvature, `nu` Poisson's ratio.
+    The argument `theta`, above 0, is the measure of width and curvature in the module's docstring, `nu` is
+    Poisson's ratio.
     """
     wide = np.minimum(theta, _WIDEST)
     total, rate = np.sinh(wide) + np.sin(wide), np.cosh(wide) + np.cos(wide)
     h, e = (np.cosh(wide) - np.cos(wide)) / total, rate / total
-    first = 1 - h * e  # derivatives of h by theta
+    first = 1 - h * e  # derivative of h with respect to theta
     second = -first * e - h * ((np.sinh(wide) - np.sin(wide)) / total - e**2)
     tangent = 5 / 4 * first + wide / 4 * second + 3 / 4 * h / theta
     return (1 - nu**2 * tangent) / (1 - nu**2)
@@ -51,11 +52,11 @@ def warn_of_suppressed_camber(
     """Yield a warning if large deflection bends a strip so far that its camber is suppressed.
 
     `bending` returns curvatures (k, m) [1/m] in the direction of bending at k speeds or times and x/L (m,);
-    `say_when` words the time or speed of an index.
+    `say_when` describes the time or speed of an index in words.
     """
     section = scene.beam.section
     if section is None or section.poissons_ratio == 0:
-        return  # without Poisson's ratio there is no camber to suppress
+        return  # camber requires Poisson's ratio
     nu, xi = section.poissons_ratio, np.linspace(0, 1, _STATIONS)
     curvature = np.abs(bending(xi))
     b, t = section.width(xi), section.thickness(xi)

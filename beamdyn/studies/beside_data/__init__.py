@@ -1,1 +1,1 @@
-"""Measured data beside computed answers: pairs, deviations, their explanations, and identified numbers."""
+"""Comparison of measured data with computed results: pairs, deviations, explanations, identified numbers."""

@@ -25,31 +25,31 @@ from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_o
 from beamdyn.studies.beside_data.single_numbers import explain
 from beamdyn.studies.beside_data.wrong_unit import wrong_unit
 
-# Number of computed modes beyond the number of measured ones, among which partners are sought.
+# Number of computed modes in excess of the measured ones, among which matching modes are searched.
 _MORE_MODES = 3
 
 
 def compare(
     scene: Scene, data: MeasuredFrequencies | measured_curves.MeasuredCurves
 ) -> FrequencyComparison | CurveComparison:
-    """Compare measured values with those of a scene, and find what would explain deviations of frequencies.
+    """Compare measured values with computed ones of a scene, and find possible causes of deviations.
 
     Histories are compared with the scene's motion from rest, aligned in time within half a period of the
-    first mode at rest; peaks with those of runs to each speed; loads with those in equilibrium, and responses
-    at their frequencies, both at a steady speed.
+    first mode at rest; peaks with those of transients up to each speed; loads with those in equilibrium, and
+    responses at the measured frequencies, both at a steady speed.
 
-    Each measured frequency is paired with a computed one by least total distance at its speed, and by shapes
-    where those were measured.  Where one deviates by more than its own uncertainty, the numerical error and
-    what the model leaves out together, each number of the scene alone is fitted to all the data within
-    physical bounds; not of a scene with large deflection, of which no derivatives are known.
+    At each speed, measured frequencies are paired with computed ones by the smallest total distance, and by
+    mode shapes if these were measured.  If a deviation exceeds the sum of measurement uncertainty, numerical
+    error and model error, each number of the scene is fitted alone to all data, within physical bounds.  This
+    is not done with large deflection, for which derivatives are not available.
 
-    Where all are off by one factor of 2 pi, 60, 1000 or an inverse of these, a warning says that they may be
+    If all data differ by one factor of 2 pi, 60, 1000 or an inverse of these, a warning says that they may be
     in another unit.
 
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is used for histories and peaks, and its final speed where data have none.
+        The scene; its motion is used for histories and peaks, and its final speed if the data have no speed.
     data : MeasuredFrequencies, MeasuredHistory, MeasuredPeaks, MeasuredLoads or MeasuredResponse
         The measured values.
 
@@ -61,7 +61,7 @@ def compare(
     ------
     ValueError
         If the data are of another kind, shapes or loads are at positions beyond the beam, a history is
-        shorter than a period of the first mode, or the scene has no motion for it.
+        shorter than a period of the first mode, or the scene lacks a motion that the data need.
 
     References
     ----------
@@ -88,7 +88,7 @@ def compare(
 
 
 def measured_rows(scene: Scene, data: MeasuredFrequencies) -> list[_MeasuredRow]:
-    """Pair the measured frequencies at each speed with the scene's modes; arguments as of `compare`."""
+    """Pair the measured frequencies at each speed with the scene's modes; arguments as for `compare`."""
     check_scene(scene)
     kind("data", data, MeasuredFrequencies, "read a file by bd.read_measurements")
     if data.positions is not None:
@@ -97,14 +97,14 @@ def measured_rows(scene: Scene, data: MeasuredFrequencies) -> list[_MeasuredRow]
 
 
 def doubts_of_unit(rows: Sequence[_MeasuredRow]) -> Iterator[Statement]:
-    """Yield the statement that the data may be in another unit, if they seem to be: see `wrong_unit`."""
+    """Yield a statement if the data may be in another unit, by a common factor: see `wrong_unit`."""
     return wrong_unit(
         rows[0].data.frequency, [row.modes.frequency for row in rows], [row.of_shapes for row in rows]
     )
 
 
 def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
-    """Compare frequencies, without explaining deviations or doubting units; arguments as of `compare`."""
+    """Compare frequencies, without explanations or checks of units; arguments as for `compare`."""
     start = perf_counter()
     return _compared(scene, measured_rows(scene, data), start)
 
@@ -168,7 +168,7 @@ def _beside_curves(scene: Scene, data: measured_curves.MeasuredCurves) -> CurveC
 
 
 def _assumed(data: measured_curves.MeasuredCurves, speed: float) -> Iterator[Statement]:
-    """Yield a statement that names the assumed speed, if the data have none of their own."""
+    """Yield a statement that names the assumed speed, if the data state none."""
     if getattr(data, "speed", 0.0) is None:
         said = "the data have no speed: compared at ", Speeds(speed), ", the final speed of the scene"
         yield Statement(*said, kind=INPUT)
@@ -179,9 +179,9 @@ _PARTS = "computed", "mode", "allowance", "rounding", "error", "model_error", "l
 
 @dataclass(frozen=True)
 class _MeasuredRow:
-    """Measured values at one speed beside the modes at that speed.
+    """Measured values at one speed, together with the computed modes at that speed.
 
-    Arrays hold only the values that are given.
+    Arrays contain only the values that were measured.
     """
 
     data: MeasuredFrequencies
@@ -200,7 +200,7 @@ class _MeasuredRow:
 
     @cached_property
     def of_shapes(self) -> np.ndarray | None:
-        """Modal assurance criterion (m, n) of shapes, or else agreement with the kinds that labels name."""
+        """Modal assurance criterion (m, n) of shapes; without shapes, agreement of kinds in labels."""
         data, modes = self.data, self.modes
         if data.shapes is None:
             return likeness_of_kinds(data.labels, modes.kinds, len(modes.frequency))
@@ -246,9 +246,9 @@ class _MeasuredRow:
         return np.where(self._place == NO_MODE, np.nan, found[np.arange(len(found)), self._place])
 
     def resembling(self) -> Iterator[str]:
-        """Yield, for each value without a mode, the mode that its shape resembles most.
+        """Yield, for each measured value without a mode, the mode with the most similar shape.
 
-        The text is empty for all others.
+        The text is empty for all other values.
         """
         known = np.flatnonzero(self._known)
         for column, place in zip(known.tolist(), self._place.tolist(), strict=True):

@@ -1,4 +1,4 @@
-"""Computed curves of a scene at the times, speeds, positions or frequencies of measured ones."""
+"""Computed curves of a scene at the times, speeds, positions or frequencies of measured curves."""
 
 from __future__ import annotations
 
@@ -23,12 +23,13 @@ from beamdyn.scene.scene import Scene
 from beamdyn.transient.simulate import Transient, simulate
 from beamdyn.transient.sweep import Sweep, sweep
 
-_DELAYS = 33  # number of delays tried, evenly spaced between their limits
-# Least number of times at which histories are compared to find the delay; at most twice as many.
+_DELAYS = 33  # number of trial delays, evenly spaced between the limits
+# Smallest number of times at which histories are compared to find the delay; at most twice as many are used.
 _COMPARED = 4000
-_ROUNDING = 1e-9  # share of the length by which a position may lie beyond the tip because of rounding
-_SHARP = 1e-9  # accuracy of a delay, over the period
-_TURNED = 0.25  # the sign counts as turned if the other sign leaves at most this share of the sum of squares
+_ROUNDING = 1e-9  # fraction of the length by which a position may be beyond the tip because of rounding
+_SHARP = 1e-9  # accuracy of a delay, relative to the period
+# A curve counts as inverted if the opposite sign reduces the sum of squares to at most this fraction.
+_TURNED = 0.25
 _LOADS = {
     "moment": ("moment", 0),
     "moment across": ("moment", 1),
@@ -40,9 +41,9 @@ _LOADS = {
 
 @dataclass(frozen=True)
 class ComputedCurves:
-    """Computed curves (n, C), errors that broadcast to them, their units, and the result they are taken from.
+    """Computed curves (n, C), their errors (which broadcast), their units, and the result they belong to.
 
-    `speed` is the one [rad/s] at which they were computed, nan of curves over time and speed.
+    `speed` is the speed of the computation [rad/s]; nan for curves over time or speed.
     """
 
     value: np.ndarray
@@ -58,7 +59,7 @@ class ComputedCurves:
 
 
 def computed_loads(scene: Scene, data: MeasuredLoads) -> ComputedCurves:
-    """Compute loads at the positions of measured ones, in equilibrium at the speed of the data."""
+    """Compute loads at the measured positions, in equilibrium at the speed of the data."""
     speed = _speed(scene, data)
     check_positions(scene, "position", data.position)
     with unannounced():
@@ -73,7 +74,7 @@ def computed_loads(scene: Scene, data: MeasuredLoads) -> ComputedCurves:
 
 
 def check_positions(scene: Scene, name: str, positions: np.ndarray) -> None:
-    """Refuse data whose positions lie beyond the beam."""
+    """Raise an error for data at positions beyond the beam."""
     length = scene.beam.length
     beyond = (positions < 0) | (positions > length * (1 + _ROUNDING))
     if beyond.any():
@@ -82,19 +83,19 @@ def check_positions(scene: Scene, name: str, positions: np.ndarray) -> None:
 
 
 def _speed(scene: Scene, data: MeasuredLoads | MeasuredResponse) -> float:
-    """Return the speed of the data [rad/s], or the scene's final speed where the data have none."""
+    """Return the speed of the data [rad/s], or the scene's final speed if the data have none."""
     return scene.final_speed if data.speed is None else data.speed
 
 
 def _check_modelled(name: str, modelled: bool) -> None:
-    """Refuse a quantity of the second plane of bending if the scene models one plane."""
+    """Raise an error for a quantity of the second plane of bending if the scene models one plane."""
     if not modelled:
         bound = "the scene bends in one plane"
         raise InvalidValue("names", name, bound, "give physics.planes = 2, or leave the column out")
 
 
 def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
-    """Compute the frequency response of a scene at the frequencies of a measured one."""
+    """Compute the frequency response of a scene at the measured frequencies."""
     speed = _speed(scene, data)
     with unannounced():
         found = frequency_response(scene, speed, data.frequency, data.input, data.output)
@@ -113,18 +114,18 @@ def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
     return ComputedCurves(value, found.error, (found.unit,), found, speed, phase=phase)
 
 
-# Histories, and their peaks ------------------------------------------------------------------------
+# Time histories, and their largest values ---------------------------------------------------------
 
 
 def computed_peaks(scene: Scene, data: MeasuredPeaks) -> ComputedCurves:
-    """Compute the largest deflections in the window of measured ones, by a run from rest to each speed."""
+    """Compute the largest deflections in the measured time window, by a transient from rest to each speed."""
     with unannounced():
         found = sweep(scene, data.speed, (data.window[0], data.window[1]))
     return ComputedCurves(found.peaks[:, None], found.peak_error[:, None], ("m",), found)
 
 
 def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
-    """Compute the motion of a scene, delayed so that it comes nearest to measured histories."""
+    """Compute the motion of a scene, delayed for the best agreement with measured histories."""
     period = _period(scene, data)
     with unannounced():
         run = simulate(scene, _end_of_run(scene, float(data.time[-1]), period / 2))
@@ -146,7 +147,7 @@ def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
 
 
 def _period(scene: Scene, data: MeasuredHistory) -> float:
-    """Return the period of the first mode at rest [s], 0 for a free hinge; refuse a shorter history."""
+    """Return the first mode's period at rest [s], 0 for a hinge; raise an error if the history is shorter."""
     with unannounced():
         frequency = float(natural_modes(scene, 0.0, 1).frequency[0])
     period, length = 1 / frequency if frequency > 0 else 0.0, float(data.time[-1] - data.time[0])
@@ -157,7 +158,7 @@ def _period(scene: Scene, data: MeasuredHistory) -> float:
 
 
 def _curves(run: Transient, names: Sequence[str]) -> Iterator[tuple[Callable[[np.ndarray], Any], float]]:
-    """Yield, for each named quantity, a function of time (and its error) that evaluates it in a run."""
+    """Yield, for each named quantity, a function from times to its values in a transient, and errors."""
     for name in names:
         k = int(name.endswith("across"))
         if name == "root strain":
@@ -177,7 +178,7 @@ def _at_root(outputs: Callable[[np.ndarray], np.ndarray], place: int, t: np.ndar
 
 
 def _end_of_run(scene: Scene, last: float, more: float) -> float:
-    """Return the end of a run [s]: `more` after the last measured time, but not after the motion's end."""
+    """Return the end of a transient [s]: `more` after the last measured time, up to the motion's end."""
     end = math.inf if scene.motion is None else scene.motion.end
     return max(min(last + more, end), last)
 
@@ -188,9 +189,9 @@ def _delay(
     limits: tuple[float, float],
     period: float,
 ) -> float:
-    """Find the delay [s], between two limits, with which the computed curves come nearest to measured ones.
+    """Find the delay [s], between two limits, for which the computed curves agree best with measured ones.
 
-    If the curves with the other sign come far nearer, it is the delay of these.
+    If the curves with opposite sign agree far better, their delay is returned.
     """
     some = slice(None, None, 1 + len(data.time) // _COMPARED)
     t, values = data.time[some], data.value[some]
@@ -198,7 +199,7 @@ def _delay(
     sizes[sizes == 0] = 1.0
 
     def squares(delay: float) -> np.ndarray:
-        """Compute sums of squared differences for the curves as they are, and with the other sign: (2, C)."""
+        """Compute sums of squared differences, for the curves and with opposite sign: (2, C)."""
         curves = at(t - delay)
         return np.array([(((values - sign * curves) / sizes) ** 2).sum(axis=0) for sign in (1, -1)])
 
@@ -213,7 +214,7 @@ def _delay(
 
 
 def _least(misfit: Callable[[float], float], limits: tuple[float, float], accuracy: float) -> float:
-    """Find the delay [s] between two limits with the least misfit: on a grid, then by bounded search."""
+    """Find the delay [s] between two limits with the smallest misfit: on a grid, then by bounded search."""
     tried = np.linspace(*limits, _DELAYS)
     best, step = tried[int(np.argmin([misfit(each) for each in tried]))], tried[1] - tried[0]
     between = max(best - step, tried[0]), min(best + step, tried[-1])

@@ -17,48 +17,49 @@ from beamdyn.common.words import Words, amount, percent
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.frequency_comparison import AGREES, LEFT_OUT, NOTHING, OUTSIDE, outside
 
-# Verdict where the numerical error is unknown, or the model error is as large as the curve.
+# Verdict if the numerical error is unknown, or if the model error is as large as the curve.
 UNKNOWN = "not known"
-_DIGITS = 5  # significant digits of values in sentences
-_FEW = 100  # number of values up to which a picture draws them as points
-_IN_PHASE = 1e-3  # difference of phase too small to be mentioned [deg]
-_VAIN = 1.0  # model error over the largest value, above which no verdict is possible
-_TURNED = 0.5  # the sign counts as turned if the other sign leaves at most this share of the difference
-_WIDE = 0.8  # line width where a curve has more values than the picture has pixels
+_DIGITS = 5  # number of significant digits of values in sentences
+_FEW = 100  # number of values up to which a plot draws them as points
+_IN_PHASE = 1e-3  # phase difference [deg] too small to be mentioned
+_VAIN = 1.0  # model error, relative to the largest value, above which no verdict is possible
+# A curve counts as inverted if the opposite sign reduces the difference to at most this fraction.
+_TURNED = 0.5
+_WIDE = 0.8  # line width if a curve has more values than the plot has pixels
 
 
 @dataclass(frozen=True)
 class CurveComparison(Result):
-    """Measured curves over time, speed, position or frequency beside those of a scene.
+    """Measured curves over time, speed, position or frequency, compared with computed ones of a scene.
 
     Parameters
     ----------
     name : tuple of str, shape (C,)
-        What each curve is, such as "tip" or "tip by tip force".
+        Quantity of each curve, such as "tip" or "tip by tip force".
     unit : tuple of str, shape (C,)
         Unit of each curve.
     along : str
-        Over what they are given: "time", "speed", "position" or "frequency".
+        Abscissa of the curves: "time", "speed", "position" or "frequency".
     x : ndarray, shape (n,)
         Times [s], speeds [rad/s], positions [m] or frequencies [Hz].
     measured, computed : ndarray, shape (n, C)
-        The values [unit of the curve].  Computed histories are shifted to times later by `delay`: at x they
-        have the values of x - delay.  Responses are complex where the phase was measured.
+        The values [unit of the curve].  Computed histories are delayed by `delay`: at time x they have the
+        values of x - delay.  Responses are complex if the phase was measured.
     allowance : ndarray, shape (n, C)
-        By how much measured values may be off [same unit]: half of the last digit, and twice the uncertainty.
+        Possible error of the measured values [same unit]: half of the last digit, and twice the uncertainty.
     rounding : ndarray, shape (n, C)
         Half of the last digit of the measured values alone [same unit].
     error : ndarray, shape (n, C)
         Estimated numerical errors of the computed values [same unit].
     model_error : ndarray, shape (C,)
-        What the effects that the model leaves out would change, over the largest value, as far as known.
+        Model error: changes by neglected effects relative to the largest value, as far as known.
     speed : float
-        Speed at which loads and responses were computed [rad/s]; nan of other curves.
+        Speed at which loads and responses were computed [rad/s]; nan for other curves.
     delay : float
-        Time by which measured histories lag behind the computed ones [s]; 0 of other curves.
+        Time by which measured histories lag behind the computed ones [s]; 0 for other curves.
     phase : ndarray, shape (C,)
-        Phase by which the measured curve leads [rad]: of a history by the delay, at its main frequency; of a
-        response where it is largest; nan where it is not known.
+        Phase by which the measured curve leads [rad]: for a history from the delay, at its main frequency;
+        for a response at its maximum; nan if it is not known.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
@@ -118,27 +119,27 @@ class CurveComparison(Result):
 
     @property
     def deviation(self) -> np.ndarray:
-        """Largest measured less largest computed value over the latter, shape (C,); inf where that is 0."""
+        """Largest measured minus largest computed value, over the latter, shape (C,); inf for 0."""
         return _over(self.peak - self.computed_peak, self.computed_peak)
 
     @property
     def rms(self) -> np.ndarray:
-        """Root mean square of the difference over that of the computed curve, shape (C,)."""
+        """Root mean square of the difference, over that of the computed curve, shape (C,)."""
         return _over(_rms(self.measured - self.computed), _rms(self.computed))
 
     @property
     def is_turned(self) -> np.ndarray:
-        """Whether each curve comes far nearer to the computed one with the other sign, shape (C,)."""
+        """Whether each measured curve fits the computed one of opposite sign far better, shape (C,)."""
         return self.rms_turned < _TURNED * self.rms
 
     @property
     def rms_turned(self) -> np.ndarray:
-        """`rms` if the measured curve had the other sign, shape (C,)."""
+        """Root mean square difference `rms` for the measured curves with opposite sign, shape (C,)."""
         return _over(_rms(self.measured + self.computed), _rms(self.computed))
 
     @property
     def in_digits(self) -> np.ndarray:
-        """Whether curves differ, in peak and rms, by no more than half of the last digit, shape (C,)."""
+        """Whether curves differ, in peak and rms, by at most half of the last digit, shape (C,)."""
         half = self.rounding[self.places, np.arange(len(self.name))]
         within = _rms(self.measured - self.computed) <= _rms(self.rounding)
         return within & (np.abs(self.peak - self.computed_peak) <= half)
@@ -147,8 +148,8 @@ class CurveComparison(Result):
     def verdict(self) -> tuple[str, ...]:
         """Verdict on each curve: "agrees", "within the model error", "outside" or "not known"; shape (C,).
 
-        Both the largest value and the root mean square of the difference have to be within the bounds.
-        A model error larger than the curve decides nothing.
+        Both the largest value and the root mean square of the difference must be within the bounds. With a
+        model error larger than the curve, the verdict is "not known".
         """
         at = self.places, np.arange(len(self.name))
         off = np.array([np.abs(self.peak - self.computed_peak), _rms(self.measured - self.computed)])
@@ -174,7 +175,7 @@ class CurveComparison(Result):
         return super().to_dict() | more | {"sentences": plain(self.sentences())}
 
     def sentences(self) -> tuple[str, ...]:
-        """Return a sentence on each curve, with its verdict."""
+        """Return a sentence about each curve, with the verdict."""
         return tuple(self._say(k) for k in range(len(self.name)))
 
     def _say(self, k: int) -> Words:
@@ -190,7 +191,7 @@ class CurveComparison(Result):
         return Words(*start, ", is ", *self._beside(k), whole, *more)
 
     def _beside(self, k: int) -> tuple[str, ...]:
-        """Say how the largest value of curve k compares with the computed one."""
+        """State how the largest value of curve k compares with the computed one."""
         deviation, computed = float(self.deviation[k]), say(self.computed_peak[k], self.unit[k])
         if np.isinf(deviation):
             return ("beside none in the model",)
@@ -199,22 +200,22 @@ class CurveComparison(Result):
         return f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'} of ", computed
 
     def _where(self, at: float) -> str:
-        """Describe a place on the abscissa: a time, speed, position or frequency with its unit."""
+        """Describe a point on the abscissa: a time, speed, position or frequency with its unit."""
         if self.along == "position":
             return amount(at)
         return Speeds(at) if self.along == "speed" else number(at, "s" if self.along == "time" else "Hz")
 
     def _signed(self, k: int) -> str:
-        """Say that the sign of curve k is opposite to the computed one; empty text if it is not."""
+        """State that curve k has the opposite sign of the computed one; empty text if it has not."""
         if not self.is_turned[k]:
             return ""
         left = percent(float(self.rms_turned[k]))
         return f"; its sign is turned: with the other one the whole differs by {left}"
 
     def _shifted(self, k: int) -> str:
-        """Say how far computed curve k is ahead or behind; empty text where both are in phase."""
+        """State how far computed curve k leads or lags; empty text if both are in phase."""
         phase = float(np.degrees(self.phase[k]))
-        if not abs(phase) > _IN_PHASE:  # written so that nan counts as in phase
+        if not abs(phase) > _IN_PHASE:  # this form of the condition treats nan as in phase
             return ""
         side = "ahead" if phase > 0 else "behind"
         if self.along == "frequency":
@@ -223,7 +224,7 @@ class CurveComparison(Result):
         return f", with {late} {side} taken out"
 
     def _reason(self, k: int) -> str:
-        """Give the reason for the verdict on curve k."""
+        """State the reason for the verdict on curve k."""
         left_out = float(self.model_error[k])
         own = float(_over(self.allowance[self.places[k], k], self.peak[k]))
         lacking = "the numerical error is not known"
@@ -238,7 +239,7 @@ class CurveComparison(Result):
         }[self.verdict[k]]
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw each curve as measured and as computed, and the phases of a response."""
+        """Draw each curve as measured and as computed, and for a response the phases."""
         curves = [(self._axis(k), *self._drawn(k)) for k in range(len(self.name))]
         if np.iscomplexobj(self.measured):
             turned = np.unwrap(np.angle(self.computed[:, 0]))
@@ -267,7 +268,7 @@ class CurveComparison(Result):
         return self.display_units.length_unit().name if self.unit[k] == "m" else self.unit[k]
 
     def _drawn(self, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return measured and computed curve k in the unit of the picture; of a response its magnitudes."""
+        """Return measured and computed curve k in the unit of the plot; for a response the magnitudes."""
         size = self.display_units.length_unit().per_si if self.unit[k] == "m" else 1.0
         shown = abs if self.along == "frequency" else np.real
         return size * shown(self.measured[:, k]), size * shown(self.computed[:, k])
@@ -282,7 +283,7 @@ class CurveComparison(Result):
 
 
 def say(value: float, unit: str) -> str:
-    """Format a value with few digits and its unit; each medium shows lengths in its own unit."""
+    """Format a value with few digits and its unit; each output medium has its own unit of length."""
     rounded = float(f"{value:.{_DIGITS}g}")
     return amount(rounded) if unit == "m" else f"{rounded:.{_DIGITS}g} {unit}".rstrip()
 
@@ -292,6 +293,6 @@ def _rms(values: np.ndarray) -> np.ndarray:
 
 
 def _over(values: Any, sizes: Any) -> np.ndarray:
-    """Divide values by sizes; 0 where both are 0, inf where the size alone is."""
+    """Divide values by sizes; 0 where both are 0, inf where only the size is 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(np.asarray(values) == 0, 0.0, np.asarray(values) / sizes)

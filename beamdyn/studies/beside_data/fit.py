@@ -1,8 +1,9 @@
 """Bounded least squares on natural frequencies: residuals, their derivatives, and the search for the minimum.
 
-A residual is a computed frequency less the measured one over its weight [Hz].  Its derivatives are those of
-the eigenproblem, s' = -w^T dP v / (w^T (2 s M + C + omega G) v) (Lancaster 1966, section 7), where dP is the
-difference of the matrices of two scenes close by: eigenvalues are not differenced.
+A residual is the difference of computed and measured frequency, divided by a weight [Hz].  Its derivatives
+follow from the eigenproblem, s' = -w^T dP v / (w^T (2 s M + C + omega G) v) (Lancaster 1966, section 7),
+where dP is the difference between the matrices of two nearly equal scenes.  So only matrices are differenced,
+not eigenvalues.
 """
 
 from __future__ import annotations
@@ -29,17 +30,17 @@ from beamdyn.studies.beside_data.free_numbers import FreeNumber, opened
 from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.studies.sensitivities.changes import PencilChange, PerturbedModes
 
-_STEP = 1e-4  # difference on either side of a variable of size 1, for derivatives of the matrices
+_STEP = 1e-4  # step of central differences of the matrices, for variables of size 1
 _HZ = 1 / (2 * np.pi)
-# Number of computed modes beyond the number of measured ones, among which partners are sought.
+# Number of computed modes in excess of the measured ones, among which matching modes are searched.
 _MORE_MODES = 3
-_TRIED = 4  # number of points (values of all variables) tried for each start of a fit
-_PAIRINGS = 3  # number of times that measured frequencies are paired anew within a fit
+_TRIED = 4  # number of trial points (values of all variables) for each start of a fit
+_PAIRINGS = 3  # number of times that measured frequencies are paired again within a fit
 
 
 @dataclass(frozen=True)
 class Fitting:
-    """The problem of a fit: frequencies of a scene at some speeds, and the numbers that may change.
+    """Fitting problem: frequencies of a scene at some speeds, and numbers of the scene that may change.
 
     Parameters
     ----------
@@ -48,11 +49,11 @@ class Fitting:
     data : MeasuredFrequencies
         The measured frequencies.
     numbers : tuple of FreeNumber
-        The p numbers.
+        The p numbers that may change.
     weight : ndarray, shape (S, m)
         Weights [Hz] by which residuals are divided.
     tolerance : float
-        Relative change of variables and of the sum of squares at which a fit ends.
+        Relative change of variables and of the sum of squares below which a fit ends.
     """
 
     scene: Scene
@@ -64,7 +65,7 @@ class Fitting:
 
     @cached_property
     def start(self) -> Scene:
-        """The scene from which fits begin, with a root spring or tip body where a free number needs it."""
+        """Scene from which fits start, with a root spring or tip body added if a free number needs it."""
         return opened(self.scene, [number.path for number in self.numbers])
 
     @cached_property
@@ -74,7 +75,7 @@ class Fitting:
 
     @cached_property
     def discretization(self) -> Discretization:
-        """A basis that suffices at the highest speed; all scenes of the fit are solved in it."""
+        """Basis that suffices at the highest speed; all scenes of the fit are solved in it."""
         with unannounced():
             found = natural_modes(self.start, float(np.abs(self.data.speeds).max()), self.modes)
         if found.scene.physics.large_deflection:
@@ -84,13 +85,13 @@ class Fitting:
         return found.model.discretization
 
     def scene_at(self, x: Sequence[float] | np.ndarray) -> Scene:
-        """Return the scene in which the free numbers have the values of variables (p,)."""
+        """Return the scene with the values of the free numbers that belong to variables (p,)."""
         pairs = zip(self.numbers, np.asarray(x, dtype=float).tolist(), strict=True)
         values = {number.path: number.number(each) for number, each in pairs}
         return with_numbers(self.start, values) if values else self.start
 
     def at(self, x: np.ndarray) -> FittedModes:
-        """Solve the scene that belongs to variables (p,), and return its modes."""
+        """Compute the modes of the scene that belongs to variables (p,)."""
         self.solved[0] += 1
         return FittedModes(self, x, Model(self.scene_at(x), self.discretization))
 
@@ -108,14 +109,14 @@ class Fitting:
 
 @dataclass(frozen=True)
 class FittedModes:
-    """Modes of one scene of a fit, at all speeds of the data.
+    """Modes of one scene of a fit, at all measured speeds.
 
     Parameters
     ----------
     fitting : Fitting
-        The fit.
+        The fitting problem.
     x : ndarray, shape (p,)
-        Variables.
+        Values of the variables.
     model : Model
         The discretized scene.
     """
@@ -131,11 +132,11 @@ class FittedModes:
 
     @property
     def frequency(self) -> np.ndarray:
-        """Frequencies [Hz] (S, n); 0 where a mode does not vibrate."""
+        """Frequencies [Hz] (S, n); 0 if a mode does not vibrate."""
         return np.abs(np.imag(self._solved[0])) * _HZ
 
     def pairs(self) -> np.ndarray:
-        """Return the index (S, m) of the mode of each measured frequency; `NO_MODE` where there is none."""
+        """Return the index (S, m) of each measured frequency's mode; `NO_MODE` if there is none."""
         data = self.fitting.data
         rows = range(len(data.speeds))
         return np.array([pair(data.frequency[i], self.frequency[i], self._likeness(i)) for i in rows])
@@ -143,7 +144,7 @@ class FittedModes:
     def _likeness(self, row: int) -> np.ndarray | None:
         """Compute the modal assurance criterion (m, n) of measured and computed shapes at a speed.
 
-        Return None where no shapes were measured.
+        Return None if no shapes were measured.
         """
         data, equations, vectors = self.fitting.data, self.model.equations, self._solved[1][row]
         if data.shapes is None:
@@ -153,7 +154,7 @@ class FittedModes:
         return likeness_of(data.shapes, vectors.T @ equations.deflection(np.minimum(xi, 1.0)))
 
     def residual(self, pairs: np.ndarray) -> np.ndarray:
-        """Compute the residuals (N,) of paired frequencies: differences over their weights."""
+        """Compute the residuals (N,) of paired frequencies: differences divided by their weights."""
         rows, columns = np.nonzero(pairs != NO_MODE)
         off = self.frequency[rows, pairs[rows, columns]] - self.fitting.data.frequency[rows, columns]
         return off / self.fitting.weight[rows, columns]
@@ -166,7 +167,7 @@ class FittedModes:
         return found.T.reshape(len(rows), len(self.x))
 
     def _changes(self, change: PencilChange) -> np.ndarray:
-        """Compute derivatives [Hz] (S, n) of the frequencies by a variable, from those of the matrices."""
+        """Compute derivatives [Hz] (S, n) of the frequencies by a variable, from those of matrices."""
         each = [np.imag(modes.derivatives(change)) * _HZ for modes in self._perturbed]
         return np.nan_to_num(np.array(each))
 
@@ -178,7 +179,7 @@ class FittedModes:
 
     @property
     def _matrix_changes(self) -> list[PencilChange]:
-        """Derivatives of the matrices by each variable, as differences over two scenes close by."""
+        """Derivatives of the matrices by each variable, as differences between two nearly equal scenes."""
         changes = []
         for k, (least, most) in enumerate(zip(*self.fitting.limits, strict=True)):
             step = _STEP * (self.x[k] if self.fitting.numbers[k].is_compliance else 1.0)
@@ -193,14 +194,14 @@ class FittedModes:
 
 @dataclass(frozen=True)
 class Fitted:
-    """The result of one fit: modes, pairs and sum of squares.
+    """Result of one fit: modes, pairs and sum of squares.
 
     Parameters
     ----------
     modes : FittedModes
-        The modes of the scene that was found.
+        Modes of the fitted scene.
     pairs : ndarray, shape (S, m)
-        As `FittedModes.pairs` gives them.
+        Indices of the paired modes, as from `FittedModes.pairs`.
     cost : float
         Sum of squared residuals of the pairs.
     """
@@ -211,20 +212,20 @@ class Fitted:
 
     @property
     def rank(self) -> tuple[int, float]:
-        """Key that orders fits: fewer frequencies without a mode first, then smaller residuals."""
+        """Sort key of fits: fewer frequencies without a mode first, then smaller residuals."""
         return int((self.pairs == NO_MODE).sum()), self.cost
 
 
 @one_blas_thread()
 def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fitted:
-    """Minimize from variables (p,) with a limited number of solves; pairs are renewed as the scene changes.
+    """Minimize from variables (p,) with a limited number of solutions; renew the pairs as the scene changes.
 
     Parameters
     ----------
     fitting : Fitting
-        What is to be fitted.
+        The fitting problem.
     x : sequence of float
-        Variables at which the fit begins.
+        Variables at which the fit starts.
     most : int
         Largest number of scenes whose modes are computed.
     """
@@ -260,22 +261,22 @@ def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fi
 
 
 def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> Fitted:
-    """Return the best of several fits, which start where the frequencies are nearest to the measured ones.
+    """Return the best of several fits, which start where frequencies are nearest to the measured ones.
 
-    The starts are chosen among the scene's own numbers and random ones, `_TRIED` for each start.
+    The starts are chosen among the scene's numbers and random ones, `_TRIED` candidates for each start.
 
     Parameters
     ----------
     fitting : Fitting
-        What is to be fitted.
+        The fitting problem.
     starts : int
-        Largest number of starts, from the nearest of the points tried.
+        Largest number of starts, chosen as the best of the trial points.
     seed : int
         Seed of the random starts.
     most : int
-        Largest number of scenes whose modes are computed, in all fits together.
+        Largest number of scenes whose modes are computed, in total over all fits.
     enough : float
-        Sum of squared residuals at which no further start is made.
+        Sum of squared residuals below which no further fit is started.
     """
     best: Fitted | None = None
     for first in _nearest(fitting, starts, seed):
@@ -291,8 +292,8 @@ def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> F
 
 
 def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
-    """Return variables (p,) at which fits start, those nearest to the data first."""
-    from scipy.stats.qmc import LatinHypercube  # imported here because it takes long to load
+    """Return variables (p,) at which fits start, those with the smallest residuals first."""
+    from scipy.stats.qmc import LatinHypercube  # the import is inside the function because it takes long
 
     numbers = fitting.numbers
     rows = _TRIED * starts if len(numbers) > 1 else starts - 1
@@ -306,6 +307,6 @@ def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
 
 
 def _unfitted(modes: FittedModes) -> Fitted:
-    """Make the result of a fit without steps: modes as they are, their pairs and sum of squares."""
+    """Build the result of a fit without steps: unchanged modes, their pairs and sum of squares."""
     pairs = modes.pairs()
     return Fitted(modes, pairs, float((modes.residual(pairs) ** 2).sum()))

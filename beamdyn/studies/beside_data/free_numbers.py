@@ -1,8 +1,8 @@
-"""Numbers of a scene that a fit may change, as variables of size 1 with bounds.
+"""Numbers of a scene that a fit may change, scaled to variables of size 1 with bounds.
 
-The variable of a spring at the root is its compliance, the beam's bending stiffness over the spring's:
-frequencies are nearly linear in it, and it is 0 for a clamped root.  The variables of all other numbers are
-the numbers over their values in the scene, or over the beam's corresponding size if that is larger.
+The variable of a root spring is its relative compliance, the beam's bending stiffness EI/L over the spring
+stiffness: frequencies are nearly linear in it, and it is 0 for a clamped root.  Other numbers are divided by
+their values in the scene, or by a corresponding size of the beam if that is larger.
 """
 
 from __future__ import annotations
@@ -20,31 +20,31 @@ from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber, number
 Bounds = tuple[float, float]
 
 SPRINGS = ("mount.root_stiffness", "mount.second_root_stiffness")
-_STEP = 0.01  # `SceneNumber.step` as a share of the size of a number
-_RIGID = 1e-6  # smallest compliance in a fit
-_CLAMPED = 1e-5  # compliance below which the root counts as clamped
-_FIRST = 0.1  # start value of a variable whose spring or body the scene does not have
+_STEP = 0.01  # difference step of a number (`SceneNumber.step`), as a fraction of its size
+_RIGID = 1e-6  # smallest relative compliance in a fit
+_CLAMPED = 1e-5  # relative compliance below which the root counts as clamped
+_FIRST = 0.1  # start value of the variable of a spring or body that the scene does not have
 _SOFTEST = 1e3
-_TIMES = 10.0  # a number is sought between a tenth of its value and ten times it
-_TURN = math.pi / 2  # an angle is sought within a right angle on either side
+_TIMES = 10.0  # a number is searched between a tenth of its value and ten times its value
+_TURN = math.pi / 2  # an angle is searched within 90 degrees on either side
 
 
 @dataclass(frozen=True)
 class FreeNumber:
-    """A number of a scene that a fit finds from data.
+    """Number of a scene that a fit determines from data.
 
     Parameters
     ----------
     path : str
-        Its name in scene files.
+        Name of the number in scene files.
     unit : str
-        Its SI unit.
+        SI unit of the number.
     given : float
-        Its value in the scene [unit]; inf where the root is clamped.
+        Value in the scene [unit]; inf if the root is clamped.
     scale : float
-        Size of the number [unit], by which it is divided.
+        Typical size of the number [unit], by which it is divided.
     bounds : tuple of float
-        Least and largest value [unit].
+        Smallest and largest value [unit].
     """
 
     path: str
@@ -59,20 +59,20 @@ class FreeNumber:
         return self.path in SPRINGS
 
     def variable(self, value: float) -> float:
-        """Return the variable that belongs to a value [unit]."""
+        """Convert a value [unit] to the variable."""
         return self.scale / value if self.is_compliance else value / self.scale
 
     def value(self, x: float) -> float:
-        """Return the value [unit] of a variable.
+        """Convert the variable to a value [unit].
 
-        Inf for a compliance so small that the root counts as clamped.
+        The value is inf for a compliance so small that the root counts as clamped.
         """
         if self.is_compliance:
             return math.inf if x <= _CLAMPED else self.scale / x
         return self.scale * x
 
     def number(self, x: float) -> float:
-        """Return the value [unit] of a variable as the scenes of a fit take it: springs stay finite."""
+        """Convert the variable to a value [unit] for the scenes of a fit, in which springs stay finite."""
         return self.scale / x if self.is_compliance else self.scale * x
 
     @property
@@ -83,16 +83,16 @@ class FreeNumber:
 
     @property
     def first(self) -> float:
-        """The variable at which a fit begins: the scene's value, within the limits."""
+        """Variable at which a fit starts: the scene's value, moved into the limits."""
         low, high = self.limits
         absent = math.isinf(self.given) if self.is_compliance else self.given == low == 0
         return min(max(_FIRST if absent else self.variable(self.given), low), high)
 
     def place(self, share: float) -> float:
-        """Return the variable at a share, from 0 to 1, of the range in which fits begin.
+        """Return the variable at a fraction, from 0 to 1, of the range of start values.
 
-        A compliance ranges from 0.02 to 5, a positive number from half to twice its scale; a number that
-        may be 0 over one scale about its value.
+        A compliance ranges from 0.02 to 5, a positive number from half to twice its scale, a number that may
+        be 0 over one scale about its value.
         """
         low, high = self.limits
         if self.is_compliance or low > 0:
@@ -105,9 +105,10 @@ class FreeNumber:
 
 
 def opened(scene: Scene, paths: Sequence[str]) -> Scene:
-    """Return the scene with a finite root spring, or a massless tip body, where a path needs what it lacks.
+    """Return the scene with a finite root spring, or a massless tip body, if a path needs one.
 
-    The spring, 10 EI/L, or the body is added where a path names a number of one that the scene does not have.
+    The spring, 10 EI/L, or the body is added if a path names a number of a spring or body that the scene
+    lacks.
     """
     values: dict[str, float] = {}
     for path in paths:
@@ -119,7 +120,7 @@ def opened(scene: Scene, paths: Sequence[str]) -> Scene:
 
 
 def free_numbers(scene: Scene, free: Mapping[str, Bounds | None]) -> tuple[FreeNumber, ...]:
-    """Return the numbers with the given paths; where bounds [unit] are None, those usual for the kind.
+    """Return the numbers with the given paths; bounds [unit] of None are replaced by typical ones.
 
     Raises
     ------
@@ -148,7 +149,7 @@ def _free(scene: Scene, number: SceneNumber, bounds: Bounds | None) -> FreeNumbe
 
 
 def _usual_bounds(number: SceneNumber, given: float, scale: float) -> Bounds:
-    """Return the range [unit] in which a number is sought, by its kind."""
+    """Return the range [unit] in which a number is searched, depending on its kind."""
     if number.name in SPRINGS:
         return scale / _SOFTEST, math.inf
     if number.unit == "rad":
@@ -175,5 +176,5 @@ def _checked(number: SceneNumber, bounds: Bounds) -> Bounds:
 
 
 def _stiffness(scene: Scene) -> float:
-    """Compute the mean bending stiffness over the length [N m/rad]."""
+    """Compute the bending stiffness EI/L [N m/rad], with the mean of EI along the beam."""
     return mean(scene.beam.bending_stiffness) / scene.beam.length

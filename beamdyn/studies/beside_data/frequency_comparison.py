@@ -1,4 +1,4 @@
-"""Comparison of measured natural frequencies with computed ones: pairs, deviations, and a verdict on each."""
+"""Comparison of measured with computed natural frequencies: pairs, deviations, and a verdict on each."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from beamdyn.studies.beside_data.single_numbers import OneNumberFit, say_value
 
 AGREES, LEFT_OUT, OUTSIDE, ALONE = "agrees", "within the model error", "outside", "no mode"
 NOTHING = 1e-9  # relative change too small to be mentioned
-_DIGITS = 6  # significant digits of frequencies in sentences
-_PLACES = 61  # number of speeds at which a picture draws computed frequencies
-_ONE_SPEED = 0.1  # top speed of a picture of data at rest, over the lowest angular frequency
+_DIGITS = 6  # number of significant digits of frequencies in sentences
+_PLACES = 61  # number of speeds at which a plot draws computed frequencies
+_ONE_SPEED = 0.1  # top speed of a plot of data at rest, over the lowest angular frequency
 
 
 @dataclass(frozen=True)
 class FrequencyComparison(Result):
-    """Measured natural frequencies beside those of a scene.
+    """Measured natural frequencies, compared with computed ones of a scene.
 
     Parameters
     ----------
@@ -37,26 +37,26 @@ class FrequencyComparison(Result):
     speed : ndarray, shape (N,)
         Speeds [rad/s].
     measured, computed : ndarray, shape (N,)
-        Frequencies [Hz]; computed ones are nan where the scene has no such mode.
+        Frequencies [Hz]; computed ones are nan if the scene has no such mode.
     mode : ndarray of int, shape (N,)
         Number of the computed mode at its speed, from 1; 0 where there is none.
     allowance : ndarray, shape (N,)
-        By how much the measured value may be off [Hz]: half of its last digit, and twice its uncertainty.
+        Possible error of the measured value [Hz]: half of its last digit, and twice its uncertainty.
     rounding : ndarray, shape (N,)
         Half of the last digit of the measured value alone [Hz].
     error : ndarray, shape (N,)
         Estimated numerical error of the computed frequency [Hz].
     model_error : ndarray, shape (N,)
-        What the effects that the model leaves out would change in the computed frequency [Hz], as far as it
-        is known.
+        Model error of the computed frequency [Hz]: change by neglected effects, as far as it is known.
     likeness : ndarray, shape (N,)
-        Modal assurance criterion of measured and computed shape; nan where no shapes were measured.
+        Modal assurance criterion of measured and computed shape (nondimensional); nan if no shapes were
+        measured.
     resembles : tuple of str, shape (N,)
-        Of a measured shape without a mode, the mode whose shape is most like it; empty for all others.
+        For a measured shape without a mode, the mode with the most similar shape; empty for all others.
     unmeasured : tuple of str
         Modes of the scene between the measured ones that have no measured value.
     explanations : tuple of OneNumberFit
-        Numbers of the scene of which one alone, changed, would come nearest to all the data; the best first.
+        Numbers of the scene that, changed alone, fit all data best; the best comes first.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
@@ -105,7 +105,7 @@ class FrequencyComparison(Result):
 
     @property
     def deviation(self) -> np.ndarray:
-        """Relative deviation of each value: measured less computed, over the computed one, shape (N,)."""
+        """Relative deviation of each value: measured minus computed, over the computed one, shape (N,)."""
         return self.measured / self.computed - 1
 
     @property
@@ -117,7 +117,7 @@ class FrequencyComparison(Result):
 
     @property
     def in_digits(self) -> np.ndarray:
-        """Whether each value differs by no more than half of its last digit, shape (N,)."""
+        """Whether each value differs by at most half of its last digit, shape (N,)."""
         return np.abs(self.measured - self.computed) <= self.rounding
 
     @property
@@ -131,7 +131,7 @@ class FrequencyComparison(Result):
         return super().to_dict() | {name: plain(value) for name, value in more.items()}
 
     def sentences(self) -> tuple[str, ...]:
-        """Return sentences on the worst deviations, and on what would explain them."""
+        """Return sentences about the largest deviations, and about what would explain them."""
         return tuple(self._sentences())
 
     def _sentences(self) -> Iterator[str]:
@@ -157,7 +157,7 @@ class FrequencyComparison(Result):
         yield from self._explained()
 
     def _alone(self, k: int) -> Words:
-        """Say that measured value k has no computed mode, and what may be the reason."""
+        """State that measured value k has no computed mode, and the possible reason."""
         setting = Setting("physics", torsion=True)
         twists = TORSION in self.label[k].lower()
         advice = ["; with ", setting, " it may have one"] if twists else []
@@ -211,7 +211,7 @@ _WORDS = {OUTSIDE: OUTSIDE, LEFT_OUT: "within what the model leaves out ({left_o
 
 
 def outside(left_out: float, own: float) -> str:
-    """Say that a value is off by more than the model error and the data's uncertainty, both relative."""
+    """State that a deviation exceeds the model error and the data's uncertainty, both relative."""
     each = (left_out, "what the model leaves out"), (own, "the data's uncertainty")
     limits = [f"{name} ({percent(size)})" for size, name in each if size > NOTHING]
     return f"outside {' and '.join(limits) or 'the numerical error'}"

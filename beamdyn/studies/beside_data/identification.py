@@ -1,4 +1,4 @@
-"""The result of an identification: numbers with intervals, and which of them the data do not determine."""
+"""Result of an identification: numbers with intervals, and which of them the data do not determine."""
 
 from __future__ import annotations
 
@@ -21,43 +21,43 @@ from beamdyn.studies.beside_data.frequency_comparison import NOTHING, FrequencyC
 from beamdyn.studies.beside_data.separability import NotSeparable
 from beamdyn.studies.beside_data.single_numbers import say_value
 
-_DIGITS = 4  # significant digits of numbers in a line of text
+_DIGITS = 4  # number of significant digits of numbers in a line of text
 
 
 @dataclass(frozen=True)
 class Identification(Result):
-    """Numbers of a scene found from measured natural frequencies by bounded least squares.
+    """Numbers of a scene, identified from measured natural frequencies by bounded least squares.
 
     Parameters
     ----------
     names, units : tuple of str, shape (p,)
-        The numbers, by their names in scene files, and their SI units.
+        Names of the numbers in scene files, and their SI units.
     given, value : ndarray, shape (p,)
-        Values in the scene, and found [unit]; nan where the data do not determine the number, inf for a
-        clamped root.
+        Values in the scene, and identified values [unit]; nan if the data do not determine the number, inf
+        for a clamped root.
     low, high : ndarray, shape (p,)
-        Ends of the 95 % interval [unit], within the bounds of the number; nan where it is not known.
+        Ends of the 95 % confidence interval [unit], within the bounds of the number; nan if not known.
     covariance : ndarray, shape (p, p)
-        Covariance of the values [unit times unit]; nan where it is not known.
+        Covariance of the values [unit times unit]; nan if not known.
     correlation : ndarray, shape (p, p)
-        Correlation of the numbers, of springs that of their compliances.
+        Correlation of the numbers; for springs, of their compliances.
     not_separable : tuple of NotSeparable
-        Numbers that the data do not tell apart, and what would.
+        Numbers that the data do not determine separately, and measurements that would.
     comparison : FrequencyComparison
-        The data beside the scene that was found.
+        Comparison of the data with the identified scene.
     standardized : ndarray, shape (N,)
-        Deviation of each value over its uncertainty, or where none are known over the one that follows from
-        all deviations; nan where the scene has no such mode.
+        Deviation of each value over its uncertainty or, if none is given, over the uncertainty estimated from
+        all deviations; nan if the scene has no such mode.
     scatter : float
-        Root mean square deviation over the measured frequency, for the degrees of freedom that remain.
+        Root mean square relative deviation; the divisor is the number of remaining degrees of freedom.
     outliers : tuple of str
-        Values so far off that chance gives one in less than one of a hundred data sets; they are kept.
+        Values with deviations so large that chance causes one in fewer than 1 % of data sets; they are kept.
     solves : int
         Number of scenes whose eigenproblems were solved, each at all speeds.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How it was found.
+        How the result was computed.
 
     Examples
     --------
@@ -96,7 +96,7 @@ class Identification(Result):
 
     @property
     def scene_found(self) -> Scene:
-        """The scene with the numbers that were found.
+        """Scene with the identified numbers.
 
         Raises
         ------
@@ -125,11 +125,11 @@ class Identification(Result):
             more = joined(" or ", each.measurements) if each.measurements else "to keep one of them fixed"
             yield Words(joined(" and ", map(InputName, each.names)), f" {said}. What would help: ", more, ".")
         left_out = float(np.nan_to_num(self.comparison.model_error / self.comparison.computed).max())
-        up_to = f"what the model leaves out would change the frequencies by up to {percent(left_out)}"
+        up_to = f"neglected effects would change the frequencies by up to {percent(left_out)}"
         more = f"; {up_to}." if left_out > NOTHING else "."
         remain = f"The deviations that remain are {percent(self.scatter)} of the frequencies"
         yield (remain if self.scatter > NOTHING else "No deviations remain") + more
-        yield from (f"Far off, and not left out: {each}." for each in self.outliers)
+        yield from (f"Outlier, but not omitted: {each}." for each in self.outliers)
         alone = [k for k, mode in enumerate(self.comparison.mode) if not mode]
         for k in alone:
             yield f"{self.comparison.label[k]}: the model has no such mode; it was not used."
@@ -141,15 +141,15 @@ class Identification(Result):
         return Words(InputName(self.names[k]), " = ", said(self.value[k]), " (", ends, ")")
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the frequencies of the scene that was found over speed, and the measured ones as points."""
+        """Draw the frequencies of the identified scene over speed, and the measured ones as points."""
         return self.comparison.plot(ax)
 
     @property
     def degrees_of_freedom(self) -> int:
-        """Number of paired frequencies less the number of identified numbers."""
+        """Number of paired frequencies minus the number of identified numbers."""
         return int(np.isfinite(self.standardized).sum()) - len(self.names)
 
     def counted(self) -> str:
-        """Say how many numbers are found from how many frequencies: "3 numbers from 15 frequencies"."""
+        """State how many numbers follow from how many frequencies: "3 numbers from 15 frequencies"."""
         values = counted(int(np.isfinite(self.standardized).sum()), "frequency", "frequencies")
         return f"{counted(len(self.names), 'number')} from {values}"

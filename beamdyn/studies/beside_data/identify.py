@@ -8,7 +8,7 @@ from functools import cached_property
 from time import perf_counter
 
 import numpy as np
-from scipy import special  # scipy.stats has these functions, too, but takes long to load
+from scipy import special  # scipy.stats has these functions too, but its import takes long
 
 from beamdyn.common.inputs.checks import InvalidValue, count, kind
 from beamdyn.common.results.one_line import number
@@ -24,13 +24,13 @@ from beamdyn.studies.beside_data.identification import Identification
 from beamdyn.studies.beside_data.pairing import NO_MODE
 from beamdyn.studies.beside_data.separability import FINEST, Information, not_separable
 
-MOST_SOLVES = 40  # largest number of scenes whose modes are computed, for each number that is sought
+MOST_SOLVES = 40  # largest number of scenes whose modes are computed, per unknown number
 _LEVEL = 0.95
-_CHANCE = 0.01  # probability of reporting an outlier in a set of data that has none
-# Probability of a sum of squares beyond which a fit counts as poor, is repeated from further starts, and is
+_CHANCE = 0.01  # probability of reporting an outlier in data without outliers
+# Quantile of the sum of squares above which a fit counts as poor, is repeated from further starts, and is
 # reported.
 _LIKELY = 0.999
-_NOTHING = 1e-20  # sum of squared relative deviations below which data count as free of noise
+_NOTHING = 1e-20  # sum of squared relative deviations below which data count as exact
 
 
 def identify(
@@ -40,23 +40,24 @@ def identify(
     starts: int = 4,
     seed: int = 0,
 ) -> Identification:
-    """Find numbers of a scene from measured natural frequencies, by bounded least squares.
+    """Identify numbers of a scene from measured natural frequencies, by bounded least squares.
 
-    Where all frequencies are off by the ratio of two units, a warning says so, as of `bd.compare`.
-    Deviations are divided by the uncertainties of the data or, where these are not known, by the frequencies,
-    and the uncertainty follows from the deviations.  At most 40 solves are made for each number.
+    If all frequencies deviate by the ratio of two units, a warning says so, as in `bd.compare`. Deviations
+    are divided by the uncertainties of the data.  If these are not given, they are divided by the
+    frequencies, and the uncertainty is estimated from the deviations.  At most 40 scenes are solved for each
+    number.
 
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is not used.  Its numbers are where the search begins.
+        The scene, with which the search starts; its motion is not used.
     data : MeasuredFrequencies
         The measured frequencies, at least as many as there are unknown numbers.
     free : mapping of str to pair of float or None
-        The unknown numbers by their names in scene files, such as "beam.thickness", each with its least and
-        largest value [SI], or None for bounds that follow from its kind.
+        The unknown numbers by their names in scene files, such as "beam.thickness", each with its smallest
+        and largest value [SI], or None for typical bounds.
     starts : int
-        Largest number of starts: from the scene's numbers, or from random ones that are nearer to the data.
+        Largest number of starts: from the scene's numbers, or from random ones that fit the data better.
     seed : int
         Seed of the random starts.
 
@@ -104,13 +105,13 @@ def identify(
 
 
 def _likely_sum(freedom: int) -> float:
-    """Return the sum of squares that a number of standard normal deviations rarely exceed."""
+    """Return the sum of squares that is rarely exceeded by a number of standard normal deviations."""
     return float(2 * special.gammaincinv(freedom / 2, _LIKELY))
 
 
 @dataclass(frozen=True)
 class _Told:
-    """What is derived from a finished fit: intervals, covariances, outliers and warnings."""
+    """Statistics derived from a finished fit: intervals, covariances, outliers and warnings."""
 
     fit: Fitted
     known: bool
@@ -130,7 +131,7 @@ class _Told:
 
     @property
     def _freedom(self) -> int:
-        """Degrees of freedom: the number of residuals less that of the fitted numbers."""
+        """Degrees of freedom: number of residuals minus number of fitted numbers."""
         return len(self._residual) - len(self._numbers)
 
     @cached_property
@@ -139,9 +140,9 @@ class _Told:
 
     @cached_property
     def _deviation(self) -> float:
-        """Standard deviation of the residuals: 1 where uncertainties are known.
+        """Standard deviation of the residuals: 1 if uncertainties are given.
 
-        Nan if nothing determines it.
+        The result is nan if neither uncertainties nor deviations determine it.
         """
         if self.known:
             return 1.0
@@ -149,7 +150,7 @@ class _Told:
 
     @cached_property
     def _uncertainty(self) -> np.ndarray:
-        """Standard deviation of each residual (N,), at least that of a relative uncertainty of `FINEST`."""
+        """Standard deviation of each residual (N,), at least that for the relative uncertainty `FINEST`."""
         least = FINEST * self._measured / self._fitting.weight[self.fit.pairs != NO_MODE]
         return np.maximum(np.nan_to_num(self._deviation), least)
 
@@ -166,7 +167,7 @@ class _Told:
     def _intervals(self) -> np.ndarray:
         """Ends (p, 2) of the confidence intervals.
 
-        They are centred on the unbounded optimum, also where a bound limits a number.
+        They are centred on the unbounded optimum, even if a bound limits a number.
         """
         quantile = special.ndtri(0.5 + _LEVEL / 2)
         if not self.known:
@@ -196,13 +197,13 @@ class _Told:
 
     @cached_property
     def _standardized(self) -> np.ndarray:
-        """Residuals (N,) over their own standard deviation in the fit."""
+        """Residuals (N,) divided by their own standard deviation in the fit."""
         spread = np.sqrt(np.maximum(1 - self._information.leverage, FINEST))
         return self._residual / (self._uncertainty * spread)
 
     @property
     def _poorness(self) -> float:
-        """Root mean square of the residuals, which is about 1 where the data's uncertainties are right."""
+        """Root mean square of the residuals, which is about 1 if the data's uncertainties are right."""
         return float(np.sqrt(self.fit.cost / max(self._freedom, 1)))
 
     @property
@@ -212,11 +213,11 @@ class _Told:
         return self.known and freedom > 0 and self.fit.cost > _likely_sum(freedom)
 
     def _outliers(self) -> Iterator[str]:
-        """Yield a sentence about each measured value that lies too far off to be chance."""
+        """Yield a sentence about each measured value whose deviation is too large to be due to chance."""
         size, freedom = np.abs(self._standardized), self._freedom
         chance = _CHANCE / max(len(size), 1) / 2
         limit = -special.ndtri(chance)
-        if not self.known or self._is_poor:  # each value is held against the scatter of all others
+        if not self.known or self._is_poor:  # each value is compared with the scatter of all others
             size = np.abs(self._standardized) / (self._poorness if self.known else 1.0)
             if freedom < 2:
                 return
@@ -247,7 +248,7 @@ class _Told:
                 yield Statement(said, kind=LIMITS)
 
     def result(self, start: float) -> Identification:
-        """Make the result of the fit, whose computation began at a time of `perf_counter` [s]."""
+        """Build the result of the fit, whose computation started at a time of `perf_counter` [s]."""
         fitting, information = self._fitting, self._information
         comparison = beside(fitting.scene_at(self.fit.modes.x), fitting.data)
         covariance, correlation = self._covariances

@@ -1,9 +1,9 @@
-"""Which computed mode a measured frequency belongs to.
+"""Assignment of computed modes to measured frequencies.
 
-The distance of two frequencies is that of their logarithms, over half of the way from the computed mode to
-its neighbour on that side: a mode far from all others may be far off, and is still the one.  Where shapes are
-given, the distance grows with what their modal assurance criterion lacks of 1.  All pairs at a speed are
-chosen together, by least total distance; a frequency stays without a mode where all are too far.
+The distance of two frequencies is the difference of their logarithms, divided by half the gap between the
+computed mode and its neighbour on that side: a mode far from all others may deviate more.  If shapes are
+given, the distance increases with 1 minus their modal assurance criterion.  All pairs at a speed are chosen
+together, for the smallest total distance; a frequency stays without a mode if all modes are too far.
 """
 
 from __future__ import annotations
@@ -15,24 +15,25 @@ import numpy as np
 from beamdyn.common.numerics import assign
 from beamdyn.modes.modal.model import BENDING, TORSION
 
-# Distance, in half gaps between modes, beyond which a value stays without a mode; a mode may be off by more
-# than half a gap.
+# Distance, in half gaps between modes, above which a measured value stays without a mode; a deviation may
+# exceed half a gap.
 _TOO_FAR = 1.5
-_BELOW = 2.0  # gap below the lowest mode and above the highest, as a logarithm: a factor of about seven
-_CROSSING = 1e-2  # smallest half gap: modes that cross are told apart by their shapes alone
-_OF_SHAPE = 3.0  # what a shape that is orthogonal to the measured one adds to the distance
+# Assumed gap below the lowest and above the highest mode, as a logarithm: a factor of about seven.
+_BELOW = 2.0
+_CROSSING = 1e-2  # smallest half gap: crossing modes are distinguished by their shapes alone
+_OF_SHAPE = 3.0  # distance added by a shape that is orthogonal to the measured one
 NO_MODE = -1
 
 
 def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None = None) -> np.ndarray:
-    """Return the index (m,) of the computed mode of each measured frequency; `NO_MODE` where there is none.
+    """Return the index (m,) of the computed mode of each measured frequency; `NO_MODE` if there is none.
 
     Parameters
     ----------
     measured : ndarray, shape (m,)
-        Frequencies [Hz]; nan where none was measured.
+        Measured frequencies [Hz]; nan if not measured.
     computed : ndarray, shape (n,)
-        Frequencies of the model [Hz], in any order; nan or 0 where a mode does not vibrate.
+        Frequencies of the model [Hz], in any order; nan or 0 if a mode does not vibrate.
     likeness : ndarray, shape (m, n), optional
         Modal assurance criterion of the shapes.
     """
@@ -43,7 +44,7 @@ def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None
     cost = _distances(measured[known], computed[there])
     if likeness is not None:
         cost = cost + _OF_SHAPE * (1 - likeness[np.ix_(known, there)])
-    alone = np.where(np.eye(len(known), dtype=bool), _TOO_FAR, 1e6)  # costs of leaving a value without a mode
+    alone = np.where(np.eye(len(known), dtype=bool), _TOO_FAR, 1e6)  # cost of leaving a value without a mode
     column = assign(np.hstack([cost, alone]))
     paired = column < len(there)
     found[known[paired]] = there[column[paired]]
@@ -51,7 +52,7 @@ def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None
 
 
 def _distances(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
-    """Compute distances (m, n) of frequencies, over half the gap from each mode to the next on that side."""
+    """Compute distances (m, n) of frequencies, relative to half the gap from each mode to the next."""
     log, order = np.log(computed), np.argsort(computed)
     apart = np.log(measured)[:, None] - log
     gaps = np.diff(log[order], prepend=log[order[0]] - _BELOW, append=log[order[-1]] + _BELOW)
@@ -69,9 +70,9 @@ def likeness_of(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
 
 
 def likeness_of_kinds(labels: Sequence[str], kinds: np.ndarray | None, modes: int) -> np.ndarray | None:
-    """Compute likeness (m, n) from labels that name torsion: 1 where the kinds agree.
+    """Compute likeness (m, n) from labels that mention torsion: 1 if both modes are of the same kind.
 
-    None if none names it.
+    None if no label mentions it.
     """
     said = np.array([TORSION in label.lower() for label in labels])
     if not said.any():

@@ -1,9 +1,10 @@
-"""Which numbers data determine: covariance, numbers not determined separately, and data that would help.
+"""Identifiability: which numbers data determine, which not separately, and which data would help.
 
-With J the derivatives of residuals over their uncertainties by the variables of size 1, J = U S V^T, a change
-of size 1/s along a column of V changes the data by one uncertainty.  As numbers are bounded, 1/s counts as
-ten at most.  A number that may change by its whole size unnoticed is not determined by the data.
-Uncertainties count as a millionth of the frequency at least, so that no verdict hangs on rounding.
+Let J = U S V^T be the derivatives of residuals, over their uncertainties, with respect to the variables of
+size 1.  A change of size 1/s along a column of V changes the data by one uncertainty; as numbers are bounded,
+1/s is limited to ten.  If a number can change by its full size within the uncertainties, the data do not
+determine it.  Uncertainties are at least a millionth of the frequency, so that rounding cannot change the
+verdict.
 """
 
 from __future__ import annotations
@@ -20,24 +21,28 @@ from beamdyn.scene.profile import mean
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.fit import FittedModes, Fitting
 
-LARGEST = 1.0  # standard error of a variable of size 1, above which its number counts as undetermined
-FINEST = 1e-6  # smallest relative uncertainty of a frequency that this verdict assumes
-# Least share of `LARGEST` that a direction adds to a number's error if its name shall be listed.
+LARGEST = 1.0  # standard error of a variable of size 1 above which its number is undetermined
+# Smallest relative uncertainty of a frequency that is assumed in the decision about identifiability.
+FINEST = 1e-6
+# Smallest fraction of `LARGEST` that a direction must add to a number's error for the number to be listed.
 _TAKES_PART = 0.5
-# Singular values below this count as equal to it: the bounds of a variable are about ten of its sizes apart.
+# Smallest singular value used: smaller ones are replaced by this one, as the bounds of a variable are about
+# ten of its sizes apart.
 _BOUND = 0.1
-_TOLD = 0.05  # least relative change of a measurement along a direction, for it to determine that direction
+# Smallest relative change of a measurement along a direction for which it determines that direction.
+_TOLD = 0.05
 _STEP = 1e-3
-_BODY = 0.2  # mass of a known body, over that of the beam, with which a measurement is suggested
-_FASTER = 2.0  # speed suggested for a measurement, over the largest one of the data
-# Speed suggested where the data are at rest [rad/s], over the first frequency [Hz]: a quarter of it in rad/s.
+_BODY = 0.2  # mass of a known body, over that of the beam, that is proposed for a measurement
+_FASTER = 2.0  # ratio of the speed proposed for a measurement to the largest speed of the data
+# Speed [rad/s] proposed for a measurement if the data are at rest, over the first frequency [Hz]: a quarter
+# of the angular frequency.
 _FAST = np.pi / 2
 _PLACES = np.linspace(0.0, 1.0, 201)
 
 
 @dataclass(frozen=True)
 class Information:
-    """How well residuals determine p variables, by the singular values of their derivatives.
+    """Information in residuals about p variables, by the singular values of their derivatives.
 
     Parameters
     ----------
@@ -60,12 +65,12 @@ class Information:
 
     @property
     def told(self) -> np.ndarray:
-        """Which variables (p,) the data determine."""
+        """Whether the data determine each variable (p,)."""
         return np.sqrt(np.diag(self.covariance)) <= LARGEST
 
     @property
     def lost(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Directions (p,) that the data do not determine, and which variables (p,) each leaves open."""
+        """Directions (p,) that the data do not determine, and the variables (p,) concerned."""
         _, s, V = self._parts
         each = [
             (v, ~self.told & (np.abs(v) / size > _TAKES_PART * LARGEST))
@@ -80,7 +85,7 @@ class Information:
         return (U[:, s > _BOUND] ** 2).sum(axis=1)
 
     def step(self, residual: np.ndarray) -> np.ndarray:
-        """Compute the step (p,) to the least sum of squares of the linearized problem without bounds."""
+        """Compute the step (p,) to the smallest sum of squares of the linearized problem without bounds."""
         U, s, V = self._parts
         return -V @ ((U.T @ residual) / s)
 
@@ -92,9 +97,9 @@ class NotSeparable:
     Parameters
     ----------
     names : tuple of str
-        Their names in scene files.
+        Names of the numbers in scene files.
     measurements : tuple of str
-        What could be measured, too, to tell them apart.
+        Additional measurements that would determine them separately.
 
     Examples
     --------
@@ -110,7 +115,7 @@ class NotSeparable:
 
 
 def not_separable(modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]]) -> tuple[NotSeparable, ...]:
-    """Name the numbers of each undetermined direction, and measurements that would determine it."""
+    """List the numbers of each undetermined direction, and measurements that would determine it."""
     paths = np.array([number.path for number in modes.fitting.numbers])
     return tuple(
         NotSeparable(tuple(paths[named].tolist()), tuple(_telling(modes, direction)))
@@ -119,7 +124,7 @@ def not_separable(modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]])
 
 
 def _telling(modes: FittedModes, direction: np.ndarray) -> list[str]:
-    """Name the measurements that change along a direction of the variables."""
+    """List the measurements that change along a direction of the variables."""
     low, high = modes.fitting.limits
     ends = [np.clip(modes.x + step * direction, low, high) for step in (-_STEP, _STEP)]
     change = float(np.linalg.norm(ends[1] - ends[0]))
@@ -128,7 +133,7 @@ def _telling(modes: FittedModes, direction: np.ndarray) -> list[str]:
 
 
 def _measured(fitting: Fitting, scene: Scene) -> dict[str, float]:
-    """Compute quantities of a scene that could be measured in addition, by their names."""
+    """Compute quantities of a scene that could be measured in addition, by name."""
     first, speed = _frequency(scene), float(np.abs(fitting.data.speeds).max())
     return {
         "the mass of the beam": _mass(scene),
@@ -142,20 +147,20 @@ def _measured(fitting: Fitting, scene: Scene) -> dict[str, float]:
 
 
 def _frequency(scene: Scene, speed: float = 0.0, mode: int = 1) -> float:
-    """Compute a natural frequency [Hz]; 1 where the mode does not vibrate."""
+    """Compute a natural frequency [Hz]; 1 if the mode does not vibrate."""
     with unannounced():
         found = float(natural_modes(scene, speed, mode).frequency[mode - 1])
     return found if found > 0 else 1.0
 
 
 def _mass(scene: Scene) -> float:
-    """Compute the mass of the beam with the body at its tip [kg]."""
+    """Compute the mass of the beam with its tip body [kg]."""
     beam = scene.beam
     return mean(beam.mass_per_length) * beam.length + (0.0 if beam.tip is None else beam.tip.mass)
 
 
 def _compliance(scene: Scene) -> float:
-    """Compute the deflection of the tip per force [m/N]: unit load over bending stiffness and root spring."""
+    """Compute the tip deflection per unit force [m/N], by bending stiffness and root spring."""
     L, arm = scene.beam.length, (1 - _PLACES) ** 2
     bending = float(np.trapezoid(arm / scene.beam.bending_stiffness(_PLACES), _PLACES)) * L**3
     return bending + L**2 / scene.mount.root_stiffness

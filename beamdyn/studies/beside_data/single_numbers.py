@@ -16,7 +16,7 @@ from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.fit import Fitting, fit_from
 from beamdyn.studies.beside_data.free_numbers import SPRINGS, FreeNumber, free_numbers
 
-_WITHIN = {  # numbers that may be wrong, and the largest factor by which each may be
+_WITHIN = {  # numbers that may be wrong, and the largest factor of the error
     "beam.length": (0.8, 1.25),
     "beam.thickness": (0.5, 2.0),
     "beam.width": (0.5, 2.0),
@@ -26,37 +26,38 @@ _WITHIN = {  # numbers that may be wrong, and the largest factor by which each m
     "beam.mass_per_length": (0.2, 5.0),
     "mount.radius": (0.5, 2.0),
 }
-_HEAVIEST = 2.0  # largest mass of a body at the tip, over that of the beam
+_HEAVIEST = 2.0  # largest mass of a tip body, over that of the beam
 _SOLVES = 25  # largest number of scenes whose modes are computed for the fit of one number
-_TOLERANCE = 1e-7  # relative change of a number at which its fit ends
-# Relative change of a frequency by a change of a number by its whole size, below which it explains nothing.
+_TOLERANCE = 1e-7  # relative change of a number below which its fit ends
+# Relative frequency change by a change of a number by its full size, below which the number explains nothing.
 _MATTERS = 1e-3
-_DIGITS = 3  # significant digits of values in sentences
-_WHOLE = 6  # digits before the decimal point up to which a rounded value is written without an exponent
+_DIGITS = 3  # number of significant digits of values in sentences
+# Number of digits before the decimal point up to which a rounded value is written without an exponent.
+_WHOLE = 6
 _USUAL = {"Pa": ("GPa", 1e-9), "kg": ("g", 1e3)}
-_NOTHING = 1e-5  # remaining relative deviation that is worded as nothing
-_TIE = 3  # decimals to which remaining deviations are compared
-_SLACK = 1e-6  # relative amount by which a deviation may exceed its bound
+_NOTHING = 1e-5  # remaining relative deviation that is described as none
+_TIE = 3  # number of decimals to which remaining deviations are compared
+_SLACK = 1e-6  # relative amount by which a deviation may exceed the allowed one
 
 
 @dataclass(frozen=True)
 class OneNumberFit:
-    """A number of a scene, and its value that, changed alone, comes nearest to the data.
+    """Number of a scene, with the value that, changed alone, fits the data best.
 
     Parameters
     ----------
     name : str
-        Its name in scene files, such as "beam.thickness".
+        Name of the number in scene files, such as "beam.thickness".
     unit : str
-        Its SI unit.
+        SI unit of the number.
     given : float
-        Its value in the scene [unit]; inf of a clamped root.
+        Value in the scene [unit]; inf for a clamped root.
     value : float
-        The value that comes nearest to the data [unit].
+        Value that fits the data best [unit].
     remaining : float
-        Largest deviation that it leaves, over the computed frequency.
+        Largest remaining deviation, relative to the computed frequency.
     explains : bool
-        Whether all deviations are then within the uncertainty of the data and what the model leaves out.
+        Whether all deviations are then within the data's uncertainty and the model error.
 
     Examples
     --------
@@ -89,7 +90,7 @@ def explain(scene: Scene, data: MeasuredFrequencies, bound: np.ndarray) -> tuple
     data : MeasuredFrequencies
         The measured frequencies.
     bound : ndarray, shape (N,)
-        By how much each value may deviate [Hz]; nan where the scene has no such mode.
+        Allowed deviation of each value [Hz]; nan if the scene has no such mode.
     """
     allowed = np.full(data.frequency.shape, np.nan)
     allowed[np.isfinite(data.frequency)] = bound
@@ -103,7 +104,7 @@ def explain(scene: Scene, data: MeasuredFrequencies, bound: np.ndarray) -> tuple
 
 
 def _numbers(scene: Scene) -> list[FreeNumber]:
-    """Return the numbers of a scene that may be wrong, with physical bounds, a spring at the root first."""
+    """Return the numbers of a scene that may be wrong, with physical bounds; a root spring comes first."""
     found = []
     for path in (
         *SPRINGS,
@@ -116,7 +117,7 @@ def _numbers(scene: Scene) -> list[FreeNumber]:
         except InvalidValue:  # the scene has no such number
             continue
         low, high = _physical(scene, free)
-        if low < high:  # not fulfilled by a radius of 0, which keeps the root on the axis
+        if low < high:  # false for a radius of 0, which keeps the root on the axis
             found.append(replace(free, bounds=(low, high)))
     return found
 
@@ -133,7 +134,7 @@ def _physical(scene: Scene, free: FreeNumber) -> tuple[float, float]:
 def _explanation(
     scene: Scene, data: MeasuredFrequencies, free: FreeNumber, allowed: np.ndarray
 ) -> OneNumberFit | None:
-    """Fit one number to all values; None where it hardly changes a frequency, or leaves its bounds."""
+    """Fit one number to all values; None if it hardly changes frequencies or if it exceeds its bounds."""
     weight = np.maximum(allowed, _SLACK * np.nan_to_num(data.frequency, nan=1.0))
     fitting = Fitting(scene, data, (free,), weight, _TOLERANCE)
     start = fitting.at(np.array([free.first]))
@@ -151,9 +152,9 @@ def _explanation(
 
 
 def say_value(value: float, unit: str, digits: int = _DIGITS, units: DisplayUnits = SI_UNITS) -> str:
-    """Format a value with a number of significant digits and its unit, as each medium shows it.
+    """Format a value with a number of significant digits and its unit, in the units of each output medium.
 
-    Python shows SI, files mm, GPa and g; lengths have the unit of the scene, where it has one.
+    Python prints SI units, files mm, GPa and g; lengths have the unit of the scene, if it has one.
     """
     if math.isinf(value):
         return "clamped"

@@ -1,4 +1,4 @@
-"""Recognition of frequencies that were measured in another unit than they are read in."""
+"""Detection of frequencies that were measured in another unit than the one assumed."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from beamdyn.common.results.statements import INPUT, Statement
 from beamdyn.common.words import percent
 from beamdyn.studies.beside_data.pairing import NO_MODE, pair
 
-_UNITS: Mapping[str, tuple[float, str]] = {  # factor from the unit to hertz, and the words for the unit
+_UNITS: Mapping[str, tuple[float, str]] = {  # factor from the unit to hertz, and the name of the unit
     "2 pi": (2 * pi, "in rad/s, and read as Hz"),
     "60": (60.0, "in 1/min, and read as Hz"),
     "1000": (1e3, "in mHz, or in Hz and read as kHz"),
@@ -19,23 +19,23 @@ _UNITS: Mapping[str, tuple[float, str]] = {  # factor from the unit to hertz, an
     "1/60": (1 / 60, "in Hz, and read as 1/min"),
     "1/1000": (1e-3, "in kHz, and read as Hz"),
 }
-_ALIKE = 0.1  # largest deviation that remains once the unit is right: models are hardly further off
-_LESS = 0.5  # largest scatter that remains with the right unit, over the scatter as read
-_FEWEST = 2  # least number of values that are needed to recognize a common factor
+_ALIKE = 0.1  # largest relative deviation that remains with the right unit: models rarely deviate more
+_LESS = 0.5  # largest scatter that remains with the right unit, over the scatter with the assumed unit
+_FEWEST = 2  # smallest number of values needed to detect a common factor
 
 
 def wrong_unit(
     measured: Sequence[np.ndarray], computed: Sequence[np.ndarray], likeness: Sequence[np.ndarray | None]
 ) -> Iterator[Statement]:
-    """Yield a statement if all values are off by one factor, and that is the ratio of two units.
+    """Yield a statement if all values deviate by one common factor that is the ratio of two units.
 
-    The values divided by the factor are paired with modes anew.  The statement is made if each then has a
-    mode within 10 %, and the ratios of measured to computed values scatter less than half as much as before.
+    The values divided by the factor are paired with modes again.  The statement is made if each then has a
+    mode within 10 %, and if the scatter of the ratios of measured to computed values is less than half.
 
     Parameters
     ----------
     measured : sequence of ndarray, each of shape (m,)
-        Frequencies at each speed [Hz]; nan where none was measured.
+        Measured frequencies at each speed [Hz]; nan if not measured.
     computed : sequence of ndarray, each of shape (n,)
         Frequencies of the model at each speed [Hz].
     likeness : sequence of ndarray, each of shape (m, n), or None
@@ -45,7 +45,7 @@ def wrong_unit(
         return
 
     def logarithms(factor: float) -> np.ndarray:
-        """Compute log(measured / factor / computed) of each value and its mode; inf if it has none."""
+        """Compute log(measured / factor / computed) for each value with a mode; inf if one has no mode."""
         found = []
         for values, modes, alike in zip(measured, computed, likeness, strict=True):
             place, known = pair(values / factor, modes, alike), np.isfinite(values)

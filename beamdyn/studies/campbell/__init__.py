@@ -1,1 +1,1 @@
-"""Campbell diagrams: frequencies over speed, per-rev and motion lines, crossings and margins."""
+"""Campbell diagrams: frequencies over speed, lines of excitation, crossings and margins."""

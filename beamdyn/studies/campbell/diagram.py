@@ -1,4 +1,4 @@
-"""The Campbell diagram of one scene or several: natural frequencies, lines, crossings and margins."""
+"""Campbell diagram of one scene or several: natural frequencies, excitation lines, crossings, margins."""
 
 from __future__ import annotations
 
@@ -32,17 +32,17 @@ from beamdyn.studies.campbell import line_crossings
 
 UNITS = ("rad/s", "rpm")
 _MOST_ORDERS = 100
-_SAME = 1e-9  # relative distance below which an operating speed and another speed count as one
+_SAME = 1e-9  # relative difference below which an operating speed equals another speed
 
 Scenes: TypeAlias = "Scene | Sequence[Scene] | Mapping[str, Scene]"
 
 
 @dataclass(frozen=True)
 class Campbell(StatesModelError):
-    """Natural frequencies over speed, lines that may excite them, their crossings and their margins.
+    """Natural frequencies over speed, excitation lines, their crossings and margins.
 
-    `left_out`, `model_error` and `left_out_effects`, computed when asked for, are what the physics left out
-    would change in the speeds of the crossings (k,).
+    `left_out`, `model_error` and `left_out_effects`, computed at their first use, estimate how much neglected
+    physical effects change the speeds of the crossings (k,).
 
     Parameters
     ----------
@@ -50,29 +50,29 @@ class Campbell(StatesModelError):
         Label of each scene.
     names : tuple of tuple of str
         Names of the modes of each scene: "flap 1", "edge 1" by the direction in which they mostly bend at the
-        first speed; "mode 1" where the bending angle is no whole number of quarter turns, or a beam with one
+        first speed; "mode 1" if the bending angle is not a multiple of 90 degrees, or if a beam with one
         plane does not point outward.
     loci : tuple of Locus
         Natural frequencies of each scene, tracked, with errors and confidence.
     lines : tuple of Line
-        The per-rev lines, then the motions' other lines.
+        The lines at multiples of the speed (per-rev), then other lines of the motions.
     crossings : tuple of LineCrossing
         Where lines meet natural frequencies, scene by scene, by ascending speed.
     margins : tuple of Margin
         Distances of each mode from the nearest line at the rated speed and over the operating range.
     bounds : tuple of FrequencyBounds
-        Guaranteed bounds at the rated speed, or else the top speed, of the scenes that have them; empty if
-        they were not asked for.
+        Guaranteed bounds at the rated speed, or otherwise the top speed, of the scenes that have them; empty
+        if they were not requested.
     rated : float or None
         Rated speed [rad/s].
     operating : tuple of float or None
         Operating range [rad/s].
     unit : {"rad/s", "rpm"}
-        Unit of speeds in the picture and the tables.
+        Unit of speeds in the plot and the tables.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
-        How it was found.
+        How the result was computed.
 
     Examples
     --------
@@ -98,7 +98,7 @@ class Campbell(StatesModelError):
     scene: Scene = field(repr=False)  # the first of the scenes
 
     def headline(self) -> Iterator[str]:
-        """Yield numbers of crossings, lines and scenes, and the error, parts of a one-line summary.
+        """Yield numbers of crossings, lines and scenes, and the error, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -110,23 +110,23 @@ class Campbell(StatesModelError):
 
     @property
     def plot_label(self) -> str:
-        """Label of the curves in a picture of several results: empty, as each scene has its own label."""
+        """Label of the curves in a plot of several results: empty, as each scene has a label."""
         return ""
 
     @property
     def display_units(self) -> DisplayUnits:
-        """Units of tables, columns and pictures, with the unit of speeds that was asked for."""
+        """Units of tables, columns and plots, with the requested unit of speeds."""
         return vars(self).get("_display_units") or super().display_units.with_others({"speed": self.unit})
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the speed of each crossing by effects left out: arrays of shape (k,)."""
+        """Changes of the speed of each crossing by neglected effects: arrays of shape (k,)."""
         effects, sizes = [], []
         for label, locus in zip(self.labels, self.loci, strict=True):
             own = [c for c in self.crossings if c.label == label]
             modes = locus.frequency.shape[1]
             speeds = np.array([c.speed for c in own])
-            # Both modes of the pair are the same one.
+            # A crossing with one mode is treated as a combination of this mode with itself.
             pairs = 2 * np.pi * np.array([[c.frequency] * 2 for c in own])
             known = left_out_of_crossings(locus.model, speeds, pairs, modes) if own else None
             effects.append(known or nothing_known(locus.scene))
@@ -144,13 +144,13 @@ class Campbell(StatesModelError):
         return replace(effects[0], changes=changes, not_modelled=not_modelled, shape=(sum(sizes),), **words)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the result as plain numbers, lists and strings, with model error and effects left out."""
-        # Loci without their model errors, which would take long.
+        """Return the result as plain numbers, lists and strings, with model error and neglected effects."""
+        # Loci without model errors, which would take long to compute.
         loci = [super(StatesModelError, locus).to_dict() for locus in self.loci]
         return super().to_dict() | {"loci": loci}
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the diagram; flap solid and edge dashed where two planes are modelled."""
+        """Draw the diagram, with flap solid and edge dashed if two planes are modelled."""
         return plot_campbell(
             [self._curves(i) for i in range(len(self.loci))],
             {line.name: line.multiple for line in self.lines},
@@ -171,7 +171,7 @@ class Campbell(StatesModelError):
         return Curves(locus.speeds, locus.frequency, names, label, solid, directions)
 
     def _marked(self) -> dict[str, list[tuple[float, float]]]:
-        """Return points (speed, frequency) of the crossings, by their name in the legend."""
+        """Return points (speed, frequency) of the crossings, by the name in the legend."""
         if self.operating is None:
             return {"crossing": [(c.speed, c.frequency) for c in self.crossings]}
         inside = "crossing in the operating range", "crossing outside it"
@@ -195,29 +195,30 @@ def campbell(
 ) -> Campbell:
     """Compute a Campbell diagram: natural frequencies over speed, and the lines that may excite them.
 
-    Every line is compared with every mode: whether a line excites a mode is another question, which
-    `resonance_speeds` answers for a scene's motion.
+    All lines are compared with all modes, whether the line excites the mode or not; `resonance_speeds` takes
+    that into account for a scene's motion.
 
     Parameters
     ----------
     scenes : Scene, sequence of Scene or mapping of str to Scene
-        One scene or several, which are drawn over one another; a mapping names them.
+        One scene or several, which are drawn in one plot; a mapping gives them names.
     speeds : sequence of float
         Speeds [rad/s], ascending, from 0 or above.  The operating speeds are added to them.
     modes : int
         Number of modes to follow.
     per_rev : iterable of int
-        Orders of the per-rev lines: n stands for the frequency n speed / (2 pi).
+        Orders n of the per-rev lines, whose frequency is n speed / (2 pi).
     rated : float, optional
         Rated speed [rad/s], at which margins are stated.
     operating : (float, float), optional
         Lowest and highest operating speed [rad/s]: margins are stated over the range, and the crossings in it
         are marked.
     unit : {"rad/s", "rpm"}, optional
-        Unit of speeds in the picture and the tables, by default that of the first scene; the numbers of the
-        result are in rad/s.
+        Unit of speeds in the plot and the tables, by default that of the first scene; the result itself is in
+        rad/s.
     bounds : bool
-        Whether guaranteed bounds of the frequencies are computed at the rated speed, or else the top speed.
+        Whether to compute guaranteed bounds of the frequencies at the rated speed, or otherwise the top
+        speed.
     discretization, tolerance
         As for `natural_modes`.
 
@@ -251,7 +252,8 @@ def campbell(
     one_of("unit", unit, UNITS)
     speeds = _check_speeds(speeds)
     rated, operating = _check_operation(speeds, rated, operating)
-    # Operating speeds are added to the others, in place of those that equal them but for rounding.
+    # Operating speeds are added to the given speeds; they replace given speeds that are equal within
+    # rounding.
     added = np.unique([v for v in (rated, *(operating or ())) if v is not None])
     if added.size:
         far = np.abs(speeds[:, None] - added).min(axis=1) > _SAME * speeds[-1]
@@ -288,7 +290,7 @@ def campbell(
 _METHODS = "method", "compared_with"
 
 
-# What is given ------------------------------------------------------------------------------------
+# Check of the arguments ----------------------------------------------------------------------------
 
 
 def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
@@ -316,7 +318,7 @@ def _check_scenes(scenes: Scenes) -> dict[str, Scene]:
 
 
 def _check_orders(per_rev: Iterable[int]) -> list[int]:
-    """Return the orders of the per-rev lines, ascending; refuse what is not a whole number."""
+    """Return the orders of the per-rev lines, ascending; raise an error if one is not a whole number."""
     try:
         given = () if isinstance(per_rev, str | bytes | set | dict) else tuple(per_rev)
     except TypeError:
@@ -340,7 +342,7 @@ def _check_speeds(speeds: np.ndarray | Sequence[float]) -> np.ndarray:
 def _check_operation(
     speeds: np.ndarray, rated: float | None, operating: tuple[float, float] | None
 ) -> tuple[float | None, tuple[float, float] | None]:
-    """Return the rated speed and the operating range; refuse values beyond the speeds of the diagram."""
+    """Return the rated speed and the operating range; raise an error outside the speeds of the diagram."""
     if rated is not None:
         rated = _within_speeds("rated", positive("rated", rated, "rad/s"), speeds)
     if operating is None:
@@ -376,7 +378,7 @@ def _within_speeds(name: str, value: float, speeds: np.ndarray) -> float:
 def _name_modes(locus: Locus) -> tuple[str, ...]:
     """Name the modes by the direction in which each mostly bends at the first speed, or by its kind."""
     words, mount = [word for _, word in name_directions(locus.scene)], locus.scene.mount
-    # With a negative cosine the beam points outward, as a blade.
+    # With a negative cosine, the beam points outward, like a blade.
     is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0
     if "flap" not in words or not is_blade:
         return locus.names()
@@ -389,17 +391,18 @@ def _name_modes(locus: Locus) -> tuple[str, ...]:
 def _all_lines(
     orders: Sequence[int], loci: Sequence[Locus], labels: Sequence[str]
 ) -> tuple[list[Line], list[str]]:
-    """Return per-rev lines and the other lines of the motions, with warnings where those are unknown."""
+    """Return per-rev lines and the motions' other lines, with warnings for motions with unknown lines."""
     per_rev, others, unknown = [Line(f"{n}P", float(n)) for n in orders], [], []
     for label, locus in zip(labels, loci, strict=True):
         try:
-            # The excitation by the scene's motion and gravity has lines of its own.
+            # The excitation by the scene's motion and gravity has further lines.
             motion = locus.scene.motion
             system = periodic_system(locus.model.equations, motion, locus.speeds[-1:])
             others += excitation_lines(system, motion, 1)[0]
         except ValueError as error:
             unknown.append(f"{_prefix(label)}no excitation lines: {error}")
-    distinct = distinct_lines([*per_rev, *others])  # of two lines of one frequency the first is kept
+    # Of several lines with the same frequency, the first is kept.
+    distinct = distinct_lines([*per_rev, *others])
     return [*per_rev, *(line for line in distinct if line not in per_rev)], unknown
 
 

@@ -1,4 +1,4 @@
-"""Crossings of lines with tracked natural frequencies, refined to the accuracy of the locus."""
+"""Crossings of excitation lines with tracked natural frequencies, as accurate as the locus."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from beamdyn.scene.motion import Line
 
 @dataclass(frozen=True)
 class LineCrossing:
-    """Speed at which a line meets a natural frequency.
+    """Speed at which an excitation line meets a natural frequency.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class LineCrossing:
     mode : int
         Number of the mode, from 1, as in the locus.
     name : str
-        Its name, such as "flap 1".
+        Name of the mode, such as "flap 1".
     speed : float
         Speed [rad/s].
     frequency : float
@@ -35,11 +35,12 @@ class LineCrossing:
     error : float
         Estimated relative error of the speed.
     confidence : float
-        Least confidence with which the mode was tracked from the first speed to here.
+        Smallest confidence with which the mode was tracked from the first speed to this one.
     plane_share : tuple of float
-        Share of the mode's kinetic energy, at this speed, in the direction of bending at the root and across.
+        Fractions of the mode's kinetic energy, at this speed, in the bending direction at the root and
+        across.
     operating : bool
-        Whether the speed lies in the operating range; True where none was given.
+        Whether the speed is in the operating range; True if no range was given.
 
     Examples
     --------
@@ -64,7 +65,7 @@ class LineCrossing:
 
 @dataclass(frozen=True)
 class _Root:
-    """A speed at which a line meets a natural frequency, given by its place in ascending order."""
+    """Speed at which a line meets a natural frequency, which is given by its index in ascending order."""
 
     line: Line
     place: int
@@ -79,10 +80,10 @@ def find_crossings(
     lines: Sequence[Line],
     operating: tuple[float, float] | None = None,
 ) -> list[LineCrossing]:
-    """Find the crossings of lines with the modes of a locus, by ascending speed.
+    """Find the crossings of excitation lines with the modes of a locus, by ascending speed.
 
-    The roots are those of the frequencies in ascending order, which are continuous where modes exchange
-    their places; each belongs to the tracked mode that is nearest there.
+    The roots are computed for frequencies in ascending order, which stay continuous where modes exchange
+    their order; each root belongs to the tracked mode that is nearest there.
 
     Parameters
     ----------
@@ -110,7 +111,7 @@ def find_crossings(
     found = []
     for root, frequencies, share in zip(roots, omega, shares, strict=True):
         if (mode := _tracked_mode(locus, root, frequencies[root.place])) is None:
-            continue  # one of the additional modes that are computed for the tracking only
+            continue  # an additional mode, computed only for the tracking
         node = _node(locus, root.speed)
         error = float(locus.error[node : node + 2, mode].max() * frequencies[root.place])
         along, across = share[root.place].tolist()
@@ -132,7 +133,7 @@ def find_crossings(
 
 
 def coincident(locus: Locus, lines: Sequence[Line]) -> Iterator[tuple[Line, int]]:
-    """Yield lines that equal a mode's frequency at every speed, as for a hinged blade, each with the mode."""
+    """Yield each line that equals a mode's frequency at every speed (as with a hinge), with the mode."""
     tracked = np.abs(np.imag(locus.eigenvalue))
     for line in lines:
         for mode, omega in enumerate(tracked.T):
@@ -166,12 +167,12 @@ def _frequencies(locus: Locus, speeds: np.ndarray) -> np.ndarray:
     count = locus.ascending.shape[1]
     if locus.model.discretization.order is None:
         return np.abs(np.imag(locus.model.solver.eigenvalues(speeds, count)))
-    modes = locus.eigenvalue.shape[1]  # frequencies of finite elements are extrapolated, as in the locus
+    modes = locus.eigenvalue.shape[1]  # frequencies by finite elements are extrapolated, as in the locus
     return np.abs(np.imag(solve_with_error(locus.model, speeds, modes, count - modes).eigen.eigenvalue))
 
 
 def _solve(locus: Locus, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute angular frequencies (S, k) [rad/s] and shares of the planes (S, k, 2), in ascending order."""
+    """Compute angular frequencies (S, k) [rad/s], ascending, and energy fractions of planes (S, k, 2)."""
     eigen = locus.model.solver.solve(speeds, locus.ascending.shape[1])
     extrapolated = locus.model.discretization.order is not None
     omega = _frequencies(locus, speeds) if extrapolated else np.abs(np.imag(eigen.eigenvalue))
@@ -184,7 +185,7 @@ def _node(locus: Locus, speed: float) -> int:
 
 
 def _tracked_mode(locus: Locus, root: _Root, omega: float) -> int | None:
-    """Return the tracked mode whose frequency the line meets at a root; None if none is followed there."""
+    """Return the tracked mode whose frequency the line meets at a root; None if no tracked mode does."""
     node = _node(locus, root.speed)
     ends, tracked = locus.speeds[node : node + 2], np.abs(np.imag(locus.eigenvalue[node : node + 2]))
     modes = np.flatnonzero((locus.place[node : node + 2] == root.place).any(axis=0))
@@ -211,18 +212,18 @@ class Margin:
     mode : int
         Number of the mode, from 1.
     name : str
-        Its name, such as "flap 1".
+        Name of the mode, such as "flap 1".
     where : {"rated speed", "operating range"}
-        Where the nearest line is sought.
+        Speeds at which the nearest line is searched.
     line : Line
         The nearest line.
     speed : float
-        The speed at which it is nearest [rad/s].
+        Speed at which the line is nearest [rad/s].
     frequency : float
         Natural frequency at that speed [Hz].
     margin : float
-        Frequency of the line over the natural frequency, less one: negative where the line is below; 0
-        where they cross.
+        Frequency of the line over the natural frequency, less one: negative if the line is below; 0 if they
+        cross.
 
     Examples
     --------
@@ -259,7 +260,7 @@ def margins_in_range(
     operating: tuple[float, float],
     crossings: Sequence[LineCrossing],
 ) -> Iterator[Margin]:
-    """Yield the least margin of each mode over an operating range [rad/s]; 0 where a line crosses it."""
+    """Yield the smallest margin of each mode over an operating range [rad/s]; 0 if a line crosses it."""
     low, high = operating
     inside = np.flatnonzero((locus.speeds >= low) & (locus.speeds <= high))
     crossed = {c.mode: c for c in reversed(crossings) if low <= c.speed <= high}
@@ -274,7 +275,7 @@ def margins_in_range(
 def _nearest(
     label: str, names: Sequence[str], locus: Locus, lines: Sequence[Line], at: np.ndarray, where: str
 ) -> Iterator[Margin]:
-    """Yield the margin of each mode from the nearest line, over the speeds of given indices (s,)."""
+    """Yield the margin of each mode from the nearest line, over the speeds with given indices (s,)."""
     excited = np.outer(locus.speeds[at], [line.multiple for line in lines]) / (2 * np.pi)
     for mode, name in enumerate(names):
         frequency = locus.frequency[at, mode]

@@ -1,1 +1,1 @@
-"""Inverse design: numbers of a scene with which its answers take wanted values."""
+"""Inverse design: numbers of a scene for which its results have required values."""

@@ -1,4 +1,4 @@
-"""Inverse design: search for numbers of a scene whose answers are what is wanted."""
+"""Inverse design: search for numbers of a scene whose results meet given targets."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ from beamdyn.studies.designing.search import DIFFERENCE, Ranges, Search, Spent
 from beamdyn.studies.designing.target import Target
 
 MOST_NUMBERS = 6
-_SAME = 1e-9  # difference or slope of logarithms that counts as 0
-_AT = 1e-6  # share of a range, or relative distance from a limit, at which a design lies at it
+_SAME = 1e-9  # difference or slope of logarithms below which the value counts as 0
+_AT = 1e-6  # fraction of a range, or relative distance from a limit, below which a design is at the limit
 
 
 @announced
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
+@one_blas_thread()  # with small matrices, further threads only slow each other down
 def design(
     scene: Scene,
     free: Mapping[str, tuple[float, float] | None],
@@ -40,23 +40,23 @@ def design(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> FoundDesign:
-    """Find numbers of a scene, within bounds, whose answers are what is wanted.
+    """Find numbers of a scene, within bounds, for which the results meet given targets.
 
-    Of the designs that meet all targets the result is the one with the best answer, if a target asks for it,
-    else the one nearest to the scene, by shares of the (logarithmic) ranges.  If no design is found that
-    meets all targets, the result says so and is the nearest to them.  At most 60 designs are computed.
+    If several designs meet all targets, the one with the best value is returned, if a target requires the
+    best; otherwise the one nearest to the scene, measured in fractions of the (logarithmic) ranges. If no
+    design meets all targets, the result states that and is the nearest one.  At most 60 designs are computed.
 
     Parameters
     ----------
     scene : Scene
         The scene; its motion is used for crossings, amplitudes, peaks, strains and power.
     free : mapping of str to pair of float or None
-        The numbers by their names in scene files, such as "beam.thickness", at most 6, each with its
-        least and largest value [SI], or None for half and twice that of the scene.
+        The numbers by their names in scene files, such as "beam.thickness", at most 6, each with its smallest
+        and largest value [SI], or None for half and twice the value in the scene.
     targets : sequence of Target
-        What the answers shall be.
+        Required values of the results.
     seed : int
-        Seed of the random designs with which a search over several numbers begins.
+        Seed of the random designs with which a search over several numbers starts.
     discretization, tolerance
         As for `study`.
 
@@ -67,7 +67,7 @@ def design(
     Raises
     ------
     ValueError
-        If an argument is wrong, or no design in the bounds has an answer.
+        If an argument is wrong, or no design within the bounds has a result.
 
     References
     ----------
@@ -134,7 +134,7 @@ def _check_targets(targets: object) -> tuple[Target, ...]:
 
 @dataclass(frozen=True)
 class _BestDesign:
-    """The best design of a search, as shares x (p,) of the ranges, and statements about it."""
+    """Best design of a search, as fractions x (p,) of the ranges, with statements about it."""
 
     search: Search
     x: np.ndarray
@@ -153,12 +153,13 @@ class _BestDesign:
         _, error = self.search.known(self.x[None])
         rounded = np.where(np.abs(found) <= np.maximum(_SAME, error.T / DIFFERENCE), 0.0, found)
         level = [k for k in np.flatnonzero((rounded == 0).all(axis=0)).tolist() if not self._is_idle(k)]
-        # Where an answer is largest or smallest, its derivative vanishes, but the number has an effect.
+        # If a result is at its maximum or minimum, its derivative vanishes, although the number has an
+        # effect.
         rounded[:, level] = found[:, level]
         return rounded
 
     def _is_idle(self, k: int) -> bool:
-        """Tell whether no answer changes when number k takes its farther bound."""
+        """Return whether no result changes when number k is moved to its farther bound."""
         far = self.x.copy()
         far[k] = 0.0 if self.x[k] > 0.5 else 1.0
         with suppress(Spent):
@@ -178,7 +179,7 @@ class _BestDesign:
         return self
 
     def _limits(self) -> Iterator[str]:
-        """Yield a sentence for each bound of a number and each limit of an answer that the design reaches."""
+        """Yield a sentence for each bound of a number and each limit of a result that the design reaches."""
         for each, x in zip(self.search.ranges.inputs, self.x.tolist(), strict=True):
             if x <= _AT or x >= 1 - _AT:
                 at = "smallest" if x <= _AT else "largest"
@@ -188,14 +189,14 @@ class _BestDesign:
                 yield target.says
 
     def _only_one_way(self) -> bool:
-        """Tell whether missed answers are monotone in each number, over all designs computed.
+        """Return whether results that miss their targets are monotone in each number over all designs.
 
-        The design then lies at the bounds that are best for each of these answers.
+        The design is then at the bounds that are best for each of these results.
         """
         designs = self.search.designs
         excess = self.search.excess(designs)
         for k in np.flatnonzero(~self._met):
-            # The sign of the change of each number that brings the answer nearer to the target.
+            # Sign of the change of each number that brings the result nearer to the target.
             better = -np.sign(self._excess[k]) * np.sign(self._slopes[k])
             if self.search.targets[k].at_most is not None:
                 better = -better
@@ -209,7 +210,7 @@ class _BestDesign:
         return not self._met.all()
 
     def result(self, given: np.ndarray, start: float) -> FoundDesign:
-        """Make the result of a search that began at a time of `perf_counter` [s]."""
+        """Build the result of a search that started at a time of `perf_counter` [s]."""
         search, x, proofs = self.search, self.x, Proofs(self.search, self.x)
         value, error = (each[0] for each in search.known(x[None]))
         studies = [search.studied(asked, x[None]) for asked in search.asked]

@@ -1,4 +1,4 @@
-"""The result of an inverse design: numbers, answers, and what is missed."""
+"""Result of an inverse design: numbers, results of the design, and missed targets."""
 
 from __future__ import annotations
 
@@ -21,46 +21,45 @@ from beamdyn.studies.designing.target import Target, say_number
 
 @dataclass(frozen=True)
 class FoundDesign(Result):
-    """Numbers of a scene whose answers are what was wanted, or come nearest to it; made by `design`.
+    """Numbers of a scene whose results meet the targets, or come nearest to them; computed by `design`.
 
     Parameters
     ----------
     names, units : tuple of str, shape (p,)
-        The numbers, by their names in scene files, and their SI units.
+        Names of the numbers in scene files, and their SI units.
     given, value : ndarray, shape (p,)
-        Values in the scene, nan where it has none, and found [unit].
+        Values in the scene, nan if it has none, and in the design [unit].
     low, high : ndarray, shape (p,)
-        The bounds [unit].
+        Bounds of the numbers [unit].
     targets : tuple of Target, shape (m,)
-        What was wanted.
+        The targets.
     reached : ndarray, shape (m,)
-        The answers of the design [unit of each]; nan where there is none.
+        Results of the design [unit of each]; nan if there is none.
     error : ndarray, shape (m,)
-        Their estimated relative errors.
+        Estimated relative errors of these results.
     met : ndarray of bool, shape (m,)
-        Whether each target is met, to 1e-10 or the error of the answer; the best is met where there is an
-        answer.
+        Whether each target is met, within 1e-10 or the error of the result; a target "best" is met if there
+        is a result.
     derivative : ndarray, shape (m, p)
-        Derivative of each answer by each number [unit / unit of the number], by differences of neighbouring
-        designs.
+        Derivative of each result by each number [unit / unit of the number], by finite differences.
     limited_by : tuple of str
-        Bounds and limits that the design lies at, in words.
+        Bounds and limits that the design reaches, in words.
     only_one_way : bool
-        Whether the answers that miss their targets rise or fall with each number over all designs computed,
-        and the design lies at the end that is nearest to the targets.  This does not prove that no other in
-        the bounds comes nearer: answers may turn between designs computed.
+        Whether the results that miss their targets rise or fall monotonically with each number over all
+        computed designs, and the design is at the end nearest to the targets.  This does not prove that no
+        other design within the bounds is nearer: results may have extrema between computed designs.
     proof : str
-        Why no design in the bounds, computed or not, comes nearer to any target that is missed; empty
-        without a proof for each of them.
+        Proof that no design within the bounds comes nearer to any missed target; empty unless there is a
+        proof for each of them.
     why_none : str
-        Why no design in the bounds, computed or not, meets all targets, within the errors of the answers;
-        empty without a proof.
+        Proof that no design within the bounds meets all targets, within the errors of the results; empty
+        without a proof.
     solves : int
         Number of designs computed, at most 60.
     warnings : tuple of str
-        Limits of the answers of the design.
+        Warnings about the results of the design.
     provenance : Provenance
-        How it was found.
+        How the result was computed.
 
     Examples
     --------
@@ -92,7 +91,7 @@ class FoundDesign(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Yield whether a design was found, and its numbers, parts of a one-line summary.
+        """Yield whether a design was found, and its numbers, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -108,21 +107,21 @@ class FoundDesign(Result):
 
     @property
     def scene_found(self) -> Scene:
-        """The scene with the numbers of the design."""
+        """Scene with the numbers of the design."""
         return with_numbers(self.scene, dict(zip(self.names, self.value.tolist(), strict=True)))
 
     @property
     def relative(self) -> np.ndarray:
-        """Relative change of each answer over that of each number, (m, p): 3 where it grows as its cube."""
+        """Relative change of each result over that of each number, (m, p): 3 if it is as the number cubed."""
         return self.derivative * self.value / self.reached[:, None]
 
     @property
     def without_effect(self) -> tuple[str, ...]:
-        """Names of the numbers that change none of the answers, by the derivatives at this design."""
+        """Names of the numbers that change no result, according to the derivatives at this design."""
         return tuple(
             name
             for name, each in zip(self.names, self.derivative.T, strict=True)
-            if (each == 0).all()  # derivatives within rounding have been set to 0 before
+            if (each == 0).all()  # derivatives within rounding were set to 0 before
         )
 
     @property
@@ -130,7 +129,7 @@ class FoundDesign(Result):
         return zip(self.names, self.value.tolist(), self.units, strict=True)
 
     def sentences(self) -> tuple[str, ...]:
-        """Return sentences on what the design misses, and on what limits it."""
+        """Return sentences about missed targets, and about the bounds and limits that the design reaches."""
         return tuple(self._sentences())
 
     def _sentences(self) -> Iterator[str]:
@@ -143,7 +142,7 @@ class FoundDesign(Result):
             sure = bool(self.proof)
             none = "No design in the bounds has " if sure else "No design was found that has "
             nearest = "; the nearest is " if sure else "; the nearest found is "
-            beside = "" if sure or len(missed) == len(self.met) else " beside all else that is wanted"
+            beside = "" if sure or len(missed) == len(self.met) else " together with all other targets"
             yield Words(none, joined(" and ", said), beside, nearest, numbers, ".")
             if self.proof:
                 yield f"It is proven that no other comes nearer: {self.proof}."
@@ -161,7 +160,7 @@ class FoundDesign(Result):
             yield Words("Limited by: ", joined("; ", self.limited_by), ".")
 
     def _ways(self) -> str:
-        """Say that the answers depend on each number in one direction, or on none."""
+        """State that the results depend monotonically on each number, or not at all."""
         still = len(self.without_effect)
         if still == len(self.names):
             return "are the same"
@@ -180,7 +179,7 @@ class FoundDesign(Result):
         return super().to_dict() | {"found": self.found, "sentences": plain(self.sentences())}
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the relative change of each answer over that of each number, the most important on top."""
+        """Draw the relative change of each result over that of each number, the most important on top."""
         labels = [each.name for each in self.targets]
         names = [InputName(each).on_form for each in self.names]
         return plot_bars(names, self.relative.T, labels, "relative change over that of the number", ax)

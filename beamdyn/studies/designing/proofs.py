@@ -1,9 +1,9 @@
-"""Proofs that no design in the bounds meets its targets, or comes nearer to them than the one found.
+"""Proofs that no design within the bounds meets the targets, or comes nearer to them than the best one.
 
-Two arguments hold for all designs, computed or not, within the stated errors of those that are computed.
-A number that raises an answer (`beamdyn.studies.designing.quotients`) rules out all smaller values where the
-answer is too low, and all larger ones where it is too high.  And the answers of designs that are similar
-to each other (`beamdyn.studies.similar`) all differ by one factor, which is known without solving.
+Two arguments hold for all designs, computed or not, within the stated errors of the computed ones. (1) If a
+number increases a result (`beamdyn.studies.designing.quotients`), all smaller values are excluded if the
+result is too low, and all larger ones if it is too high.  (2) The results of similar designs
+(`beamdyn.studies.similar`) all differ by one factor, which is known without solving.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from beamdyn.studies.designing.search import Search
 from beamdyn.studies.designing.target import Target, say_number
 from beamdyn.studies.similar import POWERS, SimilarDesigns, differ_in_numbers_only
 
-_SURE = 2.0  # number of its errors by which an answer at least misses a target, for a proof to rest on that
+_SURE = 2.0  # smallest ratio of miss to error of a result, for a proof to be based on the miss
 _EXACT = 1e-10  # relative tolerance within which bounds and targets count as met
-_AT = 1e-13  # distance from a bound, as a share of the range, within which a design lies at it
+_AT = 1e-13  # distance from a bound, as a fraction of the range, below which a design is at the bound
 _VERBS = {1: "raises", -1: "lowers", 0: "does not change"}
 
 
 class _RuledOut(NamedTuple):
-    """A box of designs between two corners (p,), all with too low or all with too high an answer."""
+    """Box of designs between two corners (p,), all of which have too low or too high a result."""
 
     low: np.ndarray
     high: np.ndarray
@@ -41,7 +41,7 @@ class _RuledOut(NamedTuple):
 
 
 class _Limits(NamedTuple):
-    """Logarithms of the least and largest factor between two designs' answers, by a target or by bounds."""
+    """Logarithms of the smallest and largest factor between two designs' results, by target or bounds."""
 
     says: str
     least: float
@@ -50,14 +50,14 @@ class _Limits(NamedTuple):
 
 @dataclass(frozen=True)
 class Proofs:
-    """Proofs about all designs in the bounds, from the designs that a search has computed.
+    """Proofs about all designs within the bounds, based on the designs that a search has computed.
 
     Parameters
     ----------
     search : Search
         The search.
     x : ndarray, shape (p,)
-        Shares of the ranges that give the design found.
+        Design that was found, as fractions of the ranges.
     """
 
     search: Search
@@ -65,7 +65,7 @@ class Proofs:
 
     @cached_property
     def no_nearer(self) -> str:
-        """Why no design comes nearer to any target that the one found misses; empty if that is not proven."""
+        """Reason why no design comes nearer to any target that the design misses; empty if not proven."""
         excess, met = self.search.excess(self.x[None])[0], self.search.met(self.x[None])[0]
         value, error = (each[0] for each in self.search.known(self.x[None]))
         missed = np.flatnonzero(~met).tolist()
@@ -79,7 +79,7 @@ class Proofs:
 
     @cached_property
     def none(self) -> str:
-        """Why no design meets all targets; empty if that is not proven."""
+        """Reason why no design meets all targets; empty if not proven."""
         if self.search.met(self.x[None]).all():
             return ""
         parts = [*self._ruled_out()]
@@ -87,7 +87,7 @@ class Proofs:
             (said for j in range(len(self.x)) for said in self._covered(parts, j)), self._one_factor()
         )
 
-    # By numbers that raise or lower an answer -------------------------------------------------------
+    # By numbers that increase or decrease a result --------------------------------------------------
 
     @property
     def _names(self) -> list[str]:
@@ -95,30 +95,30 @@ class Proofs:
 
     @cached_property
     def _ways(self) -> list[np.ndarray | None]:
-        """Signs (p,) of the change of each target's answer by the numbers, 1, -1 or 0; None if not known."""
+        """Sign (p,) of the change of each target's result by each number, 1, -1 or 0; None if not known."""
         search = self.search
         corners = [with_numbers(search.scene, each) for each in Designs(search.ranges.inputs).extremes()]
         known = {what: [ways(corner, what) for corner in corners] for what in QUOTIENTS}
         return [_common(known[t.what], self._names) if _is_quotient(t) else None for t in search.targets]
 
     def _is_too_low(self, k: int, excess: float) -> bool:
-        """Tell whether an answer that misses target k is too low, and not too high."""
+        """Return whether a result that misses target k is too low (otherwise it is too high)."""
         return bool(excess < 0) == (self.search.targets[k].at_most is None)
 
     def _helps(self, k: int, excess: float) -> np.ndarray | None:
-        """Return the sign of each number's change (p,) that brings an answer nearer to target k, if known."""
+        """Return the sign of each number's change (p,) that brings a result nearer to target k, if known."""
         ways = self._ways[k]
         return ways if ways is None or self._is_too_low(k, excess) else -ways
 
     def _argument(self, k: int) -> str:
-        """Say how the numbers change the answer of target k."""
+        """State how the numbers change the result of target k."""
         ways, what = self._ways[k], self.search.targets[k].what
         assert ways is not None
         told = (f"{name} {_VERBS[way]}" for name, way in zip(self._names, ways.tolist(), strict=True))
         return f"{' and '.join(told)} {QUOTIENTS[what]}"
 
     def _ruled_out(self) -> Iterator[_RuledOut]:
-        """Yield boxes of designs that are no better for a target than one computed that surely misses it."""
+        """Yield boxes of designs no better for a target than a computed design that surely misses it."""
         designs = self.search.designs
         (value, error), missed = self.search.known(designs), self.search.missed(designs)
         sure, excess = np.isfinite(value) & (missed > _SURE * error), self.search.excess(designs)
@@ -128,7 +128,7 @@ class Proofs:
                 yield _RuledOut(low, high, k, self._is_too_low(k, excess[i, k]))
 
     def _covered(self, parts: Sequence[_RuledOut], j: int) -> Iterator[str]:
-        """Yield reasons why one box of designs, or two that meet along number j, cover all designs."""
+        """Yield reasons why one box of designs, or two that touch along number j, contain all designs."""
         others = np.arange(len(self.x)) != j
         wide = [each for each in parts if not ((each.low > _AT) | (each.high < 1 - _AT))[others].any()]
         below = max(
@@ -145,7 +145,7 @@ class Proofs:
             yield joined("; ", says)
 
     def _at(self, j: int, shares: np.ndarray) -> Words:
-        """Format the value of number j of a design that is given by its shares of the ranges."""
+        """Format the value of number j of a design given as fractions of the ranges."""
         value = float(self.search.ranges.values(shares)[j])
         return Words(f"{self._names[j]} = ", say_number(value, self.search.ranges.inputs[j].unit))
 
@@ -156,16 +156,14 @@ class Proofs:
     # By similarity ----------------------------------------------------------------------------------
 
     def _one_factor(self) -> str:
-        """Say why no one factor of the answers of the design found meets all targets; empty if one may."""
+        """State why no common factor of the design's results meets all targets; empty if one may."""
         if not self._are_similar:
             return ""
         limits = [self._in_the_bounds(), *self._by_targets()]
         least, most = max(limits, key=lambda each: each.least), min(limits, key=lambda each: each.most)
         if least.least <= most.most:
             return ""
-        said = (
-            "all designs are similar: one factor leads from the answers of each to those of any other, and "
-        )
+        said = "all designs are similar: their results differ by one common factor, and "
         apart = f" is {100 * np.expm1(least.least - most.most):.3g} % above the largest by "
         return Words(f"{said}the least factor by ", least.says, apart, most.says)
 
@@ -177,7 +175,7 @@ class Proofs:
         return alone and scene.physics == Physics() and differ_in_numbers_only(scene, names)
 
     def _in_the_bounds(self) -> _Limits:
-        """Return the range of factors of designs in the bounds: from powers of the numbers at the corners."""
+        """Return the range of factors between results of designs within the bounds, from the corners."""
         ranges = self.search.ranges
         corners = [*Designs(ranges.inputs).extremes()]
         columns = {name: np.array([each[name] for each in corners]) for name in self._names}
@@ -186,11 +184,11 @@ class Proofs:
         return _Limits("the bounds", float(factors.min()) - _EXACT, float(factors.max()) + _EXACT)
 
     def _by_targets(self) -> Iterator[_Limits]:
-        """Yield the range of factors with which the answers meet each target, within their errors."""
+        """Yield the range of factors for which the results meet each target, within their errors."""
         value, error = (each[0] for each in self.search.known(self.x[None]))
         for target, own, of_own in zip(self.search.targets, value.tolist(), error.tolist(), strict=True):
-            # Frequencies at rest of similar designs differ by the factor alone.  Critical speeds do only if
-            # the length is fixed, as they depend on the radius over the length.
+            # Frequencies at rest of similar designs differ only by the factor.  Critical speeds do so only if
+            # the length is fixed, as they depend on the ratio of radius to length.
             scales = target.what == "frequencies" or "beam.length" not in self._names
             if _is_quotient(target) and scales and 0 < own < np.inf and np.isfinite(of_own):
                 at_least, at_most = target.equals or target.at_least or 0.0, target.equals or target.at_most
@@ -200,7 +198,7 @@ class Proofs:
 
 
 def _is_quotient(target: Target) -> bool:
-    """Tell whether a target is a value or a limit of an answer that is a quotient."""
+    """Return whether a target is a value or a limit of a result that is a quotient."""
     return target.what in QUOTIENTS and not target.speed and target.best is None
 
 

@@ -1,15 +1,15 @@
-"""Answers that are the least or a mean of quotients, and the numbers that raise or lower each of these.
+"""Results that are extrema or means of quotients, and the numbers that increase or decrease these.
 
 By the minimum-maximum principle a plain undamped beam has
 
     (2 pi f)^2 = V(w)/T(w) for a frequency f at rest,    Omega^2 = V(w)/G(w) for the critical speed Omega,
 
-of certain deflections w, where V is twice the elastic energy, T the mass times the squared deflection, and G
-twice the work of the centrifugal forces at unit speed.  A number that raises the quotient of every deflection
-raises the answer, of any mode; one that lowers it lowers the answer.
+for certain deflections w, where V is twice the elastic energy, T the mass times the squared deflection, and G
+twice the work of the centrifugal forces at unit speed.  A number that increases the quotient for every
+deflection increases the result, for any mode; a number that decreases it decreases the result.
 
 G is a sum over masses m.  With R = r cos(beta) of radius r and setting angle beta, and the cosine d of the
-bending angle, one at a distance x from the root has the share
+bending angle, a mass m at a distance x from the root contributes
 
     m (R - x) int_0^x w'^2 + m d^2 w(x)^2,
 
@@ -17,7 +17,8 @@ a body at the tip with its centre of mass at L + e
 
     m (R - L - e) (int_0^L w'^2 + e w'(L)^2) + m d^2 (w(L) + e w'(L))^2,
 
-    and the part of its inertia has either sign.  Derivation: docs/conventions.md, section Equations.
+    and its moments of inertia contribute with either sign.  Derivation: docs/conventions.md, section
+    Equations.
 """
 
 from __future__ import annotations
@@ -42,27 +43,27 @@ _THICKNESS: dict[str, int] = dict.fromkeys(("beam.thickness", f"{SCALE}thickness
 _WIDTH = "beam.width", f"{SCALE}width"
 _TIP_MASS, _TIP_INERTIA, _LENGTH = {"beam.tip.mass": -1}, {"beam.tip.inertia": -1}, {"beam.length": -1}
 _NO_EFFECT = dict.fromkeys(("mount.radius", "mount.setting_angle", "mount.bending_angle"), 0)
-_FAR = 1.5  # R over the length above which a longer beam buckles at a lower speed: see `_of_buckling`
+_FAR = 1.5  # ratio R / L above which a longer beam buckles at a lower speed: see `_of_buckling`
 _ROUNDING = 4 * np.finfo(float).eps  # relative rounding error of distances
 
 
 def ways(scene: Scene, what: str) -> dict[str, int]:
-    """Find which numbers raise (1), lower (-1) or do not change (0) the quotient of every deflection.
+    """Find which numbers increase (1), decrease (-1) or do not change (0) the quotient for all deflections.
 
-    Each does so whatever the values of the others, as long as the scene meets the conditions for it.  These
-    are linear in each number: they hold for all numbers in the bounds if they hold at all corners.
+    This holds for any values of the other numbers, as long as the scene meets the conditions.  The conditions
+    are linear in each number: if they hold at all corners of the bounds, they hold within.
 
     Parameters
     ----------
     scene : Scene
         The scene.
     what : str
-        An answer of a study; of "frequencies", those at rest.
+        Result of a study; "frequencies" means those at rest.
 
     Returns
     -------
     dict of str to int
-        1, -1 or 0 by the numbers' names in scene files; empty where the answer is no such quotient.
+        1, -1 or 0 by the numbers' names in scene files; empty if the result is not such a quotient.
     """
     undamped = scene.damping == NO_DAMPING and scene.beam.electrodes is None
     if what not in QUOTIENTS or not undamped or scene.physics != Physics() or scene.mount.precone:
@@ -71,31 +72,30 @@ def ways(scene: Scene, what: str) -> dict[str, int]:
 
 
 def is_bare(beam: Beam) -> bool:
-    """Tell whether a beam has no mass but that of its sections."""
+    """Return whether a beam has no mass except that of its sections."""
     tip = beam.tip or TipMass(0.0)
     return not (beam.point_masses or tip.mass or _has_inertia(tip))
 
 
 def is_clamped(scene: Scene) -> bool:
-    """Tell whether the root is clamped and no spring holds the beam, so that sections have all energy."""
+    """Return whether the root is clamped without springs, so that sections have all elastic energy."""
     return bool(np.isinf(scene.mount.root_stiffness)) and not scene.beam.point_springs
 
 
 def _sides(beam: Beam) -> dict[str, int]:
-    """Find how thickness h and width b of sections change the quotient, if sections have all elastic energy.
+    """Find how section thickness h and width b change the quotient, if sections have all elastic energy.
 
-    The energy is proportional to h^3 b.  Of the divisor, the share of sections is proportional to h b, and
-    that of bodies, which must not be negative, does not change.
+    The energy is proportional to h^3 b.  In the divisor, the part of sections is proportional to h b, and the
+    part of bodies, which must not be negative, does not change.
     """
     return _THICKNESS | dict.fromkeys(_WIDTH, 0 if is_bare(beam) else 1)
 
 
 def _at_rest(scene: Scene) -> dict[str, int]:
-    """Find which numbers raise, lower or do not change V/T.
+    """Find which numbers increase, decrease or do not change V/T.
 
-    With a clamped root and no springs, for a given w(x/L), V is proportional to 1/L^3.  The share of sections
-    in T is proportional to L, and that of a body falls with L^-2 at most, by its rotation, if it has no
-    offset.
+    With a clamped root and no springs, for a given w(x/L), V is proportional to 1/L^3.  The part of sections
+    in T is proportional to L, and that of a body without offset decreases at most as L^-2, by its rotation.
     """
     beam, tip = scene.beam, scene.beam.tip or TipMass(0.0)
     found = _STIFFNESS | _MASS | _TIP_MASS | _TIP_INERTIA | _NO_EFFECT
@@ -107,15 +107,15 @@ def _at_rest(scene: Scene) -> dict[str, int]:
 
 
 def _of_buckling(scene: Scene) -> dict[str, int]:
-    """Find which numbers raise, lower or do not change V/G.
+    """Find which numbers increase, decrease or do not change V/G.
 
-    G rises with R.  Where R is at least the distance of all masses from the root, no share of G is negative,
-    and G rises with each mass.  If there is no mass but the sections', G is proportional to it for any R.
-    With a clamped root and no springs, for a given w(x/L), the shares of sections and a tip mass in G/V are
+    G increases with R.  If R is at least the distance of all masses from the root, no part of G is negative,
+    and G increases with each mass.  If only sections have mass, G is proportional to it for any R. With a
+    clamped root and no springs, for a given w(x/L), the parts of sections and a tip mass in G/V are
 
         L^3 R a - L^4 b + d^2 L^4 c  with b <= a,    L^2 R a - L^3 a + d^2 L^3 c,
 
-    times constants; they rise with L where R is at least 4/3 L and 3/2 L, respectively.
+    times constants; they increase with L if R is at least 4/3 L and 3/2 L, respectively.
     """
     beam, tip = scene.beam, scene.beam.tip or TipMass(0.0)
     inward = exact_cos_sin(scene.mount.setting_angle)[0]

@@ -1,7 +1,7 @@
-"""The search of an inverse design: numbers as shares of their ranges, and the best of all designs computed.
+"""Search of an inverse design: numbers as fractions of their ranges, and the best of all computed designs.
 
-Numbers and answers are taken as logarithms, in which powers are straight lines.  All designs that a search
-computes are kept, and the best one is the answer.
+Logarithms of numbers and results are used, so that powers become linear.  All computed designs are kept, and
+the best one is the result.
 """
 
 from __future__ import annotations
@@ -29,28 +29,28 @@ from beamdyn.studies.study import study
 from beamdyn.studies.study_result import Study
 
 MOST_SOLVES = 60  # largest number of designs that a search computes
-_EXACT = 1e-10  # relative miss of a target that counts as none, if the error of the answer is no larger
-_STEP = 1e-5  # step of differences within a search, as a share of the range of a number
-DIFFERENCE = 1e-3  # step of the differences for the derivatives of answers, as a share of a range
-_CLOSE = 1e-13  # interval to which a root is bracketed, as a share of a range
-_AT_END = 1e-9  # distance from a bound within which a minimization is at it, as a share of a range
-_SCANNED, _SPREAD = 9, 4  # count of first designs: for a single free number, and for each of several
+_EXACT = 1e-10  # relative miss below which a target is met, if the error of the result is not larger
+_STEP = 1e-5  # step of differences within a search, as a fraction of the range of a number
+DIFFERENCE = 1e-3  # step of the differences for the derivatives of results, as a fraction of a range
+_CLOSE = 1e-13  # interval to which a root is bracketed, as a fraction of a range
+_AT_END = 1e-9  # distance from a bound within which a minimization is at the bound, as a fraction of a range
+_SCANNED, _SPREAD = 9, 4  # number of first designs: for a single free number, and for each of several numbers
 _ROUNDING = 4 * np.finfo(float).eps
-_FLAT = 1e-12  # change of the objective at which a minimization ends
+_FLAT = 1e-12  # change of the objective below which a minimization ends
 # Largest miss, as a logarithm, that Newton's steps remove, and the number of these steps.
 _NEARLY, _CORRECTIONS = 1e-2, 2
-_STARTS = 3  # number of starts of the minimization, from the best designs known
+_STARTS = 3  # number of starts of the minimization, from the best known designs
 
-Function = Callable[[np.ndarray], np.ndarray]  # from designs (N, p) to an array with N rows
+Function = Callable[[np.ndarray], np.ndarray]  # function from designs (N, p) to an array with N rows
 
 
 class Spent(Exception):
-    """Raised when the search has computed as many designs as it may."""
+    """Raised when the search has computed the largest allowed number of designs."""
 
 
 @dataclass(frozen=True)
 class Ranges:
-    """Numbers of a scene between bounds as shares from 0 to 1; of logarithms where both bounds are positive.
+    """Numbers of a scene as fractions 0 to 1 between bounds; of logarithms if both bounds are positive.
 
     Parameters
     ----------
@@ -66,14 +66,14 @@ class Ranges:
         return low, high, low > 0
 
     def values(self, shares: np.ndarray) -> np.ndarray:
-        """Return the values [unit] (..., p) of shares."""
+        """Convert fractions of the ranges to values [unit] (..., p)."""
         low, high, positive = self._ends
         ratio = np.where(positive, high / np.where(positive, low, 1.0), 1.0)
         found = np.where(positive, low * ratio**shares, low + (high - low) * shares)
         return np.where(shares >= 1 - _CLOSE, high, np.where(shares <= _CLOSE, low, found))
 
     def shares(self, values: np.ndarray) -> np.ndarray:
-        """Return the shares (p,) of values, clipped to the bounds."""
+        """Convert values to fractions (p,) of the ranges, clipped to the bounds."""
         low, high, positive = self._ends
         values = np.clip(values, low, high)
         safe = [np.where(positive, each, 1.0) for each in (values, low, high)]
@@ -81,7 +81,7 @@ class Ranges:
         return np.where(positive, of_logarithms, (values - low) / (high - low))
 
     def slopes(self, shares: np.ndarray) -> np.ndarray:
-        """Compute the derivatives [unit] (p,) of the values by the shares."""
+        """Compute the derivatives [unit] (p,) of the numbers by their fractions of the ranges."""
         low, high, positive = self._ends
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(positive, self.values(shares) * np.log(high / low), high - low)
@@ -89,7 +89,7 @@ class Ranges:
 
 @dataclass(frozen=True)
 class Search:
-    """A search for a design, with all designs that it has computed.
+    """Search for a design, which stores all designs that it has computed.
 
     Parameters
     ----------
@@ -98,13 +98,13 @@ class Search:
     ranges : Ranges
         The numbers of the scene that are free, with their ranges.
     targets : tuple of Target
-        What the design shall reach.
+        Targets of the design.
     own : ndarray, shape (p,)
-        Shares of the scene's own numbers.
+        Numbers of the given scene, as fractions of the ranges.
     discretization, tolerance
         As for `study`.
     spare : int
-        Number of designs that are kept for the last steps.
+        Number of designs that are reserved for the last steps.
     """
 
     scene: Scene
@@ -116,18 +116,18 @@ class Search:
     spare: int = 0
     _computed: dict[bytes, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
-    # Answers ----------------------------------------------------------------------------------------
+    # Results of designs ----------------------------------------------------------------------------
 
     @cached_property
     def asked(self) -> dict[Asked, list[int]]:
-        """Questions for studies, each with the indices of the targets that need its answer."""
+        """Questions for studies, each with the indices of the targets that need the result."""
         found: dict[Asked, list[int]] = {}
         for k, target in enumerate(self.targets):
             found.setdefault(target.asked, []).append(k)
         return found
 
     def studied(self, asked: Asked, shares: np.ndarray) -> Study:
-        """Run the study that answers a question for designs of shares (N, p)."""
+        """Run the study that answers a question for designs (N, p), given as fractions of ranges."""
         values = self.ranges.values(shares)
         vary = {each.name: values[:, k] for k, each in enumerate(self.ranges.inputs)}
         of = [self.targets[k] for k in self.asked[asked]]
@@ -137,7 +137,7 @@ class Search:
             return study(self.scene, vary, **asked._asdict(), modes=modes, **how)
 
     def _answers(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute answers (nan if there is none, inf beyond the top speed) and relative errors (N, m)."""
+        """Compute results (nan if there is none, inf above the top speed) and relative errors (N, m)."""
         value = np.full((len(shares), len(self.targets)), np.nan)
         error = np.zeros(value.shape)
         for asked, targets in self.asked.items():
@@ -148,7 +148,7 @@ class Search:
             for k in targets:
                 place = self.targets[k].place(found.labels)
                 if place is not None:
-                    # Without a crossing up to the top speed the answer is inf.
+                    # Without a crossing up to the top speed the result is inf.
                     beyond = np.where(found.status == NO_RESONANCE, np.inf, found.value)
                     value[:, k], error[:, k] = (
                         each.reshape(len(shares), -1)[:, place] for each in (beyond, found.error)
@@ -156,9 +156,9 @@ class Search:
         return value, np.where(np.isnan(error), 0.0, error)
 
     def known(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return answers and relative errors (N, m) of designs (N, p).
+        """Return results and relative errors (N, m) of designs (N, p).
 
-        Those not yet known are computed together.
+        Designs that are not yet known are computed together.
 
         Raises
         ------
@@ -175,7 +175,7 @@ class Search:
         return np.array([value for value, _ in each]), np.array([error for _, error in each])
 
     def excess(self, shares: np.ndarray) -> np.ndarray:
-        """Compute how far beyond the targets (N, m) designs are; see `Target.excess`."""
+        """Compute by how much designs exceed the targets (N, m); see `Target.excess`."""
         value, _ = self.known(shares)
         return np.array([each.excess(value[:, k]) for k, each in enumerate(self.targets)]).T
 
@@ -188,25 +188,25 @@ class Search:
 
     @property
     def designs(self) -> np.ndarray:
-        """Shares (N, p) of all designs computed so far."""
+        """Fractions of the ranges (N, p) of all designs computed so far."""
         return np.array([np.frombuffer(key) for key in self._computed])
 
     def missed(self, shares: np.ndarray) -> np.ndarray:
-        """Compute how far designs miss the targets, (N, m); see `Target.missed`. A miss below 1e-10 is 0."""
+        """Compute by how much designs miss targets, (N, m), 0 below 1e-10; see `Target.missed`."""
         excess = self.excess(shares)
         missed = np.array([each.missed(excess[:, k]) for k, each in enumerate(self.targets)]).T
         return np.where(missed <= _EXACT, 0.0, missed)
 
     def met(self, shares: np.ndarray) -> np.ndarray:
-        """Tell which targets designs (N, p) meet within the errors of the answers: shape (N, m)."""
+        """Return which targets designs (N, p) meet within the errors of the results: shape (N, m)."""
         error = self.known(shares)[1]
         return self.missed(shares) <= np.where(np.isfinite(error), error, 0.0)
 
     def aim(self, shares: np.ndarray) -> np.ndarray:
         """Compute the objective (N,) to be minimized.
 
-        It is the logarithm of the answer that is to be as small as possible, or minus that of one to be as
-        large as possible; without either, the squared change of the numbers.
+        It is the logarithm of a result to be minimized, or minus that of a result to be maximized; without
+        such a target, the squared change of the numbers.
         """
         for k, each in enumerate(self.targets):
             if each.best is not None:
@@ -220,14 +220,14 @@ class Search:
         return 2 * (x - self.own)
 
     def ranked(self, shares: np.ndarray) -> np.ndarray:
-        """Sort designs (N, p), the best first: by how far they miss the targets, then by the objective."""
+        """Sort designs (N, p), the best first: by their miss of the targets, then by the objective."""
         missed = (self.missed(shares) ** 2).sum(axis=1)
         return shares[np.lexsort((self.aim(shares), missed))]
 
     # The search -------------------------------------------------------------------------------------
 
     def run(self, seed: int) -> np.ndarray:
-        """Run the search, and return the shares (p,) of the best design."""
+        """Run the search, and return the best design as fractions (p,) of the ranges."""
         with suppress(Spent):
             replace(self, spare=len(self.own) + _CORRECTIONS)._explore(
                 seed
@@ -244,7 +244,7 @@ class Search:
         self._descend(self.ranked(self.designs)[:_STARTS])
 
     def _correct(self, x: np.ndarray) -> None:
-        """Remove a small miss of the targets by a design (p,), with steps by Newton and Broyden."""
+        """Remove a small miss of the targets at a design (p,), with steps by Newton and Broyden."""
         missed = self.missed(x[None])[0]
         if self._is_met or missed.max() > _NEARLY:
             return
@@ -260,7 +260,7 @@ class Search:
             slopes = slopes + np.outer(own, step) / (step @ step)
 
     def _first(self, seed: int) -> np.ndarray:
-        """Return designs (N, p) with which the search begins: the scene's own, and some over the ranges."""
+        """Return the first designs of a search (N, p): the given scene, and some over the ranges."""
         p = len(self.own)
         if p == 1:
             return np.unique(np.append(np.linspace(0, 1, _SCANNED), self.own))[:, None]
@@ -268,16 +268,16 @@ class Search:
 
     @property
     def _is_met(self) -> bool:
-        """Whether any design computed meets all targets."""
+        """Whether any computed design meets all targets."""
         return bool(self.met(self.designs).all(axis=1).any())
 
     @property
     def _is_found(self) -> bool:
-        """Whether the search can end: all targets are met, and no answer is to be the least or most."""
+        """Whether the search can end: all targets are met, and no result is to be minimized or maximized."""
         return self._is_met and all(each.best is None for each in self.targets)
 
     def _bracket(self) -> None:
-        """Find by bracketing where an answer takes its wanted value, if just one target is a value."""
+        """Find by bracketing where a result has its required value, if exactly one target is a value."""
         wanted = [k for k, each in enumerate(self.targets) if each.equals is not None]
         if len(wanted) != 1:
             return
@@ -293,7 +293,7 @@ class Search:
                 return
 
     def _descend(self, starts: np.ndarray) -> None:
-        """Minimize from several designs: the objective within the targets, or else their miss."""
+        """Minimize from several designs: the objective subject to the targets, or otherwise their miss."""
         for start in starts:
             if self._is_found:
                 return
@@ -303,7 +303,7 @@ class Search:
                 self._minimize(missed, partial(_slopes, missed), self.ranked(self.designs)[0], [])
 
     def _constraints(self) -> Iterator[dict[str, Any]]:
-        """Yield the constraints of the minimization: targets that are values, and those that are limits."""
+        """Yield the constraints of the minimization: targets that are values, and targets that are limits."""
         for kind, is_limit in (("eq", False), ("ineq", True)):
             places = [k for k, t in enumerate(self.targets) if t.best is None and t.is_limit == is_limit]
             if places:
@@ -318,7 +318,7 @@ class Search:
     ) -> None:
         """Minimize a function of designs by sequential quadratic programming.
 
-        Every design computed is kept.
+        Every computed design is stored.
         """
         minimize(
             _at(function),
@@ -330,12 +330,12 @@ class Search:
             options={"ftol": _FLAT, "maxiter": MOST_SOLVES},
         )
 
-    # Beside the answer ------------------------------------------------------------------------------
+    # Additional output ------------------------------------------------------------------------------
 
     def derivatives(self, x: np.ndarray) -> np.ndarray:
-        """Compute derivatives (m, p) of the answers' logarithms by shares, from neighbouring designs.
+        """Compute derivatives (m, p) of the results' logarithms by the scaled numbers, as finite differences.
 
-        Each is that of a parabola through three designs, all within the bounds.
+        Each is the slope of a parabola through three designs, all within the bounds.
         """
         steps = np.where(x < DIFFERENCE, 1.0, np.where(x > 1 - DIFFERENCE, -2.0, -1.0)) * DIFFERENCE
         a, b = (
@@ -370,12 +370,12 @@ def _at(function: Function) -> Callable[[np.ndarray], Any]:
 
 
 def _within(x: np.ndarray) -> np.ndarray:
-    """Return shares (p,) clipped to the ranges, and set to a bound from which they differ by rounding."""
+    """Return fractions (p,) clipped to the ranges, and set to a bound if they differ from it by rounding."""
     return np.where(x < _AT_END, 0.0, np.where(x > 1 - _AT_END, 1.0, x))
 
 
 def _slopes(function: Function, x: np.ndarray) -> np.ndarray:
-    """Compute derivatives (..., p) of a function at a design (p,) by differences within the bounds."""
+    """Compute derivatives (..., p) of a function at a design (p,), by differences within the bounds."""
     x = _within(x)
     steps = np.where(x + _STEP <= 1, _STEP, -_STEP)
     values = function(np.vstack([x, x + np.diag(steps)]))

@@ -1,4 +1,4 @@
-"""Targets of an inverse design: a wanted value of an answer, a limit, or the best."""
+"""Targets of an inverse design: a required value of a result, a limit, or the best."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from beamdyn.studies.beside_data.single_numbers import say_value
 from beamdyn.studies.questions import KINDS, OPTIONS, Kind
 from beamdyn.studies.study import check_window
 
-_FAR = 5.0  # size of the logarithm of an answer over the wanted one, beyond which the logarithm is compressed
-_NONE = 100.0  # logarithm that stands for a missing answer
+_FAR = 5.0  # logarithm of the ratio of result to required value, above which the logarithm is compressed
+_NONE = 100.0  # logarithm that represents a missing result
 
 
 class Asked(NamedTuple):
-    """A question for a study, which one target or several need."""
+    """Question for a study, whose result one or several targets need."""
 
     what: str
     speed: float | None
@@ -29,31 +29,31 @@ class Asked(NamedTuple):
 
 @dataclass(frozen=True)
 class Target:
-    """Target for an answer of a design: a value, a limit, or to be the largest or smallest.
+    """Target for a result of a design: a value, a limit, or to be the largest or smallest.
 
     Exactly one of `equals`, `at_least`, `at_most` and `best` is given.
 
     Parameters
     ----------
     what : str
-        The answer, as for `study`: "frequencies" [Hz], "critical_speed" or "crossings" [rad/s],
+        Name of the result, as for `study`: "frequencies" [Hz], "critical_speed" or "crossings" [rad/s],
         "amplitude" or "peak" [m], "strain", or "power" [W].
     equals : float, optional
-        The wanted value [unit of the answer].
+        Required value [unit of the result].
     at_least, at_most : float, optional
-        A limit that the answer keeps [same unit].
+        Limit of the result [same unit].
     best : {"largest", "smallest"}, optional
-        The answer shall be the largest or the smallest of all designs within the limits.
+        The result is to be the largest or the smallest of all designs within the limits.
     speed : float, optional
-        Speed of the answer, or top speed of crossings [rad/s]; if not given as for `study`, and
-        twice the wanted value of a crossing.
+        Speed of the result, or top speed of crossings [rad/s]; by default as for `study`, and for a crossing
+        twice the required value.
     mode : int
         Number of the mode of a frequency or crossing, from 1.
     line : str
-        The line of the excitation that the mode of a crossing meets, as `study` names it, such as "road -" or
+        Excitation line that the mode of a crossing meets, as `study` names it, such as "road -" or
         "road - (parametric)".
     window : tuple of float, optional
-        Window of time of a peak [s], as for `study`.
+        Time window of a peak [s], as for `study`.
 
     Examples
     --------
@@ -96,39 +96,39 @@ class Target:
 
     @property
     def kind(self) -> Kind:
-        """The kind of the answer, from `KINDS`."""
+        """Kind of the result, from `KINDS`."""
         return KINDS[self.what]
 
     @property
     def asked(self) -> Asked:
-        """The question for a study; crossings are sought up to twice the wanted speed."""
+        """Question for a study; crossings are searched up to twice the required speed."""
         wanted = self.equals or self.at_least or self.at_most
         top = 2 * wanted if wanted and self.what == "crossings" and self.speed is None else self.speed
         return Asked(self.what, top, self.window)
 
     @property
     def has_modes(self) -> bool:
-        """Whether the answer belongs to a mode."""
+        """Whether the result belongs to a mode."""
         return "modes" in self.kind.options
 
     @property
     def is_limit(self) -> bool:
-        """Whether the target is a limit, of either side."""
+        """Whether the target is a limit, upper or lower."""
         return self.at_least is not None or self.at_most is not None
 
     def place(self, labels: tuple[str, ...]) -> int | None:
-        """Return the index of the wanted number within an answer; None if the answer has no such number."""
+        """Return the index of the target's number within a result; None if the result has no such number."""
         if self.what != "crossings":
             return self.mode - 1 if self.has_modes else 0
         wanted = f"mode {self.mode}, {self.line}"
         return next((k for k, label in enumerate(labels) if label in (wanted, f"{wanted} (forced)")), None)
 
     def excess(self, value: np.ndarray) -> np.ndarray:
-        """Compute the logarithm of answers over the wanted value, or by how much they keep a limit.
+        """Compute the logarithm of the ratio of results to the required value, or the margin to a limit.
 
-        It is 0 where a value or limit is met exactly, and positive where a limit is kept; for an answer that
-        is to be as small or as large as possible, it is larger for a better answer.  Answers of beams are
-        near powers of their numbers, so that these logarithms are nearly linear in those of the numbers.
+        It is 0 if a value or limit is met exactly, and positive if a limit is kept; for a result to be
+        minimized or maximized, it is larger for a better result.  As results of beams are nearly powers of
+        the numbers, these logarithms are nearly linear in the logarithms of the numbers.
         """
         wanted = self.equals or self.at_least or self.at_most or 1.0
         sign = -1.0 if self.at_most is not None or self.best == "smallest" else 1.0
@@ -138,9 +138,9 @@ class Target:
         return found if self.best is not None else _compressed(found)
 
     def missed(self, excess: np.ndarray) -> np.ndarray:
-        """Compute the distance from the target as a logarithm; 0 where it is met.
+        """Compute the distance from the target as a logarithm; 0 if the target is met.
 
-        It is 0, too, for an answer that is to be as small or as large as possible.
+        It is also 0 for a result to be minimized or maximized.
         """
         if self.best is not None:
             return np.where(excess <= -_NONE, _FAR, 0.0)
@@ -148,7 +148,7 @@ class Target:
 
     @property
     def name(self) -> Words:
-        """Wording of the answer, such as "frequency of mode 1 at" a speed."""
+        """Description of the result, such as "frequency of mode 1 at" a speed."""
         of = f" of mode {self.mode}" if self.has_modes else ""
         of += f" with {self.line}" if self.line else ""
         is_at = self.speed is not None and self.kind.has_speed
@@ -156,7 +156,7 @@ class Target:
 
     @property
     def says(self) -> Words:
-        """Wording of the target: the answer with its wanted value, limit or "largest"."""
+        """Description of the target: the result with its required value, limit or "largest"."""
         if self.best is not None:
             return Words(self.name, f" {self.best}")
         words = {"=": self.equals, "at least": self.at_least, "at most": self.at_most}
@@ -164,16 +164,16 @@ class Target:
         return Words(self.name, f" {word} ", self.amount(value))
 
     def amount(self, value: float) -> str:
-        """Format a value of the answer with its unit."""
+        """Format a value of the result with its unit."""
         return say_number(value, self.kind.unit)
 
 
 def _compressed(excess: np.ndarray) -> np.ndarray:
-    """Compress large logarithms, so that one target does not outweigh others; their order stays."""
+    """Compress large logarithms, so that one target does not outweigh others; their order is unchanged."""
     beyond = np.maximum(np.abs(excess) - _FAR, 0.0)
     return np.clip(excess, -_FAR, _FAR) + np.sign(excess) * np.log1p(beyond)
 
 
 def say_number(value: float, unit: str) -> str:
-    """Format a value with six digits and its unit; each medium, such as files, may show another unit."""
+    """Format a value with six digits and its unit; output media, such as files, may use another unit."""
     return Speeds(value) if unit == "rad/s" else say_value(value, unit, 6)

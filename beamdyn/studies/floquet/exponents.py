@@ -1,4 +1,4 @@
-"""The largest Lyapunov exponent of free motion whose coefficients have two incommensurate rates.
+"""Largest Lyapunov exponent of free vibration, if coefficients have two incommensurate frequencies.
 
 There is no period and no monodromy matrix.  Over a period T of the faster phase, a state is mapped by a
 matrix A that depends on the slower phase theta there, smoothly and periodically.  The map over m such periods
@@ -15,8 +15,8 @@ with the advance alpha of the slower phase in T, and the largest exponent lies b
   1/mu (the avalanche principle); a k-th of it is no more than the largest.  With all singular values it is
   the mean of log |det A|, without error.
 
-Without damping a stable motion has the exponent 0, which no bound separates from a small one: it stays
-undecided, with a bound on the rate.
+Without damping a stable motion has the exponent 0.  No bound separates it from a small exponent: the verdict
+is "undecided", with a bound on the growth rate.
 
 References
 ----------
@@ -43,33 +43,33 @@ from beamdyn.transient.gauss import step_maps, tableau
 from beamdyn.transient.system import ModalSystem
 
 _STAGES = 8
-_FIRST, _MOST = 8, 128  # harmonics of the slower phase at the first attempt, and at the last
-# Most periods of the faster phase that are integrated for their ends to sample the slower phase's circle.
+_FIRST, _MOST = 8, 128  # number of harmonics of the slower phase at the first attempt, and at the last
+# Largest number of periods of the faster phase that are integrated; their ends sample the slower phase.
 _PERIODS = 4096
-# Condition number of the harmonics at these ends, above which the ends do not sample the circle.
+# Condition number of the harmonics at these ends, above which the ends do not sample the full circle.
 _SPREAD = 30.0
-_RESOLVED = 1e-12  # size of the last harmonics, over that of the matrix, at which they count as resolved
-_GRID = 4  # values of the slower phase for each harmonic
-_FINEST = 2048  # largest number of values of the slower phase on a grid for maps over several periods
-_SMOOTH = 1e-8  # difference of two means of a logarithm over the grid, above which it counts as unresolved
-# Least norm of a map over the slower phase, relative to the largest norm, for which its Fourier series
-# resolves it.
+_RESOLVED = 1e-12  # ratio of the last harmonics to the matrix, below which the harmonics are resolved
+_GRID = 4  # number of values of the slower phase for each harmonic
+_FINEST = 2048  # largest number of grid values of the slower phase, for maps over several periods
+_SMOOTH = 1e-8  # difference of two means of a logarithm over the grid, above which the mean is unresolved
+# Smallest norm of a map over the slower phase, relative to the largest, that its Fourier series resolves.
 _EVEN = 1e-6
 _DOUBLINGS = 18
-_APART = 1e3  # least ratio of neighbouring singular values that count as apart
-_KNOWN = 1e-9  # least singular value, over the largest, that rounding does not hide
-_CONSTANT = 10.0  # constant of the error of the avalanche principle, times 1/mu
+_APART = 1e3  # smallest ratio of neighbouring singular values that counts as separated
+_KNOWN = 1e-9  # smallest singular value, over the largest, that is above rounding
+# Assumed constant in the error of the avalanche principle, which is this constant times 1/mu.
+_CONSTANT = 10.0
 _ROUNDING = 1e-13  # rounding error of the logarithm of a norm, per step
 
 
 @dataclass(frozen=True)
 class LargestExponent:
-    """The largest Lyapunov exponent as a growth rate with its error, from two bounds.
+    """Largest Lyapunov exponent as a growth rate with its error, from two bounds.
 
     Parameters
     ----------
     rate, error : float
-        The growth rate and its error [1/s].
+        Growth rate and its error [1/s].
     status : {"stable", "unstable", "undecided"}
         Verdict on the motion, by the growth rate and its error.
     period : float
@@ -83,12 +83,13 @@ class LargestExponent:
 
 
 def largest_exponent(scene: Scene, equations: Equations) -> LargestExponent:
-    """Bound the largest exponent of free motion in modal coordinates of unit mass.
+    """Bound the largest exponent of free vibration in modal coordinates with unit mass matrix.
 
     Raises
     ------
     InvalidValue
-        If the motion has more than two rates, or one of them hardly advances in 4096 periods of the other.
+        If the motion has more than two frequencies, or one phase hardly advances in 4096 periods of the
+        other.
     """
     assert scene.motion is not None
     rates = rates_of(scene)
@@ -110,9 +111,9 @@ def largest_exponent(scene: Scene, equations: Equations) -> LargestExponent:
 
 @dataclass(frozen=True)
 class Cocycle:
-    """The map over a period [s] as harmonics -M to M of the slower phase (2 M + 1, m, m).
+    """Map over a period [s], as harmonics -M to M of the slower phase (2 M + 1, m, m).
 
-    `tail` is the size of the last harmonics, over the largest.
+    `tail` is the size of the last harmonics relative to the largest.
     """
 
     harmonics: np.ndarray
@@ -122,9 +123,9 @@ class Cocycle:
 
     @classmethod
     def of(cls, system: ModalSystem, T: float, alpha: float, steps: int) -> Cocycle:
-        """Integrate successive periods T, until their maps resolve how the map depends on the slower phase.
+        """Integrate successive periods T until their maps resolve the dependence on the slower phase.
 
-        The slower phase advances by `alpha` [rad] in each period; each is integrated in `steps` steps.
+        The slower phase advances by `alpha` [rad] in each period; each period is integrated in `steps` steps.
         """
         nothing = np.zeros((0, 2 * system.size, 2 * system.size))
         maps, most = scaled_states(system.equations, T, nothing), _FIRST
@@ -149,7 +150,7 @@ class Cocycle:
         padded = np.zeros((count, size, size), dtype=complex)
         padded[np.arange(-M, M + 1)] = self.harmonics
         B = np.fft.ifft(padded, axis=0).real * count
-        of_all = np.linalg.slogdet(B)[1]  # -inf where rounding hides what decays within a period
+        of_all = np.linalg.slogdet(B)[1]  # -inf if rounding hides components that decay within a period
         mean, doubt = _mean(of_all) if np.isfinite(of_all).all() else (-math.inf, 0.0)
         low = float(max(mean - doubt, of_all.min())) / size / self.period
         high = float(np.log(np.linalg.norm(B, 2, axis=(1, 2)).max())) / self.period
@@ -196,12 +197,12 @@ def _apart(p: np.ndarray) -> np.ndarray:
 
 
 def _over_first(p: np.ndarray) -> np.ndarray:
-    """Compute logarithms (P, m - 1) of all singular values but the last, over the first."""
+    """Compute logarithms (P, m - 1) of the ratios of all but the last singular values to the first."""
     return (_values(p) - p[:, :1])[:, :-1]
 
 
 def _turned(B: np.ndarray, angle: float) -> np.ndarray:
-    """Interpolate matrices on a grid of phases (P, m, m) to phases larger by an angle, by Fourier series."""
+    """Interpolate matrices on a grid of phases (P, m, m) to phases shifted by an angle, by Fourier series."""
     orders = np.fft.fftfreq(len(B), 1 / len(B))
     factor = np.exp(1j * orders * angle)[:, None, None]
     return np.fft.ifft(np.fft.fft(B, axis=0) * factor, axis=0).real
@@ -210,7 +211,7 @@ def _turned(B: np.ndarray, angle: float) -> np.ndarray:
 def _mean(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Compute means over a grid of phases, and their errors from means over every other phase.
 
-    The errors are inf where the grid does not resolve the values.
+    The errors are inf if the grid does not resolve the values.
     """
     even, odd = values[::2].mean(axis=0), values[1::2].mean(axis=0)
     apart = np.abs(even - odd)
@@ -218,9 +219,10 @@ def _mean(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _fine_enough(B: np.ndarray) -> np.ndarray | None:
-    """Refine matrices to a grid that resolves a product of two of them; None if the finest grid does not.
+    """Refine matrices to a grid that resolves the product of two of them; None if no grid does.
 
-    A product has twice the harmonics of its factors, which must be negligible in the grid's upper half.
+    As a product has twice the harmonics of its factors, those of the factors must be negligible in the upper
+    half of the grid's harmonics.
     """
     norms = np.linalg.norm(B, axis=(1, 2))
     if norms.min() < _EVEN * norms.max():
@@ -240,7 +242,7 @@ def _fine_enough(B: np.ndarray) -> np.ndarray | None:
 
 
 def _cover(alpha: float, most: int) -> tuple[int, np.ndarray]:
-    """Return a number of periods whose ends sample the slower phase's circle, and harmonics at these ends."""
+    """Return a number of periods whose ends sample all values of the slower phase, and harmonics there."""
     count = min(3 * (2 * most + 1), _PERIODS)
     while True:
         basis = np.exp(1j * np.outer(alpha * np.arange(count), np.arange(-most, most + 1)))

@@ -1,9 +1,9 @@
-"""Interpolation of a smooth function of two numbers on a grid, from as few evaluations as resolve it.
+"""Interpolation of a smooth function of two numbers on a grid, with as few evaluations as possible.
 
 Along each number the function is interpolated by a polynomial through the Chebyshev points (the extremes of a
-Chebyshev polynomial).  Its degree is doubled until the last Chebyshev coefficients are small.  Where a
-polynomial would need as many evaluations as the grid has values along that number, the function is evaluated
-at these values instead.
+Chebyshev polynomial).  Its degree is doubled until the last Chebyshev coefficients are small.  If a
+polynomial needs as many evaluations as the grid has values along that number, the function is evaluated at
+these values instead.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
 _FIRST = 8  # degree of the polynomial at the first attempt
-_LAST = 3  # number of last coefficients from which the size of those left out is estimated
+_LAST = 3  # number of last coefficients from which the neglected ones are estimated
 _SAFETY = 4.0  # ratio of the stated error to the estimated one
 
 
 @dataclass(frozen=True)
 class ChebyshevAxis:
-    """One axis of a grid: the values of a number, and the interpolation of a function over their range.
+    """Axis of a grid: values of a number, and the interpolation of a function over their range.
 
     Parameters
     ----------
@@ -37,11 +37,11 @@ class ChebyshevAxis:
 
     @classmethod
     def coarsest(cls, values: np.ndarray) -> ChebyshevAxis:
-        """Make an axis with the lowest degree."""
+        """Build an axis with the lowest degree."""
         return cls(values, _FIRST if len(values) > _FIRST + 1 else None)
 
     def finer(self) -> ChebyshevAxis:
-        """Return the axis with twice the degree, or without a polynomial where that saves no evaluations."""
+        """Return the axis with twice the degree, or without a polynomial if that saves no evaluations."""
         assert self.degree is not None
         return replace(self, degree=2 * self.degree if len(self.values) > 2 * self.degree + 1 else None)
 
@@ -59,9 +59,9 @@ class ChebyshevAxis:
         return chebvander((2 * at - low - high) / (high - low), self.degree)
 
     def coefficients(self, samples: np.ndarray, axis: int) -> np.ndarray:
-        """Return Chebyshev coefficients along an axis from samples at the nodes.
+        """Compute Chebyshev coefficients along an axis from samples at the nodes.
 
-        Without a polynomial (degree None) these are the samples themselves.
+        Without a polynomial (degree None) the result is the samples.
         """
         if self.degree is None:
             return samples
@@ -78,7 +78,7 @@ class ChebyshevAxis:
         return np.moveaxis(found.reshape(-1, *moved.shape[1:]), 0, axis)
 
     def tail(self, coefficients: np.ndarray, axis: int) -> float:
-        """Return the largest of the last coefficients along an axis, which estimates those left out."""
+        """Return the largest of the last coefficients along an axis, as an estimate of the neglected ones."""
         if self.degree is None:
             return 0.0
         return float(np.abs(np.take(coefficients, range(-_LAST, 0), axis=axis)).max())
@@ -93,8 +93,7 @@ class OnGrid:
     value : ndarray, shape (A, B, ...)
         The function at each pair of values.
     error : float
-        Estimated interpolation error of the entries to which the tolerance applies; 0 if none are
-        interpolated.
+        Estimated interpolation error of the entries to which the tolerance applies; 0 without interpolation.
     samples : int
         Number of pairs at which the function was computed.
     """
@@ -115,13 +114,12 @@ def interpolate_on_grid(
     Parameters
     ----------
     function : callable
-        The function: it takes pairs of numbers, also between the given values, and returns an array (k,) for
-        each pair.
+        Function from pairs of numbers, which may be between the given values, to an array (k,) for each pair.
     values : tuple of ndarray, shapes (A,) and (B,)
         Values of the two numbers on the grid.
     tolerance : callable
-        Returns the largest allowed size of the last coefficients.  It is asked after the function has been
-        evaluated, on whose own error it may depend.
+        Function that returns the largest allowed size of the last coefficients.  It is called after the
+        function has been evaluated, and may depend on the function's own error.
     entries : slice
         Entries of the array to which the tolerance applies.
     """

@@ -1,9 +1,9 @@
-"""Curves between stable and unstable motion in a chart, followed point by point.
+"""Stability limits: curves between stable and unstable motion in a chart, computed by continuation.
 
-A function that is smooth across a limit has its roots there.  With damping it is the logarithm of the largest
-multiplier.  Without damping two multipliers meet on the unit circle as m +- sqrt(s) (1 or -1 in a principal
-tongue, elsewhere in one of a combination): it is s, from their distance where both stay on the circle and
-from the growth where they leave it.
+The limits are the roots of a function that is smooth across them.  With damping it is the logarithm of the
+largest multiplier.  Without damping two multipliers m +- sqrt(s) meet on the unit circle (at 1 or -1 in a
+principal tongue, elsewhere for a combination resonance): the function is s, computed from their distance if
+both are on the circle, and from the growth if they left it.
 """
 
 from __future__ import annotations
@@ -20,23 +20,25 @@ from beamdyn.common.inputs.described import VariedInput
 from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, Multipliers, multipliers_of
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 
-# Largest, first and least step along a curve, as shares of the ranges.
+# Largest, first and smallest step along a curve, as fractions of the ranges.
 _STEP, _FIRST, _LEAST = 1 / 20, 1 / 160, 1e-6
-_WIDER = 2.0  # largest ratio of a step along a curve to the step before
-_TURNS, _FIRST_TURNS = 0.9, 0.2  # least cosine of the angle between steps, later and at the first step
-# Factor by which the half width of a bracket about the limit is reduced, and its least value.
+_WIDER = 2.0  # largest ratio of a step along a curve to the previous step
+# Smallest cosine of the angle between successive steps, and at the first step.
+_TURNS, _FIRST_TURNS = 0.9, 0.2
+# Factor by which the half width of a bracket about the limit is reduced, and the smallest half width.
 _NARROWER, _NARROWEST = 0.25, 1e-7
-_FINE = 1e-11  # accuracy of a root, as a share of the ranges of the two numbers
-# Distances, as shares of the ranges, at which the verdicts on both sides of a point are tried.
+_FINE = 1e-11  # accuracy of a root, as a fraction of the ranges of the two numbers
+# Distances, as fractions of the ranges, at which the verdicts on both sides of a point are evaluated.
 _ERRORS = (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)
 _MOST = 400  # largest number of points of a curve in each direction
-# Distance from the border of the chart, over the length of a segment, within which a segment ends there.
+# Distance from the border of the chart, over the length of a segment, below which the segment ends on the
+# border.
 _ROUNDED = 1e-9
-_SLACK = 0.5  # share of a cell by which a curve of straight pieces may miss an edge that the limit crosses
+_SLACK = 0.5  # fraction of a cell by which a polygonal curve may miss an edge that the true limit crosses
 
 
 class LimitPoint(NamedTuple):
-    """A point of a limit: shares of the ranges (2,), error, and multiplier that leaves the unit circle."""
+    """Point of a limit: position (2,) as fractions of the ranges, error, multiplier on the unit circle."""
 
     place: np.ndarray
     error: float
@@ -45,7 +47,7 @@ class LimitPoint(NamedTuple):
 
 @dataclass(frozen=True)
 class LimitTracer:
-    """Follows limits of stability over two numbers, from the edges of a chart which they cross.
+    """Tracer of stability limits over two numbers, which starts at edges of the chart that they cross.
 
     Parameters
     ----------
@@ -63,14 +65,15 @@ class LimitTracer:
     _known: dict[bytes, Multipliers] = field(default_factory=dict)
 
     def curves(self) -> list[list[LimitPoint]]:
-        """Follow all limits, each once: a curve that passes the start of an earlier curve replaces that."""
+        """Trace all limits once: a curve that passes the start of an earlier curve replaces that curve."""
         found: list[tuple[list[LimitPoint], np.ndarray, np.ndarray]] = []
         for low, high in self._edges():
             if any(_crosses(curve, low, high) for curve, *_ in found):
                 continue
             first = self._between(low, high)
             normal = (high - low) / np.linalg.norm(high - low)
-            along = np.array([normal[1], -normal[0]])  # unstable motion is on the left of this direction
+            # Unstable motion is to the left of the direction `along`.
+            along = np.array([normal[1], -normal[0]])
             ahead, behind = self._trace(first, along, 1.0), self._trace(first, -along, -1.0)
             curve = [*reversed(behind), first, *ahead]
             found = [each for each in found if not _crosses(curve, *each[1:])] + [(curve, low, high)]
@@ -92,7 +95,7 @@ class LimitTracer:
         return self._known[place.tobytes()]
 
     def _beyond(self, place: np.ndarray) -> float:
-        """Compute the function whose roots are limits at a place (2,): positive where motion is unstable."""
+        """Compute the function whose roots are limits, at a position (2,): positive for unstable motion."""
         found = self._multipliers(place)
         largest = float(found.size[0, 0])
         if found.sign is None:
@@ -102,7 +105,7 @@ class LimitTracer:
         return -float(_nearest(found)[0] ** 2 / 4)
 
     def _point(self, place: np.ndarray, normal: np.ndarray) -> LimitPoint:
-        """Make the point of a root; its error is the distance at which verdicts on both sides are certain."""
+        """Build the point of a root; at the distance `error`, verdicts on both sides are certain."""
         error = next((e for e in _ERRORS if self._verdicts(place, e * normal) == (STABLE, UNSTABLE)), np.inf)
         found = self._multipliers(place)
         leaves = found.value[0, 0] if found.sign is None else _nearest(found)[1]
@@ -115,7 +118,7 @@ class LimitTracer:
     # The curve --------------------------------------------------------------------------------------
 
     def _edges(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield the ends, as shares (2,), of the grid's edges from a stable to an unstable point."""
+        """Yield the end points, as fractions (2,), of grid edges from a stable to an unstable point."""
         values = [(i.values - i.values[0]) / max(float(np.ptp(i.values)), 1e-300) for i in self.inputs]
         grid = np.stack(np.meshgrid(*values, indexing="ij"), axis=-1)
         for axis in (0, 1):
@@ -126,12 +129,12 @@ class LimitTracer:
                 yield from zip(at[low][crossed], at[high][crossed], strict=True)
 
     def _between(self, low: np.ndarray, high: np.ndarray) -> LimitPoint:
-        """Find the limit on an edge of the grid, given by its ends."""
+        """Find the limit on an edge of the grid, given by its end points."""
         x = toms748(lambda x: self._beyond(low + x * (high - low)), 0.0, 1.0, xtol=_FINE)
         return self._point(low + x * (high - low), (high - low) / np.linalg.norm(high - low))
 
     def _trace(self, first: LimitPoint, along: np.ndarray, side: float) -> list[LimitPoint]:
-        """Follow a limit from a point: until the chart ends, the curve closes, or steps become too small."""
+        """Trace a limit from a point until the chart ends, the curve closes, or steps become too small."""
         points, h, turns, last, width, start = [], _FIRST, _FIRST_TURNS, first.place, 1.0, along
         while len(points) < _MOST and h >= _LEAST:
             inside = _room(last, along)
@@ -158,10 +161,10 @@ class LimitTracer:
     def _corrected(
         self, place: np.ndarray, normal: np.ndarray, width: float
     ) -> tuple[LimitPoint | None, float]:
-        """Find the limit on the normal of a place, and the half width that brackets it.
+        """Find the limit on the normal through a position, and the half width that brackets it.
 
-        The limit is None if it is not found.  As a narrow tongue has another limit close by, the width is
-        reduced until only one is bracketed.
+        The limit is None if no limit is found.  As a narrow tongue has a second limit close by, the width is
+        reduced until only one limit is bracketed.
         """
         half = width
         while half > _NARROWEST:
@@ -176,7 +179,7 @@ class LimitTracer:
 
 
 def _nearest(found: Multipliers) -> tuple[float, complex]:
-    """Return least distance and mean of two undamped multipliers that may leave the unit circle."""
+    """Return smallest distance and mean of two undamped multipliers that may leave the unit circle."""
     value, sign = found.value[0], np.zeros(0) if found.sign is None else found.sign[0]
     apart = np.abs(value[:, None] - value)
     barred = (sign[:, None] * sign > 0) | np.eye(len(value), dtype=bool)
@@ -185,27 +188,27 @@ def _nearest(found: Multipliers) -> tuple[float, complex]:
 
 
 def _room(place: np.ndarray, along: np.ndarray) -> float:
-    """Compute the distance from a place (2,) to the border of the square of shares, in a direction."""
+    """Compute the distance from a position (2,) to the border of the unit square, in a direction."""
     with np.errstate(divide="ignore", invalid="ignore"):
         ends = np.where(along > 0, (1 - place) / along, np.where(along < 0, -place / along, np.inf))
     return max(float(ends.min()), 0.0)
 
 
 def _within_border(place: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return the direction of the border on which a place (2,) lies, pointing to the side of a normal."""
+    """Return the border's direction at a position (2,) on the border, on the side of a normal."""
     on = np.minimum(place, 1 - place)
     along = np.where(np.arange(2) == on.argmin(), 0.0, np.sign(normal))
     return along if along.any() else normal
 
 
 def _crosses(curve: list[LimitPoint], low: np.ndarray, high: np.ndarray) -> bool:
-    """Tell whether a curve crosses an edge of the grid, with its unstable side towards the end `high`."""
+    """Return whether a curve crosses an edge of the grid, with the unstable side towards the end `high`."""
     axis = int(np.abs(high - low).argmax())
     way, slack = np.sign(high - low)[axis], _SLACK * abs(high - low)[axis]
     ends = sorted((low[axis], high[axis]))
     for (p, *_), (q, *_) in pairwise(curve):
         across = q[1 - axis] - p[1 - axis]
-        # The curve was followed with unstable motion on its left.
+        # The curve was traced such that unstable motion is on its left.
         toward = -across if axis == 0 else across
         share = (low[1 - axis] - p[1 - axis]) / across if across else np.inf
         at = p[axis] + share * (q[axis] - p[axis])

@@ -1,8 +1,8 @@
-"""The monodromy matrix: the map of the state of a free motion over one period.
+"""Monodromy matrix: the linear map of the state of free vibration over one period.
 
-The steps are those of the transients, Gauss collocation of order 16, which keeps the symplectic form of
-undamped motion.  Displacements are multiplied by the frequencies at rest, so that in free vibration at rest
-each mode turns by an orthogonal map.
+Time steps are by Gauss collocation of order 16, as for transients, which preserves the symplectic form of
+undamped motion.  Displacements are multiplied by the frequencies at rest, so that the map of each mode at
+rest is orthogonal.
 """
 
 from __future__ import annotations
@@ -19,13 +19,15 @@ from beamdyn.studies.floquet.period import Period
 from beamdyn.transient.gauss import step_maps, tableau
 from beamdyn.transient.system import ModalSystem
 
-COARSER = "two thirds of the steps in time"  # words for the second solution, by which errors are estimated
+# Description of the second solution, from which errors are estimated.
+COARSER = "two thirds of the steps in time"
 _STAGES = 8
-_ANGLE = 2.0  # angle of the fastest mode in a step [rad], with which the error is about 1e-14
-_FEWEST = 12  # least number of steps in a period of the motion, for the motion's own harmonics
+_ANGLE = 2.0  # phase angle of the fastest mode per step [rad], for which the error is about 1e-14
+_FEWEST = 12  # smallest number of steps in a period of the motion, which resolves the harmonics of the motion
 COARSER_STEPS = 2 / 3  # ratio of the number of steps of the second solution to that of the first
-_EXCESS = 100.0  # assumed ratio of the errors of the two solutions, which is (3/2)^16 = 650 in the limit
-_SAMPLES = 64  # number of times in a period at which the stiffness is evaluated to find the largest
+# Assumed ratio of the errors of the two solutions; the ratio tends to (3/2)^16 = 650 for small steps.
+_EXCESS = 100.0
+_SAMPLES = 64  # number of times in a period at which the stiffness is evaluated to find its maximum
 _ROUNDING = 4 * np.finfo(float).eps  # rounding error of a step, relative to the size of its matrix
 
 
@@ -42,10 +44,10 @@ class Monodromy:
     period : ndarray, shape (P,)
         The periods [s].
     form : ndarray, shape (P, 2 n, 2 n), or None
-        Antisymmetric matrices J of the forms that undamped motions keep: matrix^T J matrix = J.  None with
-        damping.
+        Antisymmetric matrices J of the forms that undamped motions preserve: matrix^T J matrix = J.  None
+        with damping.
     turns : int
-        Turns of the first phase in a period, the same of all.
+        Number of cycles of the first phase in a period, the same for all scenes.
     """
 
     matrix: np.ndarray
@@ -56,7 +58,7 @@ class Monodromy:
 
 
 def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
-    """Integrate the free motion of a scene over its period.
+    """Integrate the free vibration of a scene over its period.
 
     Parameters
     ----------
@@ -65,7 +67,7 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
     period : Period
         Period of the motion.
     equations : Equations
-        Its equations in modal coordinates of unit mass.
+        Equations of the scene in modal coordinates with unit mass matrix.
 
     Returns
     -------
@@ -87,14 +89,14 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
 
 
 def _scale(equations: Equations, period: float) -> np.ndarray:
-    """Return factors (2 n,) of the state: for displacements the frequency at rest, or that of the period."""
+    """Return factors (2 n,) of the state: a frequency, at rest or of the period, for displacements."""
     frequency = np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"])))
     frequency = np.where(frequency > 0, frequency, 2 * math.pi / period)
     return np.concatenate([frequency, np.ones(equations.size)])
 
 
 def scaled_states(equations: Equations, period: float, maps: np.ndarray) -> np.ndarray:
-    """Scale maps (P, 2 n, 2 n), and drop the flux of a circuit, which acts by its rate alone."""
+    """Scale maps (P, 2 n, 2 n), and omit the flux of a circuit, which acts only by its rate."""
     scale = _scale(equations, period)
     maps, n = scale[:, None] * maps / scale, equations.size
     states = np.arange(2 * n) != (n - 1 if equations.voltage is not None else -1)

@@ -1,15 +1,14 @@
 """Floquet multipliers, the eigenvalues of monodromy matrices, and the stability that follows from them.
 
-To first order, an error d of a matrix moves a multiplier by at most k d.  Here k is its condition number:
-the product of the norms of its left and right eigenvector over their inner product.  Where two multipliers
-meet, k is unbounded, but k times their distance is not: the two are m +- sqrt(s), and an error D of s moves
-them by at most sqrt(D).
+To first order, an error d of a matrix moves a multiplier by at most k d.  Here k is its condition number: the
+product of the norms of its left and right eigenvector over their inner product.  If two multipliers meet, k
+is unbounded, but k times their distance is bounded: the two are m +- sqrt(s), and an error D of s moves them
+by at most sqrt(D).
 
-Undamped motion preserves an antisymmetric form, so that multipliers come in pairs m, 1 / conj(m).  The
-partner of a multiplier beside the unit circle would lie as close to the circle on its other side.  A
-multiplier that is further from all others than the errors has no such partner, and so lies on the circle
-itself.  Where several meet, they stay on the circle if the form has the same sign on all of their
-vectors (Krein).
+Undamped motion preserves an antisymmetric form, so that multipliers come in pairs m, 1 / conj(m).  A
+multiplier near the unit circle would have its partner equally close on the other side.  If it is further from
+all others than the errors, it has no such partner, and thus is on the circle itself.  If several meet, they
+stay on the circle if the form has the same sign on all of their vectors (Krein).
 """
 
 from __future__ import annotations
@@ -22,10 +21,10 @@ import numpy as np
 from beamdyn.studies.floquet.monodromy import Monodromy
 
 STABLE, UNSTABLE, UNDECIDED = "stable", "unstable", "undecided"
-# Backward error of the eigenvalue solver, relative to the size of the matrix.
+# Backward error of the eigenvalue solver, relative to the norm of the matrix.
 _EIGENVALUES = 8 * np.finfo(float).eps
-_SAFETY = 2.0  # margin of the bounds to first order
-_DEFINITE = 1e-6  # value of the form, over its largest, above which its sign is certain
+_SAFETY = 2.0  # safety factor of the first-order bounds
+_DEFINITE = 1e-6  # ratio of the form's value to its maximum, above which the sign is certain
 
 
 @dataclass(frozen=True)
@@ -35,12 +34,12 @@ class Multipliers:
     Parameters
     ----------
     value : ndarray of complex, shape (P, m)
-        The multipliers, the largest first.
+        Multipliers, the largest first.
     error : ndarray, shape (P, m)
-        Their estimated errors.
+        Estimated errors of the multipliers.
     sign : ndarray, shape (P, m), or None
-        Signs of the form of undamped motion on their vectors: 1 or -1, 0 where it is not known, as for all
-        that do not lie on the unit circle.  None with damping.
+        Krein signs, of the form of undamped motion on the eigenvectors: 1 or -1; 0 if not known, as for all
+        multipliers off the unit circle.  None with damping.
     period : ndarray, shape (P,)
         Periods of the motions [s].
     """
@@ -66,7 +65,7 @@ class Multipliers:
         return np.select([outside, stable], [UNSTABLE, STABLE], UNDECIDED)
 
     def _may_leave(self, sign: np.ndarray) -> np.ndarray:
-        """Tell whether multipliers of undamped motion that meet may lie off the unit circle: (P,)."""
+        """Return whether multipliers of undamped motion that meet may be off the unit circle: (P,)."""
         reach = self.error[:, :, None] + self.error[:, None, :]
         meet = np.abs(self.value[:, :, None] - self.value[:, None, :]) <= reach
         of_one_sign = sign[:, :, None] * sign[:, None, :] > 0
@@ -105,7 +104,7 @@ def multipliers_of(motion: Monodromy) -> Multipliers:
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:
-    """Compute inverses of matrices (P, m, m); inf where a matrix is singular."""
+    """Compute inverses of matrices (P, m, m); inf if a matrix is singular."""
     try:
         return np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
@@ -115,9 +114,9 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 
 
 def _krein_sign(value: np.ndarray, error: np.ndarray, right: np.ndarray, form: np.ndarray) -> np.ndarray:
-    """Compute Krein signs (P, m) of multipliers on the unit circle; 0 where the sign is not certain.
+    """Compute Krein signs (P, m) of multipliers on the unit circle; 0 if the sign is not certain.
 
-    The sign is that of i x^* J x, with the eigenvector x and the form J that the motion preserves.
+    It is the sign of i x^* J x, with the eigenvector x and the form J that the motion preserves.
     """
     inside = np.real(1j * np.einsum("pim,pij,pjm->pm", right.conj(), form, right))
     largest = np.einsum("pim,pij,pjm->pm", np.abs(right), np.abs(form), np.abs(right))

@@ -1,4 +1,4 @@
-"""The period of the equations of motion of a scene, from the rates of the phases of its motion."""
+"""Period of the coefficients in a scene's equations of motion, from the frequencies of its motion."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from beamdyn.scene.motion import Rotation
 from beamdyn.scene.names_elsewhere import REPEATING
 from beamdyn.scene.scene import Scene
 
-MOST_TURNS = 64  # largest number of periods of the first phase in a common period of all phases
-_MOST_OTHERS = MOST_TURNS**2  # largest number of periods of any other phase in a common period
-_COMMENSURATE = 1e-12  # relative distance of a ratio of rates from a fraction, that counts as rounding
+MOST_TURNS = 64  # largest number of cycles of the first phase in a common period of all phases
+_MOST_OTHERS = MOST_TURNS**2  # largest number of cycles of any other phase in a common period
+_COMMENSURATE = 1e-12  # relative difference of a frequency ratio from a fraction, below which it is rounding
 
 
 class Period(NamedTuple):
-    """Time after which the coefficients of the equations of motion repeat themselves.
+    """Period after which the coefficients of the equations of motion repeat.
 
     Parameters
     ----------
     time : float
-        The time [s].
+        Length of the period [s].
     turns : int
-        Turns of the first phase in this time.
+        Number of cycles of the first phase in this time.
     """
 
     time: float
@@ -33,14 +33,14 @@ class Period(NamedTuple):
 
 
 def rates_of(scene: Scene) -> tuple[float, ...]:
-    """Return the rates of the phases on which the coefficients of the equations of motion depend [rad/s].
+    """Return the angular frequencies [rad/s] of the phases that the coefficients of the equations depend on.
 
-    The angle of rotation counts where gravity, or an acceleration of the carrier, has a fixed direction.
+    The angle of rotation is one of them if gravity, or an acceleration of the carrier, has a fixed direction.
 
     Raises
     ------
     InvalidValue
-        If there is no motion, or it does not repeat itself.
+        If there is no motion, or if it is not periodic.
     """
     motion = scene.motion
     if motion is None:
@@ -51,25 +51,25 @@ def rates_of(scene: Scene) -> tuple[float, ...]:
         rates = rates[1:]
     rates = tuple(rate for rate in rates if rate)
     if not rates:
-        bound = "it stands still, and nothing pulsates"
-        raise InvalidValue("scene.motion", motion, bound, "use natural_modes, or let it turn or pulsate")
+        bound = "the carrier stands still, and nothing pulsates"
+        raise InvalidValue("scene.motion", motion, bound, "use natural_modes, or let it rotate or pulsate")
     return rates
 
 
 def meet_again(scene: Scene) -> bool:
-    """Tell whether the phases of the motion have a common period within the limits of `period_of`."""
+    """Return whether the phases of the motion have a common period within the limits of `period_of`."""
     rates = rates_of(scene)
     return all(_is_fraction(rate / rates[0]) for rate in rates)
 
 
 def period_of(scene: Scene) -> Period:
-    """Find the smallest time after which the coefficients of the equations of motion repeat themselves.
+    """Find the smallest period of the coefficients of the equations of motion.
 
     Raises
     ------
     InvalidValue
-        As `rates_of`, or if the phases have no common period within 64 periods of the first, or 4096 of
-        another.
+        As for `rates_of`, or if the phases have no common period within 64 cycles of the first phase, or 4096
+        of another one.
     """
     rates = rates_of(scene)
     turns = math.lcm(*(_fraction(rate, rates[0]).denominator for rate in rates))
@@ -77,13 +77,13 @@ def period_of(scene: Scene) -> Period:
 
 
 def _is_fraction(ratio: float) -> bool:
-    """Tell whether a ratio is that of two small whole numbers, within rounding."""
+    """Return whether a ratio is a fraction of two small whole numbers, within rounding."""
     found = Fraction(ratio).limit_denominator(MOST_TURNS)
     return abs(found - Fraction(ratio)) <= _COMMENSURATE * ratio and found.numerator <= _MOST_OTHERS
 
 
 def _fraction(rate: float, first: float) -> Fraction:
-    """Return the ratio of two rates as a fraction; refuse a ratio that is not one of small whole numbers."""
+    """Return the ratio of two frequencies as a fraction; raise an error unless it has small whole numbers."""
     ratio = rate / first
     found = Fraction(ratio).limit_denominator(MOST_TURNS)
     nearest = min(max(found, Fraction(1, MOST_TURNS)), Fraction(_MOST_OTHERS))

@@ -1,4 +1,4 @@
-"""Scenes in periodic motion, and their equations in modes at rest, which many scenes share."""
+"""Scenes in periodic motion, and their equations in modes at rest, which scenes share if possible."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.studies.floquet.monodromy import Monodromy, monodromy
 from beamdyn.studies.floquet.period import MOST_TURNS, meet_again, period_of, rates_of
 
-_STRAIGHT = "stability in periodic motion is that of the straight beam"
+_STRAIGHT = "stability in periodic motion is computed only for the straight beam"
 
 
 @dataclass(frozen=True)
 class PeriodicScenes(FieldsOnly):
-    """Scenes in periodic motion that differ from a given scene in some numbers.
+    """Scenes in periodic motion that differ from a given scene in some of its numbers.
 
     Parameters
     ----------
@@ -44,14 +44,14 @@ class PeriodicScenes(FieldsOnly):
     _models: dict[Any, tuple[Model, Equations]] = field(default_factory=dict, repr=False, compare=False)
 
     def at(self, values: Mapping[str, float]) -> Scene:
-        """Return the scene with other numbers; the motion too, if the speed is one of them."""
+        """Return the scene with other values of the numbers; a new speed also changes the motion."""
         scene = with_numbers(self.scene, values)
         if SPEED not in values or scene.motion is None:
             return scene
         return replace(scene, motion=scene.motion.with_speed(values[SPEED]))
 
     def monodromy(self, values: Mapping[str, float]) -> Monodromy:
-        """Integrate the monodromy matrix of the scene with other numbers."""
+        """Integrate the monodromy matrix of the scene with other values of the numbers."""
         scene = self.at(values)
         return monodromy(scene, period_of(scene), self.equations(scene))
 
@@ -87,7 +87,7 @@ def speeds_of(scene: Scene) -> np.ndarray:
 def check_periodic(
     scene: Scene, modes: int, discretization: DiscretizationChoice, inputs: Sequence[VariedInput] = ()
 ) -> PeriodicScenes:
-    """Check the arguments of an analysis of stability in periodic motion, and choose the physics if "auto".
+    """Check the arguments of a stability analysis in periodic motion, and choose the physics if "auto".
 
     If inputs are varied, the physics is that of the extreme scene that needs the most effects.
 
@@ -110,7 +110,7 @@ def check_periodic(
 
 
 def _needs(scene: Scene) -> tuple[int, float]:
-    """Return a key that orders choices of physics: by the number of effects, then by the model error."""
+    """Return a sort key for choices of physics: number of effects, then model error."""
     choice = scene.physics_choice
     return (0, 0.0) if choice is None else (len(choice.included), choice.model_error)
 

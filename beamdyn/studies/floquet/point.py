@@ -36,24 +36,24 @@ _BOUNDED = "stability is not decided: the largest exponent is 0 within its error
 
 @dataclass(frozen=True)
 class FloquetMultipliers(JudgedByRepeating):
-    """Floquet multipliers of free motion about a periodic motion: factors of its growth over a period.
+    """Floquet multipliers of free vibration about a periodic motion: its growth factors over one period.
 
-    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
-    size of the largest multiplier.
+    `model_error` and `left_out`, computed at their first use, estimate how much neglected physical effects
+    change the magnitude of the largest multiplier.
 
     Parameters
     ----------
     status : {"stable", "unstable", "undecided"}
-        Whether free motion decays, or without damping stays bounded: shown by the multipliers and their
-        errors, else "undecided".
+        Whether free vibration decays or, without damping, stays bounded, as the multipliers and their errors
+        show; otherwise "undecided".
     growth_rate : float
-        Largest growth rate of free motion [1/s]; 0 without damping where it is stable.
+        Largest growth rate of free vibration [1/s]; 0 for stable motion without damping.
     growth_rate_error : float
-        Its estimated error [1/s], of the modes that are kept; see `mode_error`.
+        Estimated error of the growth rate [1/s], for the modes in the model; see `mode_error`.
     multipliers : ndarray of complex, shape (2 n,)
-        The nondimensional multipliers, the largest first.
+        Nondimensional multipliers, the largest first.
     multiplier_errors : ndarray, shape (2 n,)
-        Their estimated errors, nondimensional.
+        Estimated errors of the multipliers, nondimensional.
     krein_sign : ndarray, shape (2 n,)
         Without damping 1 or -1 for multipliers on the unit circle, which leave it only where they meet one of
         the other sign; 0 for others.
@@ -62,7 +62,7 @@ class FloquetMultipliers(JudgedByRepeating):
     warnings : tuple of str
         Limitations of the result.
     provenance : Provenance
-        How it was computed.
+        How the result was computed.
     method : {"multipliers", "exponent"}
         "multipliers" for a periodic motion; for two rates without a common period "exponent": bounds of the
         largest Lyapunov exponent, and no multipliers.
@@ -103,15 +103,16 @@ class FloquetMultipliers(JudgedByRepeating):
 
     @property
     def spectral_radius(self) -> float:
-        """Growth of free motion over a period: magnitude of the largest multiplier, or by the exponent."""
+        """Growth factor of free vibration over a period: largest multiplier, or by the exponent."""
         known = self.method == MULTIPLIERS
         return float(np.abs(self.multipliers[0])) if known else math.exp(self.growth_rate * self.period)
 
     @cached_property
     def mode_error(self) -> float:
-        """Estimated error of the growth rate by the modes left out [1/s], by a solution with more modes.
+        """Estimated error of the growth rate by neglected modes [1/s], from a solution with more modes.
 
-        It is twice the change by half as many modes more, at least two; inf if there is no larger model.
+        It is twice the change when the number of modes is increased by half, at least by two; inf if there is
+        no larger model.
         """
         finer = ModalBasis(self.modes).refined()
         if finer is None or self.again is None:
@@ -119,7 +120,7 @@ class FloquetMultipliers(JudgedByRepeating):
         return 2 * abs(self.again(self.scene, modes=finer.modes).growth_rate - self.growth_rate)
 
     def judged(self, found: FloquetMultipliers) -> np.ndarray:
-        """Return the magnitude of the largest multiplier, whose model error is stated: shape ()."""
+        """Return the magnitude of the largest multiplier, for which the model error is stated: shape ()."""
         return np.array(found.spectral_radius)
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -131,21 +132,21 @@ class FloquetMultipliers(JudgedByRepeating):
 
 @announced_of_plain_beam
 @repeatable
-@one_blas_thread()  # more threads would only wait for each other on small matrices
+@one_blas_thread()  # with small matrices, further threads only slow each other down
 def floquet_multipliers(
     scene: Scene, modes: int = 3, discretization: DiscretizationChoice = "ritz"
 ) -> FloquetMultipliers:
-    """Compute the Floquet multipliers of a scene in periodic motion, and whether it is stable.
+    """Compute the Floquet multipliers of a scene in periodic motion, and whether the motion is stable.
 
     The monodromy matrix of the equations in modes at rest is integrated over a period by Gauss collocation of
-    order 16; forcing does not matter to stability, and is left out.
+    order 16; forcing does not affect stability, and is omitted.
 
     Parameters
     ----------
     scene : Scene
-        The scene, in a motion that repeats itself, such as `PulsatingRotation` or `ShakenCarrier`, or in
-        steady rotation with gravity.  Where two phases of motion, road and gravity have no common period, the
-        largest Lyapunov exponent decides: `method` says which was used.
+        The scene, in a periodic motion, such as `PulsatingRotation` or `ShakenCarrier`, or in steady rotation
+        with gravity.  If two frequencies of motion, road and gravity have no common period, the largest
+        Lyapunov exponent is used: see `method`.
     modes : int
         Number of modes at rest of each uncoupled displacement, such as bending in each plane.
     discretization : {"ritz", "fem"} or Discretization
@@ -199,7 +200,7 @@ def floquet_multipliers(
 
 
 def _by_exponent(scenes: PeriodicScenes, start: float) -> FloquetMultipliers:
-    """Compute the result by the largest exponent, for a motion whose two rates have no common period."""
+    """Compute the result from the largest Lyapunov exponent, for two frequencies without a common period."""
     scene, (model, _) = scenes.scene, scenes.modal(scenes.scene)
     found = largest_exponent(scene, scenes.equations(scene))
     method = (
@@ -224,7 +225,7 @@ def _by_exponent(scenes: PeriodicScenes, start: float) -> FloquetMultipliers:
 def _warnings(
     scene: Scene, status: str, rate: float, error: float, why: str = _ON_CIRCLE
 ) -> Iterator[Statement]:
-    """Yield warnings that limit the answer: physics left out, growth, and why it is undecided."""
+    """Yield warnings that limit the result: neglected effects, growth, and why it is undecided."""
     yield from warn_of_left_out(scene)
     said = {"quantity": "growth rate", "value": rate}
     if status == UNSTABLE:

@@ -1,9 +1,9 @@
-"""Charts of stability over two numbers of a scene in periodic motion.
+"""Stability charts over two numbers of a scene in periodic motion.
 
-The monodromy matrix is a smooth function of the numbers of the scene, though its eigenvalues are not: it is
-integrated at a few pairs of numbers and interpolated at all others.  Scenes that remain undecided are
-integrated by themselves; so is every scene if the number of turns in the common period, if any, varies over
-the chart.
+The monodromy matrix is a smooth function of the numbers, though its eigenvalues are not: it is integrated at
+a few pairs of numbers and interpolated at all others.  Scenes that remain undecided are integrated
+individually; so are all scenes if the number of cycles in the common period varies over the chart, or if
+there is no common period.
 """
 
 from __future__ import annotations
@@ -46,37 +46,37 @@ from beamdyn.studies.study import VERSIONS
 _NAMES = "status", "rate", "error", "radius", "period"
 _TASK = 16  # number of scenes in a task
 _JUDGED = 3  # number of values of each number at which the model error is computed
-_ROUNDING = 1e-12  # relative change of a product that counts as constant
-_MOST_ENTRIES = 20_000_000  # largest number of entries of all matrices together, so that they fit into memory
+_ROUNDING = 1e-12  # relative change of a product below which it is constant
+_MOST_ENTRIES = 20_000_000  # largest total number of entries of all matrices, so that they fit into memory
 
 
 @dataclass(frozen=True)
 class StabilityChart(JudgedByRepeating):
-    """Stability of free motion about a periodic motion, over two numbers of the scene.
+    """Stability of free vibration about a periodic motion, over two numbers of the scene.
 
-    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
-    size of the largest multiplier, at three values of each number (9,).
+    `model_error` and `left_out`, computed at their first use, estimate how much neglected physical effects
+    change the magnitude of the largest multiplier, at three values of each number (9,).
 
     Parameters
     ----------
     inputs : tuple of VariedInput
         The two numbers, each with its `name`, `unit` and `values` in SI: (A,) and (B,).
     status : ndarray of str, shape (A, B)
-        "stable", "unstable", or "undecided" where the errors allow either.
+        "stable", "unstable", or "undecided" if the errors allow either.
     growth_rate : ndarray, shape (A, B)
-        Largest growth rate of free motion [1/s]; 0 without damping where it is stable.
+        Largest growth rate of free vibration [1/s]; 0 for stable motion without damping.
     growth_rate_error : ndarray, shape (A, B)
-        Its estimated error [1/s], of the modes that are kept.
+        Estimated error of the growth rate [1/s], for the modes in the model.
     spectral_radius : ndarray, shape (A, B)
-        Size of the largest multiplier: the growth over a period.
+        Magnitude of the largest multiplier: the growth factor over a period.
     period : ndarray, shape (A, B)
         Period of the equations of motion [s].
     integrated : int
-        Number of scenes whose free motion was integrated; others were interpolated.
+        Number of scenes whose free vibration was integrated; the others were interpolated.
     warnings : tuple of str
         Limitations of the result.
     provenance : Provenance
-        How it was computed.
+        How the result was computed.
 
     Examples
     --------
@@ -104,7 +104,7 @@ class StabilityChart(JudgedByRepeating):
     follows_stiffness: ClassVar[bool] = False
 
     def headline(self) -> Iterator[str]:
-        """Yield the number of points of each verdict and the error, the parts of a one-line summary.
+        """Yield the number of points with each verdict and the error, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -120,25 +120,25 @@ class StabilityChart(JudgedByRepeating):
         return [evenly_spread(len(each.values), _JUDGED) for each in self.inputs]
 
     def judged(self, found: StabilityChart) -> np.ndarray:
-        """Return the magnitudes of the largest multiplier where the model error is computed: at most (9,)."""
+        """Return the largest multipliers' magnitudes for which the model error is computed: at most (9,)."""
         own = found.status.shape == self.status.shape
         return (found.spectral_radius[np.ix_(*self._few)] if own else found.spectral_radius).ravel()
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """Arguments of a chart over only the values at which the model error is computed."""
+        """Arguments of a chart with only the values at which the model error is computed."""
         pairs = zip(self.inputs, self._few, strict=True)
         return {"vary": {each.name: each.values[few] for each, few in pairs}}
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the growth rate where free motion grows, and mark what is undecided."""
+        """Draw the growth rate of unstable free vibration, and mark undecided points."""
         rate = np.where(self.status == UNSTABLE, self.growth_rate, np.nan)
         return plot_stability_chart(self.inputs, rate, self.status == UNDECIDED, ax)
 
 
 @announced_of_plain_beam
 @repeatable
-@one_blas_thread()  # more threads would only wait for each other on small matrices
+@one_blas_thread()  # with small matrices, further threads only slow each other down
 def stability_chart(
     scene: Scene,
     vary: Mapping[str, Sequence[float] | np.ndarray],
@@ -147,7 +147,7 @@ def stability_chart(
     workers: int = 1,
     store: str | PathLike[str] | None = None,
 ) -> StabilityChart:
-    """Decide where free motion about a periodic motion is stable, over two numbers of the scene.
+    """Decide for which values of two numbers of a scene free vibration about its periodic motion is stable.
 
     Parameters
     ----------
@@ -161,9 +161,9 @@ def stability_chart(
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     workers : int
-        Number of processes; the answer is the same to the bit for any.
+        Number of processes; the result is bitwise the same for any number.
     store : str or Path, optional
-        Folder in which the integrated scenes are kept; those found there are not computed again.
+        Folder in which integrated scenes are saved; scenes found there are not computed again.
 
     Returns
     -------
@@ -172,7 +172,7 @@ def stability_chart(
     Raises
     ------
     ValueError
-        If there are not two numbers, an argument is out of its range, or the motion does not repeat itself.
+        If there are not two numbers, an argument is out of its range, or the motion is not periodic.
 
     References
     ----------
@@ -223,19 +223,19 @@ def _check_inputs(vary: Mapping[str, Sequence[float] | np.ndarray]) -> tuple[Var
 
 @dataclass(frozen=True)
 class Points(FieldsOnly):
-    """A task: scenes, given by their numbers, whose free motion is to be integrated."""
+    """Task: scenes, given by their numbers, whose free vibration is to be integrated."""
 
     scenes: PeriodicScenes
     numbers: tuple[dict[str, float], ...]
 
 
 def integrate(points: Points) -> list[Monodromy]:
-    """Integrate the free motion of each scene of a task."""
+    """Integrate the free vibration of each scene of a task."""
     return [points.scenes.monodromy(each) for each in points.numbers]
 
 
 def judge(points: Points) -> list[dict[str, np.ndarray]]:
-    """Return the verdicts of a task: by multipliers, or where there is no period by the largest exponent."""
+    """Return the verdicts of a task: by multipliers, or by the largest exponent if there is no period."""
     return [_verdict(points.scenes, numbers) for numbers in points.numbers]
 
 
@@ -251,7 +251,7 @@ def _verdict(scenes: PeriodicScenes, numbers: dict[str, float]) -> dict[str, np.
 
 @dataclass(frozen=True)
 class _Grid:
-    """Scenes over two numbers, and the computation of their stability.
+    """Scenes on a grid of two numbers, and the computation of their stability.
 
     Parameters
     ----------
@@ -260,7 +260,7 @@ class _Grid:
     inputs : tuple of VariedInput
         The two numbers.
     run : TaskRunner
-        Integrates the scenes.
+        Runner of the tasks that integrate the scenes.
     """
 
     scenes: PeriodicScenes
@@ -273,11 +273,11 @@ class _Grid:
         return Designs(self.inputs).shape
 
     def numbers(self, place: int) -> dict[str, float]:
-        """Return the numbers of the scene at an index of the flattened chart."""
+        """Return the numbers of the scene with a given index in the flattened chart."""
         return Designs(self.inputs).at(*map(int, np.unravel_index(place, self.shape)))
 
     def solved(self) -> tuple[dict[str, np.ndarray], int]:
-        """Compute arrays (A, B) by name, and the number of scenes that were integrated for them."""
+        """Compute arrays (A, B) by name, and the number of scenes that were integrated."""
         if not self._keeps_ratio():
             places = range(math.prod(self.shape))
             each = self._run(judge, [self.numbers(place) for place in places])
@@ -286,7 +286,7 @@ class _Grid:
         motion, integrated = self._interpolated()
         found = _verdicts(motion)
         undecided = np.flatnonzero(found["status"] == UNDECIDED)
-        if integrated == len(motion.period):  # all were integrated, none interpolated
+        if integrated == len(motion.period):  # all were integrated, none was interpolated
             undecided = undecided[:0]
         alone = self._integrated([self.numbers(place) for place in undecided.tolist()])
         for place, each in zip(undecided.tolist(), alone, strict=True):
@@ -295,11 +295,12 @@ class _Grid:
         return {name: each.reshape(self.shape) for name, each in found.items()}, integrated + len(undecided)
 
     def _keeps_ratio(self) -> bool:
-        """Tell whether the period has the same number of turns all over the chart, by corners and middles."""
+        """Return whether the period has the same number of cycles over the chart (corners, midpoints)."""
         rows, columns = (sorted({0, n // 2, n - 1}) for n in self.shape)
         scenes = [self.scenes.at(Designs(self.inputs).at(i, j)) for i in rows for j in columns]
         rates = [np.array(rates_of(each)) for each in scenes]
-        if len({len(each) for each in rates}) > 1:  # the motion stands still at one of these points
+        # The carrier stands still at one of these points, so that a frequency is missing there.
+        if len({len(each) for each in rates}) > 1:
             return False
         ratios = np.array([each / each[0] for each in rates])
         return bool((np.ptp(ratios, axis=0) <= _ROUNDING * ratios[0]).all()) and meet_again(scenes[0])
@@ -319,7 +320,7 @@ class _Grid:
         return [each for k in sorted(found) for each in found[k]]
 
     def _sets_the_period(self, place: int) -> bool:
-        """Tell whether the period is inverse to an input, whose reciprocal is then the smoother variable."""
+        """Return whether the period is inverse to an input, whose reciprocal is then a smoother variable."""
         first, values = self.numbers(0), self.inputs[place].values
         ends = [{**first, self.inputs[place].name: float(values[k])} for k in (0, -1)]
         periods = np.array([period_of(self.scenes.at(end)).time for end in ends])
@@ -354,8 +355,7 @@ class _Grid:
         on_grid = interpolate_on_grid(sampled, (first, second), lambda: max(errors), slice(size**2))
         flat = on_grid.value.reshape(-1, 2 * size**2 + 1)
         matrix, form = flat[:, :-1].reshape(-1, 2, size, size).swapaxes(0, 1)
-        # The norm of a matrix is at most its size times the bound of its entries, here the interpolation
-        # error.
+        # The norm of a matrix is at most its size times the largest entry, here the interpolation error.
         error = np.full(len(flat), max(errors) + size * on_grid.error)
         return Monodromy(
             matrix, error, flat[:, -1], None if True in damped else form, max(turns)
@@ -371,7 +371,7 @@ def _verdicts(motion: Monodromy) -> dict[str, np.ndarray]:
 
 
 def _warnings(scene: Scene, status: np.ndarray) -> Iterator[Statement]:
-    """Yield warnings that limit the chart: physics left out, and undecided points."""
+    """Yield warnings that limit the chart: neglected effects, and undecided points."""
     yield from warn_of_left_out(scene)
     if number := int((status == UNDECIDED).sum()):
         said = f"at {counted(number, 'point')} of {status.size} the errors allow either: see status"

@@ -1,4 +1,4 @@
-"""Curves that bound the stable regions over two numbers of a scene in periodic motion."""
+"""Stability limits: curves that bound stable regions over two numbers of a scene in periodic motion."""
 
 from __future__ import annotations
 
@@ -20,31 +20,31 @@ from beamdyn.studies.floquet.limit_curves import LimitTracer
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart
 
-_REAL = 1e-3  # imaginary part of a multiplier that counts as 0: two multipliers meet at 1 or -1
+_REAL = 1e-3  # imaginary part of a multiplier below which it is real: two multipliers meet at 1 or -1
 
 
 @dataclass(frozen=True)
 class StabilityLimits(Result):
-    """Curves between stable and unstable free motion, over two numbers of a scene in periodic motion.
+    """Curves between stable and unstable free vibration, over two numbers of a scene in periodic motion.
 
     Parameters
     ----------
     chart : StabilityChart
-        The chart whose regions they bound.
+        Stability chart whose regions the curves bound.
     curve : ndarray of int, shape (P,)
-        Number of the curve that each point belongs to, from 1; its points are in order, unstable motion to
-        their left.
+        Number of the curve that each point belongs to, from 1; the points of a curve are in order, with
+        unstable motion to the left.
     place : ndarray, shape (P, 2)
-        The two numbers, in SI.
+        Values of the two numbers, in SI.
     error : ndarray, shape (P,)
-        Share of the ranges of the chart within which the limit lies: the verdicts that far away on either
-        side are "stable" and "unstable", by the errors of the multipliers; inf where they are not.
+        Distance, as a fraction of the ranges of the chart, within which the limit is: at this distance on
+        either side, the verdicts are "stable" and "unstable"; inf if they are not.
     multiplier : ndarray of complex, shape (P,)
-        The nondimensional multiplier that leaves the unit circle.
+        Nondimensional multiplier that leaves the unit circle.
     warnings : tuple of str
         Limitations of the result.
     provenance : Provenance
-        How it was computed.
+        How the result was computed.
 
     Examples
     --------
@@ -66,7 +66,7 @@ class StabilityLimits(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Yield the number of curves and their kinds, the parts of the result's one-line summary.
+        """Yield the number of curves and their kinds, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -94,7 +94,7 @@ class StabilityLimits(Result):
 
 
 @announced_of_plain_beam
-@one_blas_thread()  # more threads would only wait for each other on small matrices
+@one_blas_thread()  # with small matrices, further threads only slow each other down
 def stability_limits(
     scene: Scene,
     vary: Mapping[str, Sequence[float] | np.ndarray],
@@ -103,11 +103,11 @@ def stability_limits(
     workers: int = 1,
     store: str | PathLike[str] | None = None,
 ) -> StabilityLimits:
-    """Follow the limits of the regions in which free motion about a periodic motion grows.
+    """Compute the limits of the regions in which free vibration about a periodic motion grows.
 
-    They begin where a chart has stable and unstable points side by side, and are followed by continuation to
-    the ends of the chart or the tips of tongues.  A tongue that passes between all points of the chart is not
-    found: give more values.
+    They start where a chart has neighbouring stable and unstable points, and are traced by continuation to
+    the ends of the chart or the tips of instability tongues.  A tongue that passes between all points of the
+    chart is not found: give more values.
 
     Parameters
     ----------
@@ -162,6 +162,6 @@ def stability_limits(
 def _warnings(error: np.ndarray) -> Iterator[Statement]:
     if number := int(np.isinf(error).sum()):
         said = (
-            f"at {counted(number, 'point')} of the limits the verdicts beside it are not certain: see error"
+            f"at {counted(number, 'point')} of the limits the verdicts on both sides are uncertain: see error"
         )
         yield Statement(said, kind=TOLERANCE, quantity="undecided", value=number / len(error))

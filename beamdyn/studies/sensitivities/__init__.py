@@ -1,1 +1,1 @@
-"""How frequencies, critical speeds and resonance speeds change with the numbers of a scene."""
+"""Sensitivities of frequencies, critical speeds and resonance speeds to the numbers of a scene."""

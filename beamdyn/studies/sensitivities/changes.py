@@ -1,9 +1,9 @@
-"""Derivatives of the matrices of a model by the numbers of its scene, and of eigenvalues by the matrices.
+"""Derivatives of a model's matrices by the numbers of its scene, and of eigenvalues by the matrices.
 
-The matrices are polynomials, quotients or sines of most numbers; where a number moves a point along the beam,
-they are polynomials of high degree.  They are evaluated at eight places near the number, and the polynomial
-through these values is differentiated; its last term tells how well it is resolved. Eigenvalues, which have
-far fewer correct digits, are not differenced.
+The matrices are polynomials, quotients or sines of most numbers, or polynomials of high degree if a number is
+a position along the beam.  They are evaluated for eight values near the number, and the polynomial through
+these values is differentiated; its last term shows how well the dependence is resolved. Eigenvalues have far
+fewer correct digits, so that they are not differenced.
 
 With P(s) = s^2 M + s (C + omega G) + K0 + omega^2 K2 and P v = 0, w^T P = 0, a change dP of P changes the
 eigenvalue by ds = -w^T dP v / (w^T (2 s M + C + omega G) v)  (Lancaster, Lambda-Matrices and Vibrating
@@ -27,21 +27,22 @@ from beamdyn.scene.numbers import with_numbers
 from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber
 
 PLACES = 8
-_STEPS = 9  # number of step sizes, over four decades: rounding errors grow as the inverse of the step
+# Number of interval widths, over four decades: rounding errors are inversely proportional to the width.
+_STEPS = 9
 
 Evaluated = TypeVar("Evaluated")
 
 
 @dataclass(frozen=True)
 class Nearby(Generic[Evaluated]):
-    """Values of matrices around a number, and the weights that combine them to derivatives.
+    """Matrices for values near a number, and weights that combine them to derivatives.
 
     Parameters
     ----------
     values : list
-        Matrices at `PLACES` places.
+        Matrices for `PLACES` values of the number.
     weights : ndarray, shape (PLACES,)
-        The derivative is the sum of weights times values [1 / unit of the number].
+        Weights of the matrices in the derivative [1 / unit of the number].
     last : ndarray, shape (PLACES,)
         Weights that give the last term of the interpolating polynomial, which bounds its error.
     width : float
@@ -57,16 +58,16 @@ class Nearby(Generic[Evaluated]):
 def evaluate_nearby(
     number: SceneNumber, evaluate: Callable[[float], Evaluated]
 ) -> Iterator[Nearby[Evaluated]]:
-    """Evaluate matrices around a number, in the widest interval that is not refused, then in narrower ones.
+    """Evaluate matrices near a number, in the widest interval that is not refused, then in narrower ones.
 
-    Where the values on one side are always refused, those on the other alone are taken.
+    If the values on one side are always refused, only the other side is used.
 
     Parameters
     ----------
     number : SceneNumber
         The number.
     evaluate : callable
-        Function of the number's value.
+        Function from a value of the number to matrices.
 
     Yields
     ------
@@ -101,7 +102,7 @@ def evaluate_nearby(
 
 
 def _slope(degree: int, t: float) -> float:
-    """Compute the derivative of the Chebyshev polynomial of a degree at t."""
+    """Compute the derivative of the Chebyshev polynomial of a given degree at t."""
     return float(np.polynomial.Chebyshev.basis(degree).deriv()(t)) if degree else 0.0
 
 
@@ -133,7 +134,7 @@ class PencilChange:
         return cls(*(_sum(weights, [getattr(p, f.name) for p in pencils]) for f in fields(cls)))
 
     def between(self, left: np.ndarray, right: np.ndarray, s: complex, speed: float) -> complex:
-        """Compute w^T dP v for vectors w and v, the change dP of the dynamic stiffness at exponent s.
+        """Compute w^T dP v for vectors w and v, with the change dP of the dynamic stiffness at exponent s.
 
         The speed is in rad/s; dP is not formed.
         """
@@ -152,7 +153,7 @@ def _sum(weights: np.ndarray, matrices: list[np.ndarray]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class PerturbedModes:
-    """Modes at a speed with their left eigenvectors, from which derivatives of eigenvalues follow.
+    """Modes at a speed with left eigenvectors, from which derivatives of eigenvalues are computed.
 
     Parameters
     ----------
@@ -176,7 +177,7 @@ class PerturbedModes:
     def of(
         cls, pencil: SteadyPencil, speed: float, eigenvalue: np.ndarray, right: np.ndarray
     ) -> PerturbedModes:
-        """Compute the left eigenvectors of modes, and return both."""
+        """Compute the left eigenvectors of modes, and return left and right eigenvectors."""
         left = [_left(pencil, speed, s, v) for s, v in zip(eigenvalue, right.T, strict=True)]
         return cls(pencil, speed, eigenvalue, right, np.array(left).T)
 
@@ -192,7 +193,7 @@ class PerturbedModes:
         )
 
     def speed_derivatives(self) -> np.ndarray:
-        """Compute the derivatives (k,) of the eigenvalues by the speed."""
+        """Compute the derivatives (k,) of the eigenvalues with respect to the speed."""
         p = self.pencil
         changes = (s * p.G + 2 * self.speed * p.K2 for s in self.eigenvalue)
         return np.array(
@@ -200,9 +201,9 @@ class PerturbedModes:
         )
 
     def scales(self) -> np.ndarray:
-        """Compute sizes (k,) of the eigenvalues' derivatives by a relative change of mass and stiffness.
+        """Compute magnitudes (k,) of the eigenvalues' derivatives by a relative change of mass and stiffness.
 
-        All entries of the matrices count as if they had one sign: rounding errors are relative to these.
+        All entries of the matrices are taken with the same sign: rounding errors are relative to the result.
         """
         p = self.pencil
         whole = np.abs(p.K0) + self.speed**2 * np.abs(p.K2)
@@ -219,14 +220,15 @@ class PerturbedModes:
     def _slope(self, k: int) -> complex:
         """Compute the derivative of the dynamic stiffness by the eigenvalue, in mode k.
 
-        This is w^T (2 s M + C + omega G) v with the mode's eigenvectors w and v.
+        It is w^T (2 s M + C + omega G) v, with the eigenvectors w and v of the mode.
         """
         p, left, right = self.pencil, self.left[:, k], self.right[:, k]
         of_rate = left @ (p.C @ right) + self.speed * (left @ (p.G @ right))
         return complex(2 * self.eigenvalue[k] * (left @ (p.M @ right)) + of_rate)
 
 
-_NONE = complex(np.nan, np.nan)  # derivative of a double eigenvalue 0, which moves by the root of a change
+# Derivative of a double eigenvalue 0, which changes as the square root of a perturbation.
+_NONE = complex(np.nan, np.nan)
 
 
 def _left(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> np.ndarray:
@@ -239,7 +241,7 @@ def _left(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> np.n
     if not pencil.C.any():
         return v.conj()
     P = s**2 * pencil.M + s * (pencil.C + speed * pencil.G) + pencil.K0 + speed**2 * pencil.K2
-    # The scale includes the mass, as a hinge has no stiffness.
+    # The scale includes the mass, as a hinged beam has a rotation without stiffness.
     scale = np.sqrt(np.diag(pencil.K0) + abs(s) ** 2 * np.diag(pencil.M))
     return scipy.linalg.svd(P.T / np.outer(scale, scale))[2][-1].conj() / scale
 
@@ -250,17 +252,17 @@ def critical_vector(pencil: SteadyPencil, speed: float) -> np.ndarray:
 
 
 def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, change: PencilChange) -> float:
-    """Compute the derivative of the critical speed for derivatives of the matrices."""
+    """Compute the derivative of the critical speed from derivatives of the matrices."""
     return float(-(v @ change.stiffness(speed) @ v) / (2 * speed * (v @ pencil.K2 @ v)))
 
 
 # Derivatives of the matrices ----------------------------------------------------------------------
 
 
-_EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to its largest part
-# Size of the last term of a polynomial, over the matrices, up to which the interval counts as resolved.
+_EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to its largest contribution
+# Ratio of a polynomial's last term to the matrices below which the interval is resolved.
 _RESOLVED = 1e-13
-# Size of the last term, over the matrices, that may be rounding alone, as for damping by modes.
+# Ratio of the last term to the matrices below which it may be rounding, as with modal damping.
 _ROUNDED = 1e-10
 # Ratio of the last term of a narrower interval to that of a wider one, above which it is rounding.
 _CONVERGES = 0.1
@@ -269,18 +271,18 @@ _Pencils: TypeAlias = tuple[SteadyPencil, SteadyPencil]
 
 @dataclass(frozen=True)
 class Changes:
-    """Derivatives of the matrices of a model, and of its coarser one, by each of n numbers.
+    """Derivatives of the matrices of a model, and of its coarser model, by each of n numbers.
 
     Parameters
     ----------
     of : tuple of list of PencilChange
-        Changes of the model, and those of the coarser one.
+        Derivatives for the model, and for the coarser model.
     missed : list of PencilChange
-        Errors of the model's changes, as polynomials do not fully resolve the dependence on a number.
+        Errors of the model's derivatives, as polynomials do not fully resolve the dependence on a number.
     rounding : ndarray, shape (n,)
-        Rounding error of the changes, relative to the matrices [1 / unit of the number].
+        Rounding error of the derivatives, relative to the matrices [1 / unit of the number].
     refusals : tuple of str
-        Which numbers cannot change alone, and why: their derivatives are nan.
+        Numbers that cannot change alone, with the reason: their derivatives are nan.
     """
 
     of: tuple[list[PencilChange], list[PencilChange]]
@@ -289,9 +291,9 @@ class Changes:
     refusals: tuple[str, ...]
 
 
-@one_blas_thread()  # more threads would only wait for each other on small matrices
+@one_blas_thread()  # with small matrices, further threads only slow each other down
 def changes_of(model: Model, numbers: Sequence[SceneNumber]) -> Changes:
-    """Evaluate the equations of a model at some values around each number."""
+    """Evaluate the equations of a model at several values near each number."""
     fine, coarse, missed, rounding, refusals = [], [], [], [], []
     for number in numbers:
         try:
@@ -316,10 +318,10 @@ def changes_of(model: Model, numbers: Sequence[SceneNumber]) -> Changes:
 
 
 def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nearby[_Pencils]:
-    """Evaluate the equations in the widest interval about a number over which polynomials resolve them."""
+    """Evaluate the equations in the widest interval about a number in which polynomials resolve them."""
     before, best = np.inf, None
     for nearby in evaluate_nearby(number, evaluate):
-        # The last term of each matrix's polynomial, at its largest in the interval, relative to the matrix.
+        # The last term of each matrix's polynomial, at its maximum in the interval, relative to the matrix.
         last, whole = _last(nearby), nearby.values[0][0]
         pairs = ((getattr(last, f.name), getattr(whole, f.name)) for f in fields(last))
         share = max(_largest(part) * nearby.width / (_largest(matrix) or 1.0) for part, matrix in pairs)
@@ -342,15 +344,15 @@ def _largest(matrix: np.ndarray) -> float:
 
 
 def _pencils(model: Model, name: str, value: float) -> _Pencils:
-    """Return the equations of a model and of its coarser one, with another value of a number."""
+    """Return the equations of a model and of its coarser model, for another value of a number."""
     scene = with_numbers(model.scene, {name: value})
     if len(scene.beam.breakpoints) != len(model.scene.beam.breakpoints):
-        bound = "a point mass or spring would leave the tip, or the jump of the section, where it is"
-        raise InvalidValue(name, value, bound, "place it at a small distance from there")
+        bound = "a point mass or spring would move away from the tip, or from a jump of the section"
+        raise InvalidValue(name, value, bound, "place the point at a small distance from there")
     nearby = Model(scene, model.discretization)
     if nearby.equations.size != model.equations.size:
         remedy = 'give discretization="fem", or a Ritz of few functions'
-        bound = "its number of independent functions is not the same for nearby designs"
+        bound = "the number of independent functions differs between nearby designs"
         raise NoModelAnswer(f"discretization = {model.discretization}: {bound}; {remedy}")
     return steady_pencils(nearby, model.equations.coarse)
 
@@ -358,7 +360,7 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
 def steady_pencils(model: Model, coarse: np.ndarray | None) -> tuple[SteadyPencil, SteadyPencil]:
     """Return the equations of a model at steady speeds, and those of its coarser model.
 
-    The coarser model uses the functions with the indices `coarse`; None if it has functions of its own.
+    The coarser model uses the functions with the indices `coarse`; None if it has different functions.
     """
     fine = model.equations.steady()
     return fine, model.coarser.equations.steady() if coarse is None else fine.part(coarse)

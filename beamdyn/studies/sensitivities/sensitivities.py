@@ -1,7 +1,7 @@
-"""Sensitivities of frequencies, of the critical speed and of resonance speeds to the numbers of a scene.
+"""Sensitivities of frequencies, critical speed and resonance speeds to the numbers of a scene.
 
-The eigenproblem is perturbed to first order (`perturbation`): no eigenvalues are differenced.  Errors are
-estimated as those of frequencies are, by the same derivatives of the coarser model.
+Derivatives follow from first-order perturbation of the eigenproblem: no eigenvalues are differenced. Errors
+are estimated as for frequencies, from the same derivatives of the coarser model.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from beamdyn.studies.sensitivities.changes import (
 )
 from beamdyn.studies.sensitivities.sensitivity_result import Sensitivities
 
-_SAME = 1e-6  # relative distance below which eigenvalues count as equal, so that modes cross
+_SAME = 1e-6  # relative distance below which eigenvalues are equal, so that modes cross
 _HZ = 1 / (2 * np.pi)
 
 
@@ -99,12 +99,12 @@ def frequency_sensitivities(
     if names is None or SPEED in names:
         numbers = (*numbers, sensitivity_result.SceneNumber(SPEED, "rad/s", found.speed, 0.0))
         rate, other = (np.imag(each.speed_derivatives()) * _HZ for each in both)
-        with np.errstate(invalid="ignore"):  # the frequency is 0 where a mode does not vibrate
+        with np.errstate(invalid="ignore"):  # the frequency is 0 if a mode does not vibrate
             of_shapes = found.error * fine.scales() * _HZ / (found.speed or np.inf)
         derivative = np.vstack([derivative, rate])
         error = np.vstack([error, np.abs(rate - other) + of_shapes])
     lost, words = _without_derivative(found)
-    # The derivative is proportional to the frequency, and has its relative error besides.
+    # The derivative is proportional to the frequency, and so also has the frequency's relative error.
     error += np.where(lost, 0.0, found.error) * np.abs(derivative)
     derivative[:, lost], error[:, lost] = np.nan, np.inf
     answer = (f"mode {k}" for k in range(1, modes + 1)), "Hz", found.frequency
@@ -134,12 +134,12 @@ def critical_speed_sensitivities(
     Returns
     -------
     Sensitivities
-        Derivatives of one answer [rad/s].
+        Derivatives of the critical speed [rad/s].
 
     Raises
     ------
     ValueError
-        If an argument is wrong, or there is no critical speed, or none is known.
+        If an argument is wrong, or if there is no critical speed or it is not known.
 
     References
     ----------
@@ -178,7 +178,7 @@ def crossing_sensitivities(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> Sensitivities:
-    """Compute the derivatives of resonance speeds by the numbers of a scene; its motion is not varied.
+    """Compute the derivatives of resonance speeds by the numbers of a scene, except those of the motion.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def crossing_sensitivities(
     Returns
     -------
     Sensitivities
-        Derivatives of the speed of each crossing [rad/s], in their order.
+        Derivatives of the speed of each crossing [rad/s], in the order of `resonance_speeds`.
 
     Raises
     ------
@@ -254,7 +254,7 @@ def _result(
 
 
 def _linear(model: Model) -> Model:
-    """Return the model; refuse one with large deflection."""
+    """Return the model; raise an error for large deflection."""
     if model.scene.physics.large_deflection:
         bound = "sensitivities are those of the linear equations"
         remedy = Words("leave it out, or use ", Named("bd.study", "beamdyn study"))
@@ -263,7 +263,7 @@ def _linear(model: Model) -> Model:
 
 
 def _modes_of(model: Model, speed: float, modes: int) -> tuple[PerturbedModes, PerturbedModes]:
-    """Solve for the modes of a model and of its coarser one."""
+    """Compute the modes of a model and of its coarser model."""
     fine, coarse = (
         PerturbedModes.of(pencil, speed, found.eigenvalue[0], found.vector[0])
         for pencil, solver in zip(_pencils(model), (model.solver, model.coarse_solver), strict=True)
@@ -283,20 +283,20 @@ def _compared(
     part: Callable[[np.ndarray], np.ndarray] = np.real,
     unit: float = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute derivatives of k answers by n numbers and their errors, by both models: shape (n, k).
+    """Compute derivatives of k results by n numbers and their errors, from both models: shape (n, k).
 
     Parameters
     ----------
     changes : Changes
-        Changes of the matrices by n numbers.
+        Derivatives of the matrices by n numbers.
     rate : callable
-        Function that gives the change of the answers of the model (0) or the coarser one (1) for changed
-        matrices.
+        Function that computes the derivatives of the results of the model (0) or the coarser one (1) from
+        those of the matrices.
     scale : ndarray, shape (k,), or float
-        By how much a relative change of the matrices changes the answers.
+        Change of the results per relative change of the matrices.
     part, unit : callable, float
-        Function that takes the answer's part of a change, such as the imaginary part, and unit of the
-        answers.
+        Function that extracts the result from a complex derivative, such as its imaginary part, and the unit
+        of the results.
     """
     shape, of_models = (len(changes.rounding), np.size(scale)), (*enumerate(changes.of), (0, changes.missed))
     fine, coarse, missed = (
@@ -307,7 +307,7 @@ def _compared(
 
 
 def _without_derivative(found: Modes) -> tuple[np.ndarray, list[str]]:
-    """Return which modes (k,) have no derivative, with sentences that say why."""
+    """Return which modes (k,) have no derivative, with sentences that explain why."""
     s, words = found.eigenvalue, []
     apart = np.abs(s[:, None] - s) + np.diag(np.full(len(s), np.inf))
     crossing = (apart <= _SAME * np.abs(s)).any(axis=1) if len(s) > 1 else np.zeros(len(s), dtype=bool)
@@ -326,7 +326,7 @@ def _crossing_derivatives(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Compute the derivatives of the speed of a crossing by n numbers, and their errors, shape (n, 1).
 
-    A line m omega meets the sum of the angular frequencies lambda of one mode or two:
+    At a crossing, a line m omega meets the sum of the angular frequencies lambda of one mode or two modes:
     d omega = -sum d lambda / (sum d lambda / d omega - m).
     """
     both = _modes_of(model, crossing.speed, modes)
@@ -340,7 +340,7 @@ def _crossing_derivatives(
 
 
 def _sums(angular: np.ndarray, crossing: Crossing) -> np.ndarray:
-    """Count how often each mode occurs in the sum of frequencies that the line meets, shape (k,)."""
+    """Count the occurrences of each mode in the sum of frequencies that the line meets, shape (k,)."""
     first = 2 * np.pi * crossing.frequency
     sums = np.zeros(len(angular))
     sums[np.abs(angular - first).argmin()] += 1

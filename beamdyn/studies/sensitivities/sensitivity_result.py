@@ -1,4 +1,4 @@
-"""The result of a sensitivity analysis: derivatives of answers by the numbers of the scene."""
+"""Result of a sensitivity analysis: derivatives of results by the numbers of the scene."""
 
 from __future__ import annotations
 
@@ -25,35 +25,36 @@ from beamdyn.scene.profile import mean
 from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
 from beamdyn.scene.scene import Scene
 
-_TOUCHING = 1e-6  # distance between two points, over the length, at which they count as touching
-_STEP = 0.01  # step of a number, as a share of its value or of the usual size of its kind
-_FURTHER = 2  # factor of the number of modes of another scene, so that each mode finds its match
-_SAME = 0.2  # relative distance up to which answers of two scenes may be the same one
-_NEAR = 0.8  # least similarity of a name that is suggested for a mistyped one: many names begin alike
+_TOUCHING = 1e-6  # distance between two points, over the length, below which they touch
+_STEP = 0.01  # step of a number, as a fraction of its value or of the typical size of its kind
+_FURTHER = 2  # factor of the number of modes of another scene, so that a matching mode is found for each
+_SAME = 0.2  # relative distance below which results of two scenes may belong to the same mode
+# Smallest similarity of a name that is proposed for a mistyped one: many names have the same beginning.
+_NEAR = 0.8
 _ACROSS = "beam.tip.offset_across"
 _OF_OFFSETS = tuple(f"beam.{name}" for name in OFFSETS)
-_COUPLING = "harvester.d31", "harvester.e31"  # coupling constants, which may be negative
+_COUPLING = "harvester.d31", "harvester.e31"  # electromechanical coupling constants, which may be negative
 _ENDS = "harvester.start", "harvester.end"
 _OF_LOAD = "harvester.resistance", "harvester.strain_limit"  # numbers without effect on natural modes
 
 
 @dataclass(frozen=True)
 class SceneNumber:
-    """A number of a scene, with its value and the step by which it is varied.
+    """Number of a scene, with its value and the step for its derivative.
 
     Parameters
     ----------
     name : str
-        Its name in scene files, such as "beam.thickness"; "beam.scale.mass_per_length" is a factor of a
-        property that varies along the beam.
+        Name of the number in scene files, such as "beam.thickness"; "beam.scale.mass_per_length" is a factor
+        of a property that varies along the beam.
     unit : str
-        Its SI unit.
+        SI unit of the number.
     value : float
-        Its value [unit].
+        Value of the number [unit].
     step : float
         Largest change within which the equations are evaluated for a derivative [unit].
     least : float
-        Smallest value that it may have [unit].
+        Smallest allowed value [unit].
 
     Examples
     --------
@@ -71,7 +72,7 @@ class SceneNumber:
 
 
 def check_names(inputs: object) -> tuple[str, ...] | None:
-    """Check the names of numbers that an analysis was given; None stands for all numbers."""
+    """Check the names of numbers given to an analysis; None means all numbers."""
     if inputs is None:
         return None
     good = isinstance(inputs, list | tuple) and inputs and all(isinstance(name, str) for name in inputs)
@@ -84,7 +85,7 @@ def check_names(inputs: object) -> tuple[str, ...] | None:
 def numbers_of(
     scene: Scene, names: Sequence[str] | None = None, argument: str = "inputs"
 ) -> tuple[SceneNumber, ...]:
-    """Return the numbers of a scene: all, or those that an argument names.
+    """Return the numbers of a scene: all, or those with the given names.
 
     Raises
     ------
@@ -96,7 +97,7 @@ def numbers_of(
         return tuple(found.values())
     for name in names:
         if name == "speed":
-            bound = "a critical or resonance speed is an answer, and no input"
+            bound = "a critical or resonance speed is a result, not an input"
             raise InvalidValue(argument, name, bound, "leave it out")
         if name not in found:
             near = difflib.get_close_matches(str(name), found, n=1, cutoff=_NEAR)
@@ -137,7 +138,7 @@ def _has_constant_section(scene: Scene) -> bool:
 
 
 def _matters(scene: Scene, path: str, value: float) -> bool:
-    """Tell whether frequencies change with a number: not if it is infinite, absent or not modelled."""
+    """Return whether frequencies depend on a number: not if it is infinite, absent or not modelled."""
     table, _, key = path.partition(".")
     if (
         table in ("motion", "tip_load", SPEED)
@@ -162,7 +163,7 @@ def _matters(scene: Scene, path: str, value: float) -> bool:
 
 
 def _number(scene: Scene, path: str, value: float) -> SceneNumber:
-    """Make the number of a path, with a step of 1 % of its value, or of the beam's size if that is larger."""
+    """Build the number of a path, with a step of 1 % of its value, or of the beam's size if larger."""
     unit, beam, step = unit_of(path) or "", scene.beam, _STEP * abs(value)
     if unit == "rad" or path == "beam.poissons_ratio":
         return SceneNumber(path, unit, value, _STEP)
@@ -178,7 +179,7 @@ def _number(scene: Scene, path: str, value: float) -> SceneNumber:
 
 
 def _room_of(beam: Beam, path: str) -> float:
-    """Return how far [m] a point may move along the beam for a derivative; 0 if another touches it."""
+    """Return how far [m] a point may move along the beam for a derivative; 0 if another point touches it."""
     field = "point_masses" if "point_mass" in path else "point_springs"
     points, k = getattr(beam, field), int(path.partition("[")[2].partition("]")[0])
     others = replace(beam, **{field: [*points[:k], *points[k + 1 :]]}).breakpoints
@@ -186,35 +187,35 @@ def _room_of(beam: Beam, path: str) -> float:
     return min(_STEP / 10 * beam.length, apart / 3) if apart > _TOUCHING * beam.length else 0.0
 
 
-# The result of a sensitivity analysis -------------------------------------------------------------
+# Result of a sensitivity analysis --------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Sensitivities(JudgedByRepeating):
-    """Derivatives of k answers by n numbers of a scene.
+    """Derivatives of k results by n numbers of a scene.
 
-    `model_error` (k,) and `left_out`, computed when asked for, are what the physics left out would change in
-    the derivative of each answer by the number that matters most to it.
+    `model_error` (k,) and `left_out`, computed at their first use, estimate how much neglected physical
+    effects change the derivative of each result by its most important number.
 
     Parameters
     ----------
     answers : tuple of str
-        Name of each answer, such as "mode 1", shape (k,).
+        Name of each result, such as "mode 1", shape (k,).
     unit : str
-        Unit of the answers.
+        Unit of the results.
     value : ndarray, shape (k,)
-        The answers [unit].
+        Values of the results [unit].
     inputs : tuple of SceneNumber
         The numbers, each with its `name`, `unit` and `value`, shape (n,).
     derivative : ndarray, shape (n, k)
-        Derivative of each answer by each number [unit / unit of the number]; nan where there is none, as
-        `warnings` say.
+        Derivative of each result by each number [unit / unit of the number]; nan if there is none (see
+        `warnings`).
     error : ndarray, shape (n, k)
         Estimated absolute error of the derivative [same unit].
     warnings : tuple of str
-        Which derivatives are missing, and why; what limits the answers.
+        Missing derivatives with the reason; limitations of the result.
     provenance : Provenance
-        How they were found.
+        How the result was computed.
 
     Examples
     --------
@@ -236,7 +237,7 @@ class Sensitivities(JudgedByRepeating):
     speed: float = field(default=0.0, repr=False, metadata=ADDED_LATER)
 
     def headline(self) -> Iterator[str]:
-        """Yield numbers of answers and inputs, and the most important one, parts of a one-line summary.
+        """Yield numbers of results and inputs, and the most important input, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -249,9 +250,9 @@ class Sensitivities(JudgedByRepeating):
 
     @property
     def relative(self) -> np.ndarray:
-        """Relative change of each answer over that of the number, shape (n, k): 3 where it grows as its cube.
+        """Relative change of each result over that of the number, (n, k): 3 if it is as the number cubed.
 
-        It is 0 where the number is 0.
+        It is 0 if the number is 0.
         """
         return self.derivative * np.array([each.value for each in self.inputs])[:, None] / self.value
 
@@ -261,20 +262,20 @@ class Sensitivities(JudgedByRepeating):
 
     @property
     def most_important(self) -> tuple[str, ...]:
-        """Name of the number that matters most to each answer: shape (k,)."""
+        """Name of the number with the largest relative effect on each result: shape (k,)."""
         size = np.nan_to_num(np.abs(self.relative), nan=-1.0)
         return tuple(self.inputs[row].name for row in size.argmax(axis=0).tolist())
 
     def judged(self, found: Sensitivities) -> np.ndarray:
-        """Return derivatives (k,) by the number that matters most to each answer: their error is stated."""
+        """Return derivatives (k,) by each result's most important number: their error is stated."""
         rows = {each.name: i for i, each in enumerate(found.inputs)}
         most = zip(self._same_answers(found).tolist(), self.most_important, strict=True)
         return np.array([np.nan if k < 0 else found.derivative[rows[name], k] for k, name in most])
 
     def _same_answers(self, found: Sensitivities) -> np.ndarray:
-        """Return the index (k,) of the nearest answer of another scene's result for each answer.
+        """Return, for each result, the index (k,) of the nearest result in another scene's analysis.
 
-        The index is -1 if none is near.  Modes that an effect adds may lie between the others.
+        The index is -1 if none is near.  Modes that an effect adds may be between the others.
         """
         apart = np.abs(found.value / self.value[:, None] - 1)
         near = np.where(np.isfinite(apart), np.minimum(apart, 1.0), 1.0)
@@ -285,13 +286,13 @@ class Sensitivities(JudgedByRepeating):
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """Arguments of the analysis by which it is repeated: the numbers that matter most, and more modes."""
+        """Arguments with which the analysis is repeated: the most important numbers, and more modes."""
         numbers = {"inputs": [*dict.fromkeys(self.most_important)]}
         return numbers | ({"modes": _FURTHER * len(self.answers)} if self.unit == "Hz" else {})
 
     @property
     def bending_speed(self) -> float:
-        """Speed [rad/s] at which large deflection is judged: of the frequencies, else the largest answer."""
+        """Speed [rad/s] at which large deflection is judged: of the frequencies, or the largest result."""
         return self.speed if self.unit == "Hz" else float(np.nanmax(self.value, initial=0.0))
 
     def by(self, name: str) -> np.ndarray:
@@ -308,6 +309,6 @@ class Sensitivities(JudgedByRepeating):
         return self.derivative[names.index(name)]
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the relative change of each answer over that of each number, the most important on top."""
+        """Draw the relative change of each result over that of each number, the most important on top."""
         names = [InputName(each.name).on_form for each in self.inputs]
         return plot_bars(names, self.relative, self.answers, "relative change over that of the number", ax)

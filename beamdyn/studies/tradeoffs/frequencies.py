@@ -1,4 +1,4 @@
-"""Work-precision diagrams of natural frequencies: error over time for bases and elements of many sizes."""
+"""Work-precision diagrams of natural frequencies: error over computing time for bases and elements."""
 
 from __future__ import annotations
 
@@ -30,23 +30,23 @@ from beamdyn.studies.tradeoffs.measurements import Diagram, Family, TimedCase, m
 Mesh = Literal["graded", "uniform"]
 
 _LEGENDRE = (*range(1, 13), 14, 16, 18, 20, 24, 28, 32, 40)
-_MOST_ACROSS = 14  # largest number of functions on a segment if there are functions across the width, too
+_MOST_ACROSS = 14  # largest number of functions on a segment, if there also are functions across the width
 _EIGENFUNCTIONS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _ELEMENTS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _TOLERANCES = tuple(10.0**-k for k in range(1, 13))
 _REFERENCES = (40, 80, 160)  # numbers of functions of the reference, on all segments together, tried in turn
-# Numbers of functions if there are others across the width, whose error never reaches `_RESOLVED`.
+# Numbers of functions with further functions across the width, for which the error never reaches `_RESOLVED`.
 _REFERENCE_ACROSS = (60,)
-_RESOLVED = 1e-10  # relative error at which a reference is accurate enough
+_RESOLVED = 1e-10  # relative error below which a reference is accurate enough
 
 
-@one_blas_thread()  # more threads would only wait for each other on small matrices
+@one_blas_thread()  # with small matrices, further threads only slow each other down
 def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 10.0) -> Diagram:
-    """Measure error against time of the natural frequencies at one speed or a batch of speeds.
+    """Measure error against computing time of the natural frequencies at one or several speeds.
 
-    The time of a basis is that of its matrices and eigenvalues; extrapolated finite elements are solved
-    twice, also with half the elements; ``tolerance=`` is the time of the whole call, which also chooses
-    the basis and estimates the error.
+    The time of a basis is that for matrices and eigenvalues; extrapolated finite elements are solved twice,
+    the second time with half the elements; for ``tolerance=`` it is the time of the whole call, which also
+    chooses the basis and estimates the error.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def solve_reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedMo
 def _solve_by_ritz(scene: Scene, speeds: np.ndarray, modes: int, functions: int) -> EstimatedModes:
     """Compute modes and their errors with a number of Ritz functions on each segment.
 
-    The number is raised so far that the coarser basis, which gives the errors, has all modes, too.
+    The number is increased until the coarser basis, which gives the errors, has all modes, too.
     """
     return solve_with_error(Model(scene, Ritz(max(functions, 12, 5 * modes // 4 + 3))), speeds, modes)
 
@@ -117,7 +117,7 @@ def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str
     """Compare the reference with the guaranteed bounds at a speed, and describe the outcome."""
     try:
         bounds = frequency_bounds(exact.model.scene, speed, modes)
-    except ValueError:  # bounds cover neither stretch nor damping
+    except ValueError:  # bounds are not available with stretch or damping
         return "the guaranteed bounds do not cover this model"
     s = exact.eigen.eigenvalue[-1]
     squared = np.sort(-np.real(s**2))
@@ -138,7 +138,7 @@ def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
     meshes: tuple[Mesh, ...] = ("graded", "uniform")
     for mesh in meshes:
         yield from _fem_pair(scene, speeds, modes, mesh, segments)
-    # With stretch, modes may cross: a tracked locus differs from the lowest modes.
+    # With stretch, modes may cross: a tracked locus then differs from the lowest modes.
     if not scene.physics.stretch:
         cases = (TimedCase(f"tolerance={t:.0e}", t, _full_call(scene, speeds, modes, t)) for t in _TOLERANCES)
         yield Family("tolerance=", tuple(cases))
@@ -151,7 +151,7 @@ def _segments(scene: Scene) -> int:
 def _basis_settings(
     scene: Scene, speeds: np.ndarray, modes: int, basis: Any, sizes: Sequence[int], segments: int
 ) -> tuple[TimedCase, ...]:
-    """Return computations by a Ritz basis, with few functions first; Legendre functions count per segment."""
+    """Return functions that compute with Ritz bases of several sizes (Legendre: on each segment)."""
     per_segment = segments if basis == "legendre" else 1
     each = "functions a segment" if per_segment > 1 else "functions"
     least, most = -(-modes // per_segment), _MOST_ACROSS if scene.models_width else inf
@@ -177,14 +177,14 @@ def _fem_pair(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments
 def _solve(
     scene: Scene, discretization: Discretization, speeds: np.ndarray, modes: int
 ) -> Callable[[float], Any]:
-    """Return the computation of the eigenvalues by a discretization."""
+    """Return a function that computes the eigenvalues with a discretization."""
     return lambda deadline: Model(scene, discretization).solver.eigenvalues(speeds, modes)
 
 
 def _extrapolate(
     scene: Scene, discretization: Discretization, speeds: np.ndarray, modes: int
 ) -> Callable[[float], Any]:
-    """Return the computation of eigenvalues by Richardson extrapolation from half the elements."""
+    """Return a function that computes eigenvalues by Richardson extrapolation from half the elements."""
     fine, coarse = (_solve(scene, d, speeds, modes) for d in (discretization, discretization.coarser()))
     gain = 2 ** (discretization.order or 4) - 1
 
@@ -196,34 +196,35 @@ def _extrapolate(
 
 
 def _full_call(scene: Scene, speeds: np.ndarray, modes: int, tolerance: float) -> Callable[[float], Any]:
-    """Return the whole call of `natural_modes` or `frequency_locus` with a tolerance."""
+    """Return a function that calls `natural_modes` or `frequency_locus` with a tolerance."""
     if len(speeds) == 1:
         return lambda deadline: natural_modes(scene, speeds[0], modes, tolerance=tolerance).eigenvalue[None]
     return lambda deadline: frequency_locus(scene, speeds, modes, tolerance=tolerance).eigenvalue
 
 
-# Error against time with the error of the model included ------------------------------------------
+# Error against time, including the model error ----------------------------------------------------
 
 
 AS_GIVEN, ALL = "as given", "all of these"
 _FUNCTIONS = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20)
 _NOTHING = 1e-10  # relative change of the frequencies below which an effect is not measured
-_BETTER = 0.5  # fraction of the model error below which more physics must reduce it to count as a gain
-_COMPARED = (STRETCH.name,)  # effects that are modelled only for comparisons with papers
+# Fraction of the model error below which more physics must reduce it to count as an improvement.
+_BETTER = 0.5
+_COMPARED = (STRETCH.name,)  # effects that are modelled only for comparison with papers
 
 
 @dataclass(frozen=True)
 class Choice:
-    """One choice of physics, solved with errors far below those of the model.
+    """One choice of physics, solved with numerical errors far below the model error.
 
     Parameters
     ----------
     name : str
-        The effects that it adds.
+        Names of the added effects.
     scene : Scene
         The scene with these effects.
     solution : EstimatedModes
-        Its modes at the speed.
+        Modes of the scene at the speed.
     """
 
     name: str
@@ -238,7 +239,7 @@ class Choice:
 
 @one_blas_thread()
 def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 10.0) -> Diagram:
-    """Measure error, including that of the model, against time of the natural frequencies.
+    """Measure error, including the model error, against computing time of the natural frequencies.
 
     The reference has the largest set of effects that can be combined: those of straight beams, or large
     deflection and rotary inertia, whichever changes the frequencies more.
@@ -250,7 +251,7 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
     speed : float
         Speed [rad/s].
     modes : int
-        Number of the lowest modes of the scene as it is given.
+        Number of the lowest modes of the given scene.
     budget : float
         Time for all measurements [s].
 
@@ -288,7 +289,7 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
 
 
 def pick(found: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return the frequencies nearest to those wanted (m,), each used once."""
+    """Return the frequencies nearest to the requested ones (m,), each used once."""
     order = assign(np.abs(np.log(wanted[:, None] / found[None, :])))
     return found[order]
 
@@ -303,7 +304,7 @@ def _names(choices: list[Choice]) -> str:
 def _list_choices(
     scene: Scene, speed: float, modes: int, given: Choice
 ) -> tuple[list[Choice], tuple[str, ...]]:
-    """List choices of physics: effects one by one, then together; and words for those that are missing."""
+    """List choices of physics: effects one by one, then together; and descriptions of missing effects."""
     additions, missing, _ = list_effects(scene)
     scenes = {a.name: a.scene for a in additions if a.name not in _COMPARED}
     not_known = [f"{name}: {why}" for name, why in missing.items() if name not in _COMPARED]
@@ -314,7 +315,7 @@ def _list_choices(
             not_known.append(f"{LARGE_DEFLECTION.name}: {error}")
 
     def change(choice: Choice) -> float:
-        """Compute the largest relative change of the frequencies by a choice."""
+        """Compute the largest relative change of the frequencies by a choice of physics."""
         wanted = given.frequency[:modes]
         return float(np.abs(pick(choice.frequency, wanted) / wanted - 1).max())
 
@@ -334,7 +335,7 @@ def _list_choices(
 
 
 def _combined(scene: Scene, choices: list[Choice]) -> Scene | None:
-    """Return the scene with all effects of several choices; None if no beam has the data for all."""
+    """Return the scene with all effects of several choices; None if the beam lacks data for them."""
     added = {}
     for choice in choices:
         physics = choice.scene.physics
@@ -354,8 +355,8 @@ def _solve_choice(name: str, scene: Scene, speed: float, modes: int) -> Choice:
 
 
 def _count(scene: Scene, modes: int) -> int:
-    """Return the number of lowest modes to compute, among which the wanted ones are.
+    """Return the number of lowest modes to compute in order to include the requested ones.
 
-    Modes of a second plane of bending may lie between them.
+    Modes of a second plane of bending may be between them.
     """
     return 2 * modes + 2 if scene.physics.planes == 2 else modes

@@ -1,4 +1,4 @@
-"""Measurements of error and time: their Pareto front, the cost of a digit, and how they are taken."""
+"""Measurements of error and computing time: Pareto front, cost of a digit, and the measuring procedure."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ _MOST_DIGITS = 14  # largest number of digits in `cost_per_digit`; double precis
 
 @dataclass(frozen=True)
 class Measurement:
-    """Error and time of one setting.
+    """Error and computing time of one setting.
 
     Parameters
     ----------
     family : str
-        A basis, a kind of element, an integrator.
+        Name of a basis, an element type or an integrator.
     setting : str
-        Setting of the family, in words.
+        Setting within the family, in words.
     size : float
         Varied number: functions, elements, modes, harmonics or a tolerance.
     error : float
-        Relative error of the result; inf where the result is not a number.
+        Relative error of the result; inf if the result is not a number.
     time : float
         Shortest processor time of several runs, in one thread [s].
     scatter : float
@@ -51,7 +51,7 @@ class Measurement:
     scatter: float = field(default=0.0, metadata=ADDED_LATER)
 
     def ties_with(self, other: Measurement) -> bool:
-        """Tell whether the times of both differ by at most twice the scatter of either."""
+        """Return whether the times of two measurements differ by at most twice the larger scatter."""
         return abs(self.time - other.time) <= _TIE * max(self.scatter, other.scatter)
 
 
@@ -70,7 +70,7 @@ class Digit:
     ratio : float
         Ratio of the time to that of one digit less; nan for the first digit.
     ties : tuple of str
-        Other settings within this error whose time is not told from it: by at most twice the scatter.
+        Other settings within this error whose times differ by at most twice the scatter.
     """
 
     error: float
@@ -129,7 +129,7 @@ def cost_per_digit(measurements: Sequence[Measurement]) -> tuple[Digit, ...]:
 
 @dataclass(frozen=True)
 class Diagram(Result):
-    """Work-precision diagram: error against time of all settings that compute the same result.
+    """Work-precision diagram: error against computing time of all settings that compute the same result.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ class Diagram(Result):
     skipped: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """Yield title, number of measurements and resolved digits, parts of a one-line summary.
+        """Yield title, number of measurements and resolved digits, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -179,7 +179,7 @@ class Diagram(Result):
         measurements: Sequence[Measurement],
         skipped: Sequence[str] = (),
     ) -> Diagram:
-        """Make a diagram of measurements, with their front and cost per digit."""
+        """Build a diagram from measurements, with the Pareto front and the cost per digit."""
         front, per_digit = pareto_front(measurements), cost_per_digit(measurements)
         return cls(
             title, error_of, reference, resolved, tuple(measurements), front, per_digit, tuple(skipped)
@@ -187,7 +187,7 @@ class Diagram(Result):
 
     @property
     def summary(self) -> str:
-        """Describe the front in one line: families and settings by ascending time."""
+        """Describe the Pareto front in one line: families and settings by ascending time."""
         parts = []
         for family, members in groupby(self.front, key=lambda m: m.family):
             settings = [m.setting for m in members]
@@ -195,7 +195,7 @@ class Diagram(Result):
         return ", then ".join(parts)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw error against time, one line per family, and the front."""
+        """Draw error against time, one line per family, and the Pareto front."""
         lines: dict[str, list[tuple[float, float]]] = {}
         for m in self.measurements:
             lines.setdefault(m.family, []).append((m.time, m.error))
@@ -206,11 +206,11 @@ class Diagram(Result):
 # Measurement of error and time of settings within a time budget -----------------------------------
 
 
-RUNS = 7  # number of runs of a setting; the shortest counts, as other programs can only add time
-_REPEATS = 0.4  # share of a setting's part of the budget that is for repetitions
-# Share of the budget for runs in turns; ratio to the shortest time, below which settings run again.
+RUNS = 7  # number of runs of a setting; the shortest counts, as other processes can only add time
+_REPEATS = 0.4  # fraction of a setting's part of the budget that is used for repetitions
+# Fraction of the budget for alternating runs; ratio to the shortest time, below which settings run again.
 _AGAIN, _NEAR = 0.2, 1.3
-# Number of scatters within which times count as equal; assumed relative scatter of a single run.
+# Number of scatters within which times are equal; assumed relative scatter of a single run.
 _TIE, _SCATTER_OF_ONE = 2.0, 0.1
 
 
@@ -225,8 +225,8 @@ class TimedCase:
     size : float
         Varied number.
     run : callable
-        Computes the result; its argument is the deadline on the clock `perf_counter` [s], past which
-        it may raise a TimeoutError that says how far it came.
+        Function that computes the result; its argument is the deadline on the clock `perf_counter` [s], after
+        which it may raise a TimeoutError that states how far it got.
     """
 
     name: str
@@ -236,7 +236,7 @@ class TimedCase:
 
 @dataclass(frozen=True)
 class Family:
-    """Settings of one basis, kind of element or integrator, the cheapest first.
+    """Settings of one basis, element type or integrator, the cheapest first.
 
     Parameters
     ----------
@@ -253,16 +253,16 @@ class Family:
 def measure_families(
     families: Sequence[Family], error: Callable[[Any], float], resolved: float, budget: float
 ) -> tuple[list[Measurement], list[str]]:
-    """Measure all settings of all families, each family with an equal share of the remaining budget.
+    """Measure all settings of all families; each family gets an equal part of the remaining budget.
 
     Parameters
     ----------
     families : sequence of Family
         Families to measure.
     error : callable
-        Computes the relative error of a result.
+        Function that computes the relative error of a result.
     resolved : float
-        Lower bound of the errors: that of the reference.
+        Lower bound of the errors: the error of the reference.
     budget : float
         Time for all measurements [s].
 
@@ -271,7 +271,7 @@ def measure_families(
     list of Measurement
         Measurements, one per measured setting.
     list of str
-        Sentences on the settings that were left out, and why.
+        Sentences about the settings that were omitted, with the reason.
     """
     end = perf_counter() + budget
     timed: list[_Timed] = []
@@ -287,7 +287,7 @@ def measure_families(
 
 @dataclass(frozen=True)
 class _Timed:
-    """A setting of a family, with the error of its result and the processor times of its runs [s]."""
+    """Setting of a family, with the error of its result and the processor times of its runs [s]."""
 
     family: str
     setting: TimedCase
@@ -295,16 +295,16 @@ class _Timed:
     times: list[float]
 
     def measurement(self) -> Measurement:
-        """Return the setting's measurement: its shortest time, with the scatter."""
+        """Return the measurement of the setting: the shortest time, with the scatter."""
         time = min(self.times)
         scatter = median(self.times) - time if len(self.times) > 1 else _SCATTER_OF_ONE * time
         return Measurement(self.family, self.setting.name, self.setting.size, self.error, time, scatter)
 
 
 def _repeat_in_turns(timed: Sequence[_Timed], end: float) -> None:
-    """Repeat, in turns until a time [s], the settings that may be the cheapest for some number of digits.
+    """Repeat, in alternation until a time [s], the settings that may be the cheapest for a number of digits.
 
-    As the speed of a machine drifts, settings timed long after each other cannot be compared closely.
+    As the speed of a computer drifts, settings that are timed long after each other cannot be compared.
     """
     limits = [10.0**-k for k in range(1, _MOST_DIGITS + 1)]
     cheapest = {e: min((min(t.times) for t in timed if t.error <= e), default=nan) for e in limits}
@@ -321,10 +321,10 @@ def _repeat_in_turns(timed: Sequence[_Timed], end: float) -> None:
 def _measure_family(
     family: Family, error: Callable[[Any], float], resolved: float, share: float
 ) -> tuple[list[_Timed], str]:
-    """Measure the settings of a family; return them with their times, and why the rest was left out.
+    """Measure the settings of a family; return them with their times, and why the others were omitted.
 
-    Whether the next setting still fits is told by the processor time of the last one: a moment in which
-    the machine did something else would look like a slow setting, and end the family too early.
+    Whether the next setting fits in the budget is estimated from the processor time of the last one: with
+    elapsed time, an interruption by other processes would end the family too early.
     """
     start, last = perf_counter(), 0.0
     timed: list[_Timed] = []
@@ -347,7 +347,7 @@ def _measure_family(
 def _time_runs(setting: TimedCase, rest: float, spare: float) -> tuple[Any, list[float]]:
     """Run a setting several times; return its result and the processor times [s].
 
-    Other programs hardly influence the processor time; all runs are in one thread.
+    Other processes hardly affect the processor time; all runs use one thread.
     """
     start = perf_counter()
     times: list[float] = []
@@ -360,5 +360,5 @@ def _time_runs(setting: TimedCase, rest: float, spare: float) -> tuple[Any, list
 
 
 def remaining_budget(budget: float, start: float) -> float:
-    """Return the budget [s] left after a reference that began at `start` [s], at least half of the whole."""
+    """Return the budget [s] left after a reference that began at `start` [s]; at least half the budget."""
     return max(budget / 2, budget - (perf_counter() - start))

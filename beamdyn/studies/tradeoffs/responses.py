@@ -32,8 +32,8 @@ _TOLERANCES = tuple(10.0**-k for k in range(1, 11))
 _STOCK_TOLERANCES = tuple(10.0**-k for k in range(2, 10))
 _TIGHTEST = 1e-11  # tolerance of the reference
 _CHECK_RTOL = 1e-11  # relative tolerance of DOP853, which checks the reference
-_CHECKED_PART = 0.05  # share of the reference's run, from its start, that is compared with DOP853
-_CHECK_SHARE = 0.15  # share of the budget that this check may take
+_CHECKED_PART = 0.05  # fraction of the reference's run, from its start, that is compared with DOP853
+_CHECK_SHARE = 0.15  # largest fraction of the budget for the comparison with DOP853
 _INSTANTS = 20_001  # number of times at which tip deflections are compared
 AT_REST, AT_ENDS = "modes at rest", "modes at the slowest and the fastest speed"
 _MODES = tuple(range(1, 11))
@@ -49,8 +49,8 @@ _STILL = "nothing moves the beam"
 def integrators_diagram(scene: Scene, t_end: float, modes: int = 3, budget: float = 30.0) -> Diagram:
     """Measure error against time of Gauss collocation and the methods of `solve_ivp`, over tolerances.
 
-    All integrate the same modal equations through `simulate`, whose right-hand side serves any scene: one
-    written by hand for a scene would be faster with the methods of `solve_ivp`.
+    All integrate the same modal equations through `simulate`, with a general right-hand side; one that is
+    written for a particular scene would be faster with the methods of `solve_ivp`.
 
     Parameters
     ----------
@@ -125,14 +125,14 @@ def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> 
 
 
 def _tip_error(exact: Transient, t_end: float) -> Callable[[Transient], float]:
-    """Return the error of a run: largest difference of tip deflections at common times, over the largest."""
+    """Compute the error of a run: largest difference of tip deflections at common times, over the largest."""
     t = np.linspace(0, t_end, _INSTANTS)
     true = exact.deflection(t)
     return lambda run: _relative(float(np.abs(run.deflection(t) - true).max()), exact.largest)
 
 
 def _relative(difference: float, largest: float) -> float:
-    """Return a difference over the largest deflection, or the difference itself if that is 0."""
+    """Divide a difference by the largest deflection, unless that is 0."""
     return difference / largest if largest else difference
 
 
@@ -158,7 +158,7 @@ def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) 
 
     def stock(method: str, rtol: float) -> Callable[[float], Any]:
         def run(deadline: float) -> Transient:
-            # Divergence is measured as an error, not warned of.
+            # Divergence is measured as an error, so no warning is needed.
             with np.errstate(over="ignore", invalid="ignore"):
                 options = {"discretization": basis, "events": _stop_after(deadline)}
                 return simulate(scene, t_end, modes, rtol, method, **options)
@@ -172,7 +172,7 @@ def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) 
 
 
 def _stop_after(deadline: float) -> Callable[[float, np.ndarray], float]:
-    """Make an event for `solve_ivp` that never occurs, but raises TimeoutError after a deadline."""
+    """Build an event for `solve_ivp` that never occurs, but raises TimeoutError after a deadline."""
 
     def event(t: float, y: np.ndarray) -> float:
         if perf_counter() > deadline:
@@ -189,14 +189,14 @@ _HARMONICS = tuple(range(6))
 _ALL_HARMONICS = 6  # number of harmonics of the reference
 _STEADY_MODES = tuple(range(1, 9))
 _ALL_STEADY_MODES = 12  # number of modes of the reference
-_PHASES = 24  # number of values of each phase at which tip deflections are compared
+_PHASES = 24  # number of values of each phase angle at which tip deflections are compared
 _ERROR_OF_STEADY = "the tip deflection, largest over phases and speeds, over the sum of the lines"
 _EPS = float(np.finfo(float).eps)
 
 
 @one_blas_thread()
 def harmonics_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 5.0) -> Diagram:
-    """Measure error against time of the steady response over the number of interactions.
+    """Measure error against time of the steady response over the harmonics (interaction order).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Trade-off between error and computing time of a scene, for all of its computations."""
+"""Trade-off between error and computing time, for all computations of a scene."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from beamdyn.studies.tradeoffs import responses
 from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram
 
-# Largest number of modes that the references resolve, also if there are as many of a second plane.
+# Largest number of modes that the references resolve, even with as many modes of a second plane.
 MOST_MODES = 20
-LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # limits of the budget [s]
+LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # limits of the time budget [s]
 _REMEDY = "the times of fewer tell how those of more grow"
-_DEFAULT_PERIODS = 100  # default length of a run after its start, in periods of the first mode
-_LONGEST_START = 900  # longest start, in periods of the first mode, that a default run includes
+_DEFAULT_PERIODS = 100  # default length of a transient after its start, in periods of the first mode
+_LONGEST_START = 900  # longest start, in periods of the first mode, that a default transient includes
 _LOCUS, _STEADY = 101, 50  # number of speeds of the locus, and of the steady response
 _SHARES = {
     "frequencies": 0.05,
@@ -54,11 +54,10 @@ class Tradeoff(Result):
     t_end : float
         End of the transients [s]; nan if the scene has no motion.
     diagrams : tuple of Diagram
-        Diagrams of frequencies, of frequencies with the error of the model included, transients and steady
+        Diagrams of frequencies, of frequencies including the model error, of transients and of the steady
         response.
     warnings : tuple of str
-        How far the model of the scene is off at the speed, where that is more than 1 %; diagrams that are
-        missing, and why.
+        Model error of the scene at the speed, if it is above 1 %; missing diagrams, with the reason.
     provenance : Provenance
         How the result was computed.
 
@@ -78,7 +77,7 @@ class Tradeoff(Result):
     scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Yield numbers of diagrams and measurements, and the speed, parts of a one-line summary.
+        """Yield numbers of diagrams and measurements, and the speed, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -87,7 +86,7 @@ class Tradeoff(Result):
         yield warned(self.warnings)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw all diagrams side by side, in place of the axes."""
+        """Draw all diagrams side by side, instead of in given axes."""
         ax, places = panels(len(self.diagrams), ax)
         for diagram, place in zip(self.diagrams, places, strict=True):
             diagram.plot(place)
@@ -114,12 +113,12 @@ def tradeoff(
     modes : int
         Number of modes, from 1 to 20.
     t_end : float, optional
-        End of the transients [s]; by default a hundred periods of the first mode after the motion has
-        settled, or from its start if settling takes too long.
+        End of the transients [s]; by default a hundred periods of the first mode after the speed has become
+        steady, or from the start if that takes too long.
     budget : float
         Approximate time for all measurements [s]; the diagrams name the settings that did not fit.
     progress : callable, optional
-        Called with the number of finished diagrams and of all.
+        Called with the number of finished diagrams and of all diagrams.
 
     Returns
     -------
@@ -186,7 +185,7 @@ def _end(scene: Scene) -> float:
 def _list_diagrams(
     scene: Scene, speed: float, modes: int, t_end: float, budget: float
 ) -> Iterator[Callable[[], Diagram]]:
-    """Yield the diagrams that apply to the scene, each to be computed within its share of the budget."""
+    """Yield the diagrams that apply to the scene, each computed within its part of the budget."""
     time = {name: share * budget for name, share in _SHARES.items()}
     yield partial(frequency_diagram, scene, np.array([speed]), modes, time["frequencies"])
     if speed:
