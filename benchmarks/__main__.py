@@ -2,6 +2,6 @@
 
 from benchmarks.measured_page import main
 
-# Imported in a module of its own, so that the processes it starts can import it, too.
+# Defined in a separate module, so that the processes that it starts can import it, too.
 if __name__ == "__main__":
     main()

@@ -1,9 +1,9 @@
-"""Five tasks that a person does with the interactive programs, without the manual.
+"""Five tasks that a user does with the interactive programs, without the manual.
 
 Run: python -m benchmarks.app_tasks [--folder DIR] [--task NAME]
 
-Performs them in Chromium as a person would, by what is written on the page, and prints what was found, how
-many actions it took (a click, a key or a text each), and how long.  A picture of each is left in the folder.
+The tasks are performed in Chromium with the texts that a page shows.  Results, numbers of actions (a click, a
+key or a typed text each) and times are printed, and a picture of each task is stored in the folder.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from benchmarks.rows import Row, show
 from benchmarks.served import browser, free_port, go, open_page, start, stop
 
 SIZE = {"width": 1440, "height": 1000}
-_SETTLES = 250  # time after which a page has received what was done [ms]
+_SETTLES = 250  # time after which a page has received an action [ms]
 _HEADLINE = """() => {
   const it = [...document.querySelectorAll('dl.headline')].find((e) => e.offsetParent);
   return Object.fromEntries([...(it?.children ?? [])].map((e) =>
@@ -34,14 +34,14 @@ _NEVER, _STEPS = "never", 40
 
 @dataclass
 class Person:
-    """A person at the page of a program, who counts the actions.
+    """A simulated user at the page of a program, with a count of the user's actions.
 
     Parameters
     ----------
     page : Page
-        Of the browser.
+        Page of the browser.
     actions : int
-        How often something was clicked, pressed or typed.
+        Number of clicks, keys pressed and texts typed.
     """
 
     page: Any
@@ -53,12 +53,12 @@ class Person:
         go(self.page, screen)
 
     def presses(self, words: str, times: int = 1) -> None:
-        """Press a button."""
+        """Press the button with given words."""
         for _ in range(times):
             self._does(lambda: self._seen(self.page.get_by_role("button", name=words, exact=True)).click())
 
     def types(self, path: str, text: str) -> None:
-        """Type a text into a field, and leave it."""
+        """Type a text into a field, and leave the field."""
 
         def fill() -> None:
             made = self.field(path)
@@ -68,7 +68,7 @@ class Person:
         self._does(fill)
 
     def chooses(self, path: str, option: str) -> None:
-        """Choose from a field's menu."""
+        """Choose an option from a field's menu."""
 
         def choose() -> None:
             self.field(path).click()
@@ -82,15 +82,15 @@ class Person:
         self._does(lambda: made.press(key))
 
     def reads(self, words: str) -> str:
-        """Return a result among those that come first on the screen."""
+        """Return a result, given by its words, from the results at the top of the screen."""
         return str(self.page.evaluate(_HEADLINE).get(words, ""))
 
     def sees(self, text: str) -> str:
-        """Return the line of text on the page in front that has some words."""
+        """Return the line of text on the visible page that contains given words."""
         return self._seen(self.page.get_by_text(text)).inner_text()
 
     def field(self, path: str) -> Any:
-        """Return a field of the screen in front."""
+        """Return a field of the visible screen."""
         return self._seen(self.page.locator(f'[data-path="{path}"]'))
 
     def _seen(self, found: Any) -> Any:
@@ -104,9 +104,9 @@ class Person:
 
 
 def find_the_slope(person: Person) -> str:
-    """The slope at which the truck no longer stops: its end is moved down until it says so, and back."""
+    """The slope at which the truck no longer stops: the slope's end is moved down and back in the drawing."""
     person.goes_to("Vehicle")
-    last: dict[bool, str] = {}  # slopes at which the truck stops, and at which it does not
+    last: dict[bool, str] = {}  # last slopes at which the truck stops, and does not stop
     for key in ("Shift+ArrowDown", "ArrowUp"):
         while (never := person.reads("stopping distance") == _NEVER) != key.endswith("Down"):
             last[never] = person.field("stop.slope").input_value()
@@ -126,7 +126,7 @@ def move_the_pivot(person: Person) -> str:
             if (now := abs(float(person.reads(ratio)) - 1)) >= last:
                 break
             last = now
-    for x in ("26.8", "26.9", "26.89"):  # between two steps of the keys
+    for x in ("26.8", "26.9", "26.89"):  # values between two steps of the arrow keys
         person.types("dimensions.side_pivot", f"{x}, 4")
     return f"{person.reads(ratio)} with the pivot at {person.field('dimensions.side_pivot').input_value()}"
 
@@ -173,7 +173,7 @@ def choose_a_model(person: Person) -> str:
 
 
 def watch_the_resonance(person: Person) -> str:
-    """The harvester's run is played until it has passed the resonance."""
+    """The harvester's transient is played on the screen until it has passed the resonance."""
     person.goes_to("Transient")
     passes = person.reads("passes a resonance at")
     person.moves("time", "Home")
@@ -197,7 +197,7 @@ TASKS: dict[str, tuple[str, Callable[[Person], str]]] = {
 
 
 def perform(folder: Path, names: tuple[str, ...]) -> Iterator[Row]:
-    """Perform tasks, and yield what was found, with the number of actions and the time."""
+    """Perform tasks in the browser, and yield the result, number of actions and time of each."""
     folder.mkdir(parents=True, exist_ok=True)
     for name in names:
         program, task = TASKS[name]

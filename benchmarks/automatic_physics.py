@@ -1,9 +1,9 @@
-"""Whether `physics="auto"` adds what matters, and nothing else.
+"""Test whether `physics="auto"` adds the effects that matter, and no others.
 
-Run: python -m benchmarks.automatic_physics [--scenes N] [--first N] [--save FILE].  Random scenes, in half of
-which an effect matters (in half of these, large deflection), solved with chosen physics and with the
-largest set of effects that can be combined.  Where large deflection excludes others, what the side that was
-not chosen would change, solved alone, counts as an error, too.
+Run: python -m benchmarks.automatic_physics [--scenes N] [--first N] [--save FILE].  Random scenes are solved
+with automatically chosen physics and with the largest set of effects that can be combined; in half of the
+scenes an effect matters, in half of these large deflection.  Large deflection excludes some effects: the
+changes by the excluded ones, solved alone, count as errors, too.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from functools import partial
 from time import perf_counter
 from typing import Any
 
-# Set before numpy is imported, as the workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -35,21 +35,20 @@ from benchmarks.stated_model_errors import solved_change
 SEED = 1515
 TOLERANCE = 1e-3
 _MODES = 3
-_WITHIN, _NEEDED = 0.99, 0.8  # shares of the scenes that are the goal
+_WITHIN, _NEEDED = 0.99, 0.8  # target fractions of scenes: within the tolerance, and without useless effects
 _USELESS = 1e-4  # change of frequencies below which an added effect was not needed
 _STEEL = 200e9, 7850.0  # Young's modulus [Pa] and density [kg/m3]
 _QUARTER = np.pi / 2
-_DEFLECTION = 0.03, 0.4  # least and largest linear static deflection of bent scenes, over the length
+_DEFLECTION = 0.03, 0.4  # least and largest linear static deflection of bent beams, over the length
 _ALL = bd.Physics(planes=2, shear=True, rotary_inertia=True, stretch=True)
 
 
 @dataclass(frozen=True)
 class Answer:
-    """The choice for one scene, and the true changes; changes are relative, the largest of all modes.
+    """The chosen physics of one scene, and the true changes of frequencies (relative, largest of all modes).
 
-    `needed` is what the plain beam leaves out, `error` what the chosen physics does, `stated` its own
-    estimate of it; nan where it is not known, inf where modes are others.  `removed` is what leaving each
-    added effect out would change.
+    `needed` is the error of the plain beam, `error` that of the chosen physics, `stated` the estimate of the
+    latter; nan if unknown, inf if other modes appear.  `removed` is the change without an added effect.
     """
 
     number: int
@@ -63,8 +62,8 @@ class Answer:
 
 
 def measure(number: int, seed: int) -> list[Answer]:
-    """Compute the answer for the scene with a number; odd numbers need an effect."""
-    with warnings.catch_warnings(action="ignore"):  # warnings of beams that no material has
+    """Compute the `Answer` for the scene with a number; scenes with odd numbers need an effect."""
+    with warnings.catch_warnings(action="ignore"):  # warnings of beams without a real material
         scene, speed, needed = _draw(np.random.default_rng([seed, number]), number)
         start = perf_counter()
         try:
@@ -86,7 +85,7 @@ def measure(number: int, seed: int) -> list[Answer]:
 
 
 def _draw(rng: np.random.Generator, number: int) -> tuple[bd.Scene, float, float]:
-    """Draw a scene, its speed, and what the plain beam leaves out: more than the tolerance for any kind."""
+    """Draw a scene, its speed, and the error of the plain beam, above tolerance if an effect is needed."""
     while True:
         kinds = random_kinds(rng, number)
         scene, speed = random_scene(rng, kinds)
@@ -96,7 +95,7 @@ def _draw(rng: np.random.Generator, number: int) -> tuple[bd.Scene, float, float
 
 
 def true_error(modes: bd.Modes) -> float:
-    """Compute what all effects that a scene leaves out would change, by solving with them."""
+    """Compute the change of frequencies by all left-out effects, by solving with them."""
     physics = modes.scene.physics
     if physics.large_deflection:
         within = bd.Physics(rotary_inertia=True, large_deflection=True)
@@ -104,7 +103,7 @@ def true_error(modes: bd.Modes) -> float:
         return _direct(modes, within) + _solved(straight, replace(_ALL, rotary_inertia=False))
     oblique = min(abs(np.cos(modes.scene.mount.bending_angle)), abs(np.sin(modes.scene.mount.bending_angle)))
     bent = 0.0
-    # Otherwise the effect cannot be modelled, or is negligible.
+    # In all other cases the effect cannot be modelled, or is negligible.
     if oblique < 1e-12 and bends(Model(modes.scene, bd.Ritz(5))):
         alone = replace(modes.scene, physics=bd.Physics(rotary_inertia=physics.rotary_inertia))
         straight = bd.natural_modes(alone, modes.speed, _MODES)
@@ -116,19 +115,19 @@ def _direct(modes: bd.Modes, physics: bd.Physics) -> float:
     """Compute the largest change of frequencies with other physics in one plane, in unchanged order."""
     try:
         other = bd.natural_modes(replace(modes.scene, physics=physics), modes.speed, _MODES)
-    except ArithmeticError:  # the equilibrium does not exist
+    except ArithmeticError:  # there is no equilibrium
         return float(np.nan)
     return float(np.abs(other.frequency / modes.frequency - 1).max())
 
 
 def _solved(modes: bd.Modes, physics: bd.Physics) -> float:
-    """Compute the largest change of the modes with more physics; inf where a mode is lost among others."""
+    """Compute the largest change of modes with more physics; inf if a mode cannot be identified."""
     change = solved_change(modes, replace(modes.scene, physics=physics))
     return float(np.nan_to_num(np.abs(change), nan=np.inf).max())
 
 
 def _change_without(name: str, scene: bd.Scene, speed: float, choice: PhysicsChoice) -> float:
-    """Compute what leaving one of the added effects out would change."""
+    """Compute the change of frequencies if one of the added effects is left out."""
     others = add_effects(scene, [NAMED[other] for other in choice.included if other != name])
     without = bd.natural_modes(others, speed, _MODES)
     if choice.physics.large_deflection:
@@ -140,10 +139,10 @@ def _change_without(name: str, scene: bd.Scene, speed: float, choice: PhysicsCho
 
 
 def random_kinds(rng: np.random.Generator, number: int) -> list[str]:
-    """Draw what makes the scene with a number need an effect: nothing in every other scene.
+    """Draw the reasons why the scene with a number needs an effect; every other scene needs none.
 
-    Every fourth is bent by the rotation in its plane, enough for large deflection to matter.  The rest are
-    one or two of these: stocky, twisted, oblique in the bending angle, or turned to any setting angle.
+    Every fourth beam is bent by rotation in its plane, so far that large deflection matters.  The others have
+    one or two of these reasons: stocky, twisted, an oblique bending angle, or any setting angle.
     """
     if number % 2 == 0:
         return []
@@ -153,9 +152,9 @@ def random_kinds(rng: np.random.Generator, number: int) -> list[str]:
 
 
 def random_scene(rng: np.random.Generator, kinds: Sequence[str]) -> tuple[bd.Scene, float]:
-    """Draw a steel beam of these kinds, and a speed.
+    """Draw a steel beam with given reasons (`random_kinds`), and a speed.
 
-    Of no kind, it is slender, straight and points at the axis or away from it.
+    Without a reason, the beam is slender, straight and points towards the axis or away from it.
     """
     low, high = (5, 60) if "stocky" in kinds else (300, 2000)
     ratio, slenderness = 10 ** rng.uniform(0.3, 2.0), 10 ** rng.uniform(np.log10(low), np.log10(high))
@@ -176,7 +175,7 @@ def random_scene(rng: np.random.Generator, kinds: Sequence[str]) -> tuple[bd.Sce
 
 
 def cases(seed: int = SEED) -> Cases[Answer]:
-    """Return the random scenes of a seed."""
+    """Return the random scenes of a seed, as resumable cases."""
     return Cases(partial(measure, seed=seed), Answer)
 
 
@@ -184,7 +183,7 @@ def cases(seed: int = SEED) -> Cases[Answer]:
 
 
 def summarize(answers: Sequence[Answer]) -> Iterator[Row]:
-    """Yield the shares of scenes within the tolerance or marked, and of those without useless effects."""
+    """Yield the fractions of scenes within the tolerance or with a warning, and without useless effects."""
     found = [a for a in answers if not a.refusal]
     yield "random scenes", str(len(answers)), "200"
     yield "... refused", str(len(answers) - len(found)), "0"

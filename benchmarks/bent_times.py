@@ -1,12 +1,11 @@
-"""What an equilibrium with three modes about it costs, in one plane and in space.
+"""Computing time of an equilibrium with three modes about it, in one plane and in space.
 
 Run: python -m benchmarks.bent_times [--before FOLDER]    (seconds)
 
-A strip at 45 deg to the radius is bent by its rotation; each call has another radius, and its frequencies are
-to be right to 1e-6.  Times are medians of processor time, in processes of their own, in turns.  They are over
-those of one plane, or with `--before` over those of one plane by an older version, of which the folder is a
-checkout, such as of the parent of the commit that brought the beam in space:
-git worktree add FOLDER 9143167f^.
+Rotation bends a strip at 45 deg to the radius.  Each call has a different radius, and a tolerance of 1e-6 for
+the frequencies.  Times are medians of processor time, measured alternately in separate processes, over the
+time in one plane; with `--before` over the time in one plane of an older version, which is checked out in the
+folder, for example the parent of the commit that added beams in space: git worktree add FOLDER 9143167f^.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ print(median(times))
 
 
 def measure(folder: Path, physics: str, further: str = ", poissons_ratio=0.3") -> float:
-    """Measure the median processor time [s] of calls by the version in a folder."""
+    """Measure the median processor time [s] of calls of the program version in a folder."""
     script = _SCRIPT.format(physics=physics, further=further, calls=_CALLS)
     set_to = os.environ | {"OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(folder)}
     done = subprocess.run(
@@ -59,7 +58,7 @@ def measure(folder: Path, physics: str, further: str = ", poissons_ratio=0.3") -
 
 
 def compare(before: Path | None) -> Iterator[Row]:
-    """Yield the time of each case over that of the planar call, the median of some turns."""
+    """Yield the time of each case over that of the planar call, as the median of several measurements."""
     here = Path(__file__).parents[1]
     turns = []
     for _ in range(_TURNS):

@@ -1,8 +1,9 @@
-"""Frequencies of three public blades by their tables of stations: error and time, beside pyBModes.
+"""Frequencies of three public blades given by tables of stations: error and time, compared with pyBModes.
 
-Run: python -m benchmarks.blades.  Three modes a plane, at rest and at rated speed.  pyBModes has the
-deck's own stations as the ends of its elements.  Each of our calls has a scene that differs from all others
-in its last digits, so that nothing computed before is used again; as its input, it is built before.
+Run: python -m benchmarks.blades.  Three modes in each plane are computed, at rest and at rated speed.  The
+elements of pyBModes end at the stations of the input file.  Each of our calls has a scene that differs in its
+last digits, so that no cached result is used; scenes are built before the time is measured, like pyBModes'
+input.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dataclasses import replace
 from itertools import count, islice
 from time import process_time
 
-# Set before numpy is imported; small matrices gain nothing by more threads.
+# One thread, set before numpy is imported: more threads do not speed up small matrices.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -28,16 +29,16 @@ from benchmarks.rows import RUNS, Row, best_time, show, time_text
 RATED = {"iea_15": 7.56, "nrel_5": 12.1, "bmodes_test01": 60.0}  # rated speeds [rpm]
 TOLERANCES = (1e-6, 1e-9, None)
 _MODES = 6  # three modes in each plane
-_NUMBERS = count(1)  # numbers that make scenes differ
+_NUMBERS = count(1)  # numbers that make each scene different
 _SPEEDS = 1000  # number of speeds of a locus
 _TWO_PLANES = bd.Physics(planes=2)
-# Factors by which pyBModes is to be slower, at a tolerance of 1e-6 and by default.
+# Least ratios of pyBModes' time to ours that are the goal, at a tolerance of 1e-6 and by default.
 _FASTER, _SLOWER = 5.0, 1.0
-_LOCUS = 3.0  # largest time of a locus, over that of one call
+_LOCUS = 3.0  # largest allowed time of a locus, over that of one call
 
 
 def measure_errors() -> Iterator[Row]:
-    """Yield largest true errors of the frequencies, twisted and not, by collocation of the equations."""
+    """Yield the largest true errors of frequencies, with and without twist, against collocation."""
     for name in NAMES:
         for rpm in (0.0, RATED[name]):
             for is_twisted in (False, True):
@@ -55,7 +56,7 @@ def measure_errors() -> Iterator[Row]:
 
 
 def measure_times() -> Iterator[Row]:
-    """Yield times of one call at rated speed, and of another program, for both planes."""
+    """Yield the times of one call at rated speed and of pyBModes, for bending in both planes."""
     for name in NAMES:
         theirs = their_time(name)
         if theirs is not None:
@@ -87,7 +88,7 @@ def calls_of_flap(name: str) -> tuple[Callable[[], object], Callable[[], object]
 
 
 def a_call(name: str, is_twisted: bool, tolerance: float | None) -> Callable[[], object]:
-    """Return one call for six modes of two planes."""
+    """Return a function that makes one call for six modes in two planes."""
     scenes, speed = distinct_scenes(name, RUNS, twisted=is_twisted), RATED[name] * math.pi / 30
     return lambda: bd.natural_modes(next(scenes), speed, _MODES, tolerance=tolerance)
 
@@ -98,14 +99,14 @@ def distinct_scenes(
     physics: bd.Physics = _TWO_PLANES,
     twisted: bool = False,
 ) -> Iterator[bd.Scene]:
-    """Yield scenes of a blade, none of them equal to another."""
+    """Yield scenes of a blade that all differ in their last digits."""
     scene = blade_scene(name, physics, twisted)
     lengths = [scene.beam.length * (1 + 1e-13 * k) for k in islice(_NUMBERS, number)]
     return iter([replace(scene, beam=replace(scene.beam, length=length)) for length in lengths])
 
 
 def their_time(name: str) -> float | None:
-    """Measure the time of pyBModes without reading of its files; None where it is missing."""
+    """Measure the time [s] of pyBModes, without reading its files; None if it is not installed."""
     if pybmodes.version() is None:
         return None
     with pybmodes.model(twisted.main_file(name, RATED[name], 1), twisted.sections(name)) as blade:
@@ -113,7 +114,7 @@ def their_time(name: str) -> float | None:
 
 
 def _time(action: Callable[[], object]) -> float:
-    """Measure the shortest processor time [s] of calls, which all run in one thread."""
+    """Measure the shortest processor time [s] of several calls in one thread."""
     return best_time(action, clock=process_time)
 
 

@@ -1,4 +1,4 @@
-"""BModes' own blade, with torsion and offsets: where its printed frequencies come from, and time.
+"""BModes' test blade, with torsion and offsets: the origin of its printed frequencies, and computing time.
 
 Run: python -m benchmarks.bmodes            (seconds)
 """
@@ -24,13 +24,13 @@ from benchmarks.cases.reference import bmodes
 from benchmarks.rows import Row, best_time, show, time_text
 
 NAME, SPEED = "bmodes_test01", 2 * math.pi  # 60 rpm
-# Number of modes, least difference in percent, and largest ratio to the time without torsion.
+# Number of modes, smallest difference in percent, and largest ratio to the time without torsion.
 _MODES, _LEAST, _MOST = 5, 0.3, 2.0
 _NUMBERS = count(1)  # numbers that make scenes differ in their last digits
 
 
 def trace() -> Iterator[Row]:
-    """Yield the first frequencies over the printed ones, in percent: by BModes' matrices and by ours."""
+    """Yield deviations of first frequencies from the printed ones [%]: by BModes' matrices and by ours."""
     data = stations(NAME)
     for parts in (1, 2, 8):
         ends = np.interp(np.arange(12 * parts + 1) / parts, np.arange(13), data["element_ends"])
@@ -62,7 +62,7 @@ def trace() -> Iterator[Row]:
 
 
 def measure_time() -> Iterator[Row]:
-    """Yield the time of three modes at 1e-6 with torsion and offsets, over that of the twisted blade."""
+    """Yield the time of three modes at a tolerance of 1e-6 with torsion and offsets, over that without."""
     plain, whole = (_time(scene) for scene in (blade_scene(NAME), whole_blade_scene(NAME)))
     said = f"{time_text(whole)} over {time_text(plain)}: {whole / plain:.2f}"
     yield "torsion and offsets: three modes, 1e-6", said, f"{_MOST:g}"
@@ -79,7 +79,7 @@ def _over_print(found: np.ndarray) -> str:
 
 
 def _time(scene: bd.Scene) -> float:
-    """Measure the shortest processor time [s] of a call that uses nothing computed before."""
+    """Measure the shortest processor time [s] of a call without cached results."""
     lengths = (scene.beam.length * (1 + 1e-13 * k) for k in _NUMBERS)
     scenes = (replace(scene, beam=replace(scene.beam, length=length)) for length in lengths)
     made = [next(scenes) for _ in range(9)]

@@ -21,7 +21,7 @@ FIRST_SEED = 10_000
 
 
 def measure(seed: int) -> tuple[np.ndarray, np.ndarray, float]:
-    """Compute whether the bounds of one scene hold, their relative widths, and the time [s]."""
+    """Compute whether the bounds of one random scene hold, their relative widths, and the time [s]."""
     case = random_nondimensional_scene(np.random.default_rng(seed))
     start = perf_counter()
     bounds = frequency_bounds(case.scene, case.gamma, MODES)
@@ -30,7 +30,7 @@ def measure(seed: int) -> tuple[np.ndarray, np.ndarray, float]:
 
 
 def summarize(scenes: int) -> Iterator[Row]:
-    """Yield how many exact frequencies lie outside their bounds, how wide these are, and the time."""
+    """Yield the number of exact frequencies outside their bounds, the bounds' widths, and the time."""
     measurements = map(measure, range(FIRST_SEED, FIRST_SEED + scenes))
     held, width, time = map(np.array, zip(*measurements, strict=True))
     yield "random scenes with guaranteed bounds of three modes", f"{scenes}", "1000"

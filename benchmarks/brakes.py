@@ -1,7 +1,8 @@
 """Accuracy and speed of the brakes.  Run: python -m benchmarks.brakes
 
-Random mechanisms, duo-servo brakes and trucks, strokes of the eeBrake, designs from pedal to heat, and
-questions backwards (--scenes N: fewer of them; --save FILE keeps them, and goes on where a run stopped).
+Solved are random mechanisms, duo-servo brakes and trucks, strokes of the eeBrake, designs from pedal to heat,
+and inverse questions (--scenes N: number of questions; --save FILE stores them, and resumes an interrupted
+run).
 """
 
 from __future__ import annotations
@@ -26,11 +27,11 @@ from brakes.planar import solve, stroke
 
 MECHANISMS, LEVERS, TRUCKS = 10_000, 100_000, 10_000
 DESIGNS, QUESTIONS, SEED = 100_000, 1000, 34
-ROOMS = ("vehicle", "chain", "common", "machines")  # rooms of brakes besides drums, calipers and the forklift
+ROOMS = ("vehicle", "chain", "common", "machines")  # packages besides drums, calipers and the forklift
 
 
 def check_planar() -> Iterator[Row]:
-    """Check random mechanisms by virtual work, and a stroke of the eeBrake with all reactions."""
+    """Check random mechanisms by virtual work, and time a stroke of the eeBrake with all reactions."""
     (all_motions, free), moved = mechanisms.worst_virtual_work(MECHANISMS)
     yield f"virtual work of {MECHANISMS} random mechanisms, scaled: largest", f"{all_motions:.1e}", "1e-9"
     yield "... by their free motions alone", f"{free:.1e}", "1e-9"
@@ -43,13 +44,13 @@ def check_planar() -> Iterator[Row]:
 
 
 def run_strokes(points: int) -> None:
-    """Pull the cable of the eeBrake by 3.5 mm, in a number of positions."""
+    """Solve a stroke of the eeBrake caliper: 3.5 mm of cable travel, in a number of positions."""
     brake = mechanisms.eebrake()
     solve(brake, stroke(brake, "cable", np.linspace(0, 3.5e-3, points)).position)
 
 
 def check_duo_servo() -> Iterator[Row]:
-    """Check random duo-servo brakes and designs."""
+    """Check the equilibrium of random duo-servo brakes, and time many designs."""
     rng = np.random.default_rng(19970101)
     answer = internal_forces(
         draw_levers(rng), torque=10 ** rng.uniform(0, 6, LEVERS), piston_force=10 ** rng.uniform(0, 6, LEVERS)
@@ -72,7 +73,7 @@ def draw_levers(rng: np.random.Generator) -> Levers:
 
 
 def run_trucks() -> forklift.Procedure:
-    """Solve random trucks in all three stages."""
+    """Solve random trucks in all three stages: stop, motion of the shoes, and forces."""
     rng = np.random.default_rng(10_000)
     truck, conditions = draw_stops(rng, TRUCKS)
     motion = forklift.BENDIX_12_5.move_shoes(rng.uniform(0.005, 0.021, TRUCKS))
@@ -117,7 +118,7 @@ def draw_stops(rng: np.random.Generator, count: int) -> tuple[Truck, forklift.St
 
 
 def check_backwards(given: argparse.Namespace | None = None) -> Iterator[Row]:
-    """Solve random brakes and vehicles forwards, and backwards from one result to one input."""
+    """Solve random brakes and vehicles, then solve inverse questions: one input from one result."""
     seed = given.seed if given else SEED
     cases = Cases(partial(measure, seed=seed), Outcome)
     asked = cases.run(given) if given else cases.measure_all(range(QUESTIONS))
@@ -137,14 +138,14 @@ def check_backwards(given: argparse.Namespace | None = None) -> Iterator[Row]:
 
 
 def check_chain() -> Iterator[Row]:
-    """Check designs from pedal to heat against those through the forklift's three stages."""
+    """Check designs from pedal to heat against designs solved by the forklift's three stages."""
     whole, stages = best_time(run_chain, 5) / DESIGNS, best_time(run_trucks) / TRUCKS
     name = f"{DESIGNS} designs from pedal to heat: time of one over that of {TRUCKS} through three stages"
     yield name, f"{whole / stages:.2f}", "1"
 
 
 def check_size() -> Iterator[Row]:
-    """Count the files that one type of brake takes, and the lines of code."""
+    """Count the files for one type of brake, and the lines of code."""
     modules = [path for path in sources() if path.is_relative_to(ROOT / "brakes")]
     named = [path for path in modules if names_it(path, "band")]
     files = len(named) + len([*(ROOT / "examples").glob("band.toml")])
@@ -155,7 +156,7 @@ def check_size() -> Iterator[Row]:
 
 
 def names_it(path: Path, name: str) -> bool:
-    """Whether a module has a name, imports a class of it, or has the word of it."""
+    """Return whether a module is named after a brake, imports its class, or contains its name as a word."""
     nodes = [*ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
     words = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
     imported = {each.name for node in nodes if isinstance(node, ast.ImportFrom) for each in node.names}

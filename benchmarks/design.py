@@ -1,4 +1,4 @@
-"""Designs sought backwards: questions with known answers, found or proven to have none.
+"""Inverse design questions with known answers: are they found, or proven to have none?
 
 Run: python -m benchmarks.design            (three minutes)
 """
@@ -11,11 +11,11 @@ from benchmarks.cases.wanted_designs import Wanted, questions
 from benchmarks.rows import Row, show
 
 _FOUND = 1e-6  # largest relative error of the numbers, or of the best answer
-_MOST = 60  # most solves
+_MOST = 60  # largest number of solutions of the equations
 
 
 def ask() -> Iterator[Row]:
-    """Yield how many questions are answered right, and by how many solves."""
+    """Yield the number of questions answered correctly, and the number of solutions of equations."""
     asked = [*questions()]
     answers = [each.found() for each in asked]
     right = [error <= _FOUND for error, _ in answers]

@@ -1,8 +1,8 @@
-"""What each digit of each analysis costs.  Run: python -m benchmarks.digits
+"""Computing time of each further digit in each analysis.  Run: python -m benchmarks.digits
 
 Takes two minutes.
-The published scene at 55 rad/s, each analysis with one tolerance after another; the time of the whole call,
-over that of the loosest.  `benchmarks.tradeoff` writes the table into docs/tradeoff.md.
+Each analysis is run for the published scene at 55 rad/s with one tolerance after another; the time of a
+call is over that with the loosest tolerance.  `benchmarks.tradeoff` writes the table into docs/tradeoff.md.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ DAMPED = replace(HARVESTER, damping_ratio=0.01)
 BENT = replace(HARVESTER, mount=bd.Mount(0.215, math.pi / 4))
 FREQUENCIES = np.geomspace(20.0, 500.0, 200)
 BENDING = bd.PowerSpectrum([5.0, 500.0], [1.0, 1.0])
-Call = Callable[..., object]  # a call with a tolerance
+Call = Callable[..., object]  # function of a tolerance that runs an analysis
 
 ANALYSES: dict[str, Call] = {
     "natural_modes, 3 modes": partial(bd.natural_modes, HARVESTER, SPEED, 3),

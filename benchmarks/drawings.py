@@ -1,10 +1,10 @@
 """Speed of drawings.  Run: python -m benchmarks.drawings [--browser]
 
-Prints how long each screen's drawing takes to be laid out and written as SVG, and how large that is, and how
-long labels take.  With --browser instead, in Chromium, how many different pictures of a solved position are
-painted a second while a point or a slider is dragged, told by the id of the position in the page; how much
-of the processor each takes; how soon all is solved after the release, or a screen that takes long says so;
-and how often a picture changes while a slider is played.
+Prints the time to lay out each screen's drawing and to write it as SVG, the size of the SVG, and the time to
+place labels.  With --browser, prints measurements in Chromium: the number of different pictures per second
+while a point or a slider is dragged (recognized by the position's id in the page), the processor time of each
+program, the time from the release to the complete answer or to the sign that a slow screen computes, and the
+number of pictures per second while a slider is played.
 """
 
 from __future__ import annotations
@@ -35,20 +35,20 @@ from brakes.app.program import BRAKES
 RUNS = 15  # number of times that each drawing is timed
 DRAG, STEP = 3.0, 0.004  # duration of a drag, and time between two moves of the mouse [s]
 LABELS, SHAPES, BOUND, PAINTED = 40, 180, 5, 20
-AT_REST, BUSY = 300, 300  # largest times until the full answer and until the busy sign [ms]
-REACH = 14  # distance that the mouse goes to both sides [px]
+AT_REST, BUSY = 300, 300  # largest times until the full answer, and until a sign of computing [ms]
+REACH = 14  # distance that the mouse moves to either side [px]
 POINTS = {
     "Vehicle": "centre of gravity of the load",
     "Kinematics": "tip of the shoe",
     "Drum brake": "pin of the shoe",
     "Caliper": "pivot of the arm of the right pad",
-    "Mechanism": "E",  # C soon leaves the reach of the hand
+    "Mechanism": "E",  # point E: point C soon moves out of reach
 }
 SLIDER = "radius, r [mm]"
-SLIDERS = {"Frequencies": "", "Rotor": "tip: setting angle", "Mode shapes": ""}  # each slider, and this point
+SLIDERS = {"Frequencies": "", "Rotor": "tip: setting angle", "Mode shapes": ""}  # a point to drag, if any
 LONG = ("Steady response", "Transient")
 PLAYED = {"brakes": ("Kinematics", "Caliper", "Mechanism"), "beamdyn": ("Mode shapes", "Transient")}
-# Counts each solved position whose picture is there when a frame is painted, once.
+# Script: counts each solved position whose picture is visible when a frame is painted, once.
 COUNT = """() => {
   window.pictures = new Set();
   const look = (it) =>
@@ -57,7 +57,7 @@ COUNT = """() => {
   window.counting.observe(document.body, {subtree: true, attributeFilter: ["data-solved"]});
 }"""
 COUNTED = "() => { window.counting.disconnect(); return window.pictures.size; }"
-# Counts for some seconds how often another picture is there when a frame is painted.
+# Script: counts for some seconds how often a different picture is visible when a frame is painted.
 CHANGES = """(seconds) => new Promise((done) => {
   const end = performance.now() + 1000 * seconds;
   let last = "", count = 0;
@@ -70,8 +70,8 @@ CHANGES = """(seconds) => new Promise((done) => {
   };
   requestAnimationFrame(look);
 })"""
-# Waits for some events, and then for words of the page, or, if wanted, for a new answer, which may come
-# before them; in `window.told` the time between them [ms].
+# Script: waits for some events, and then for a text on the page or a new answer; `window.told` is the time
+# between them [ms].
 WATCH = """([events, words, answer]) => {
   const shown = (of) => [...document.querySelectorAll(of)].filter((e) => e.checkVisibility());
   const solved = () => shown("[data-solved]").map((e) => e.dataset.solved).join();
@@ -89,7 +89,7 @@ TOLD = "() => window.told"
 
 
 def time_labels() -> Iterator[Row]:
-    """Time the placement of many labels among many lines."""
+    """Measure the time to place many labels among many lines."""
     draw = np.random.default_rng(19)
     ends = draw.uniform((40, 40, 40, 40), (640, 480, 640, 480), (SHAPES, 4))
     obstacles = Obstacles((4.0, 4.0, 676.0, 516.0), ends, ends[:, 2:])
@@ -110,7 +110,7 @@ def time_labels() -> Iterator[Row]:
 
 
 def time_screens() -> Iterator[Row]:
-    """Time the drawings of the screens of `brakes app`, as they are while a point is dragged."""
+    """Measure the time of the drawings of `brakes app`, as they are made while a point is dragged."""
     for document in BRAKES.documents:
         work = OpenDocument(document)
         for screen in document.screens:
@@ -179,7 +179,7 @@ def play(program: str, names: Iterable[str]) -> Iterator[Row]:
 
 
 def wait_for_sign() -> Iterator[Row]:
-    """Measure how soon slow screens say that they compute, or answer, after a key has moved a slider."""
+    """Measure the time until slow screens show that they compute, or answer, after a key moved a slider."""
     process = start(port := free_port(), "beamdyn")
     try:
         with browser() as made:
@@ -197,7 +197,7 @@ def wait_for_sign() -> Iterator[Row]:
 
 
 def rest(program: int) -> None:
-    """Wait until a program has drawn what it draws beside the answer, and started what it keeps ready."""
+    """Wait until a program has finished secondary drawings, and started its spare processes."""
     deadline, last = time.monotonic() + PATIENCE, -1.0
     while (now := processor_time([program, *children_of(program)])) > last and time.monotonic() < deadline:
         last = now
@@ -215,14 +215,14 @@ def processor_time(ids: Iterable[int]) -> float:
 
 
 def _held(page: Any, name: str, point: str) -> list[tuple[str, str]]:
-    """List what is dragged on a screen: a point, and each slider of its form."""
+    """List the objects to drag on a screen: a point, and each slider of the form."""
     go(page, name)
     sliders = page.locator(".left .q-slider:visible [role=slider]").all()
     return [(name, label) for label in [point, *(it.get_attribute("aria-label") for it in sliders)] if label]
 
 
 def _thing(page: Any, label: str) -> Any:
-    """Return the handle of a point or of a slider in front."""
+    """Return the handle of a point or of a slider on the visible screen."""
     found = page.get_by_role("slider", name=label, exact=True).locator("visible=true")
     thumb = found.locator("[tabindex='0']")
     return thumb if thumb.count() else found
@@ -245,7 +245,7 @@ def _drag(page: Any, label: str) -> tuple[float, float]:
         now = time.monotonic() - begin
     found = page.evaluate(COUNTED)
     page.evaluate(WATCH, ["pointerup mouseup", "Up to date.", False])
-    page.mouse.move(x, y)  # where there is an answer
+    page.mouse.move(x, y)  # the release is at a position with an answer
     page.mouse.up()
     rest = page.evaluate(TOLD)
     return found / now, rest
@@ -257,12 +257,12 @@ def _middle(thing: Any) -> tuple[float, float]:
 
 
 def _around(x: float, y: float, now: float) -> tuple[float, float]:
-    """Return the place of the mouse with a point of a drawing: on a small figure about its start."""
+    """Return the mouse position while a drawing's point is dragged along a small figure around its start."""
     return x + REACH * np.sin(2.9 * now), y + 9 * np.sin(4.7 * now)
 
 
 def _across(box: Mapping[str, float]) -> Callable[[float], tuple[float, float]]:
-    """Return the place of the mouse with a slider: once across, so that each position comes once."""
+    """Return the mouse position while a slider is dragged across once, so that each value occurs once."""
     return lambda now: (box["x"] + box["width"] * now / DRAG, box["y"] + box["height"] / 2)
 
 
@@ -271,7 +271,7 @@ PARTS = time_labels, time_screens
 
 def main() -> None:
     if "--browser" in sys.argv[1:]:
-        # each at once: a browser on a machine that does much else takes its time
+        # each row is printed at once, because a browser on a busy machine is slow
         played = chain.from_iterable(play(*which) for which in PLAYED.items())
         for row in chain(drag("brakes", POINTS), drag("beamdyn", SLIDERS), played, wait_for_sign()):
             print("  ".join(row), flush=True)

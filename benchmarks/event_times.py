@@ -2,10 +2,10 @@
 
 Run: python -m benchmarks.event_times [--screen NAME]
 
-A slider of the form is dragged by some pixels, a field is written and left, and the slider above a drawing is
-moved by a key, each where the screen has it. The time runs in the page itself: from the event, as the page
-hears it, until the browser paints the frame after the first change of the pictures, which may be preliminary.
-It is the median of several events, the first of which does not count, on a machine that does nothing else.
+A slider of the form is dragged by some pixels, a text is typed into a field, and the slider above a drawing
+is moved by a key, on each screen that has these.  The time is measured in the page: from the event until the
+browser paints the frame after the first change of the pictures, which may be preliminary.  The result is the
+median of several events without the first one, on a machine that does nothing else.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ from benchmarks.served import PATIENCE, browser, free_port, go, open_page, start
 SIZE = {"width": 1440, "height": 900}
 RUNS = 9
 BOUNDS = {"slider": 150, "field": 250, "player": 50}  # [ms]
-# The input that is changed on a screen, where not the radius: the answer of Design does not depend on that.
+# The input that is changed on a screen; if not listed, the radius.
 CHANGED = {"Design": "beam.thickness", "Deck": "deck.length"}
 _OTHERS = "mount.radius"
-# How its field is written: first value, step, unit.
+# Texts that are typed into the field: first value, step, unit.
 FIELDS = {
     "mount.radius": (215.0, 0.5, "mm"),
     "beam.thickness": (0.2, 0.002, "mm"),
     "deck.length": (40.0, 0.2, "m"),
 }
-STEP, LONGEST = 4, 20_000  # pixels of a move; patience with a picture [ms]
-_SETTLES = 400  # until what follows a picture has come as well [ms]
+STEP, LONGEST = 4, 20_000  # pixels of a mouse move; longest wait for a picture [ms]
+_SETTLES = 400  # wait after a picture, until further updates have arrived [ms]
 _WATCH = """(event) => {
   const shown = [...document.querySelectorAll(".shown")].find((e) => e.offsetParent);
   window.took = window.begun = null;
@@ -62,7 +62,7 @@ def _measure(page: Any, event: str, act: Callable[[int], object]) -> float:
 
 
 def _slider(page: Any, path: str) -> Any:
-    """The slider of the form that is dragged, where there is one."""
+    """Return the visible sliders of the form for an input."""
     return page.get_by_role("slider", name=path.partition(".")[2]).locator("visible=true")
 
 
@@ -79,7 +79,7 @@ def _time_slider(page: Any, path: str) -> float:
 
 
 def _field(page: Any, path: str) -> Any:
-    """The field of a form that is written."""
+    """Return the visible fields of the form for an input."""
     return page.locator(f'[data-path="{path}"]').locator("visible=true")
 
 
@@ -90,7 +90,7 @@ def _time_field(page: Any, path: str) -> float:
         made.fill(f"{start + step * (i + 1):.3f} {unit}")
         made.press("Tab")
 
-    return _measure(page, "input", write)  # it is heard before the field is left, if that takes long
+    return _measure(page, "input", write)  # the page reacts before the field is left, if that takes long
 
 
 def _time_player(page: Any, path: str) -> float:
@@ -98,12 +98,12 @@ def _time_player(page: Any, path: str) -> float:
 
 
 def _player(page: Any, _: str) -> Any:
-    """Return the slider above a drawing, where there is one."""
+    """Return the visible slider above a drawing, if any."""
     return page.get_by_role("slider", name="time").locator("visible=true")
 
 
 def time_events(names: tuple[str, ...]) -> Iterator[Row]:
-    """Time the events on some screens, each on a separate page."""
+    """Measure the times of events on some screens, each on a separate page."""
     process = start(port := free_port(), BEAMDYN.name)
     try:
         with browser() as made:
@@ -126,13 +126,13 @@ def _time_screen(page: Any, name: str) -> Iterator[Row]:
     path = CHANGED.get(name, _OTHERS)
     for kind, (there, measure) in ways.items():
         try:
-            page.set_default_timeout(1e3 * PATIENCE)  # with the whole answer, before anything is timed
+            page.set_default_timeout(1e3 * PATIENCE)  # for complete answers, before measurements begin
             go(page, name)
             page.set_default_timeout(LONGEST)
             if not there(page, path).count():
                 continue
             took = f"{measure(page, path):.0f}"
-        except Error as error:  # of one event: the others are measured all the same
+        except Error as error:  # an event failed: the others are still measured
             took = f"not measured: {error.message.partition('Call log')[0].strip()}"
         yield f"{name}: {kind}, event to new picture [ms]", took, f"{BOUNDS[kind]}"
 

@@ -1,9 +1,9 @@
-"""Whether solids contradict the model errors that the scenes of examples/ state.
+"""Test whether solid bodies (FE) contradict the model errors stated for the scenes of examples/.
 
-Run: python -m benchmarks.example_solids.  Each scene of a rectangular section is taken with its own physics,
-without bodies at the tip in both, at rest; one that points at the axis or away from it also turns.  Solids in
-CalculiX on three meshes give the frequencies of bending; a model error is contradicted where the true one
-is more than twice as large, but for the own error of the solids.
+Run: python -m benchmarks.example_solids.  Each scene with a rectangular section is solved with the scene's
+physics, but without a tip body, at rest; a beam that points towards the axis or away from it also at a speed.
+CalculiX solves the beam as a solid on three meshes.  A model error is contradicted if the true difference of
+a bending frequency, less the error of the solid's frequency, is more than twice the model error.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from benchmarks.peers.solids import BENDING, Strip, reference
 from benchmarks.rows import Row, show
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-# Number of modes, allowed ratio of errors, and share of critical speed or first frequency.
+# Number of modes, allowed ratio of errors, and speed over the critical speed or first frequency.
 _MODES, _ALLOWED, _SHARE = 3, 2.0, 0.6
 
 
@@ -34,7 +34,7 @@ def scenes() -> Iterator[tuple[str, bd.Scene]]:
     for path in sorted(EXAMPLES.glob("*.toml")):
         try:
             scene = bd.load_scene(path)
-        except ValueError:  # a file on brakes
+        except ValueError:  # the file describes a brake
             continue
         if scene.beam.section is not None and scene.beam.twist is None:
             beam = replace(scene.beam, tip=None, point_masses=(), point_springs=())
@@ -45,7 +45,7 @@ def scenes() -> Iterator[tuple[str, bd.Scene]]:
 
 
 def strip_of(scene: bd.Scene, speed: float) -> Strip:
-    """Return the beam of a scene as a solid."""
+    """Return the beam of a scene as a solid body."""
     section, mount, end = scene.beam.section, scene.mount, np.zeros(1)
     assert section is not None
     t, b = float(section.thickness(end)[0]), float(section.width(end)[0])
@@ -61,7 +61,7 @@ def strip_of(scene: bd.Scene, speed: float) -> Strip:
 
 
 def speeds_of(scene: bd.Scene) -> list[float]:
-    """Return the speed 0, and one more if the beam points at the axis or away from it."""
+    """Return the speed 0, and a second speed [rad/s] if the beam points at the axis or away from it."""
     if math.sin(scene.mount.setting_angle) > 1e-9:
         return [0.0]
     critical = bd.critical_speed(scene)
@@ -74,7 +74,7 @@ def compare() -> Iterator[Row]:
     for name, scene in scenes():
         for speed in speeds_of(scene):
             solid = [mode for mode in reference(strip_of(scene, speed)) if mode.kind == BENDING][:_MODES]
-            with warnings.catch_warnings(action="ignore"):  # of what is compared here
+            with warnings.catch_warnings(action="ignore"):  # warnings about the model errors compared here
                 found = bd.natural_modes(scene, speed, _MODES)
                 stated = found.model_error
             true = np.abs([m.frequency / f - 1 for m, f in zip(solid, found.frequency, strict=False)])

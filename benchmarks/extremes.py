@@ -2,9 +2,9 @@
 
 Run: python -m benchmarks.extremes
 
-Every answer is held against another route: guaranteed bounds, the power series in mpmath, the closed form
-of the uniform beam at rest for up to 200 modes, or finite elements for the beam with stretch.  It is wrong
-in silence if its stated error does not reach what is known to be true.
+Every answer is compared with another method: guaranteed bounds, the power series in mpmath, the closed form
+of the uniform beam at rest for up to 200 modes, or finite elements for the beam with stretch.  An answer is
+"wrong in silence" if its true error exceeds its stated error.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -39,20 +39,20 @@ _EPS = float(np.finfo(float).eps)
 
 _QUARTER = np.pi / 2
 SEED = 11
-_NEAR = 1e-9  # relative distance from a critical speed at which bounds still have a sign despite rounding
-_QUICK_TENSION = 1e4  # tension over EI / L^2 up to which the series of a critical speed takes a second
-_FASTEST_GAMMA = 1e6  # largest gamma up to which a missing critical speed must be proven
+_NEAR = 1e-9  # relative distance from a critical speed at which the bounds' sign is not rounding
+_QUICK_TENSION = 1e4  # tension over EI / L^2 up to which the power series takes a second for a critical speed
+_FASTEST_GAMMA = 1e6  # gamma up to which the absence of a critical speed must be proven
 _WARNED = 1e-6  # stated error above which an answer has a warning
 _STEEL = 200e9, 7850.0
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outcome of one draw."""
+    """Outcome for one random scene."""
 
     kind: str
     verdict: str  # "right", "right, with a warning", "refused" or "wrong in silence"
-    known: float  # relative uncertainty of what it is held against
+    known: float  # relative uncertainty of the reference
     detail: str = ""
 
 
@@ -60,7 +60,7 @@ class Outcome:
 
 
 def draw_beam(rng: np.random.Generator, taper: bool = True, tip: bool = True) -> bd.Beam:
-    """Draw a beam 10 um to 100 m long, slenderness 10 to 1e6, with up to 1e6 beam masses at its tip."""
+    """Draw a beam of 10 um to 100 m, slenderness 10 to 1e6, with a tip body of up to 1e6 beam masses."""
     length = 10 ** rng.uniform(-5, 2)
     thickness = length / 10 ** rng.uniform(1, 6)
     tapers = rng.uniform(0, 0.9, 2) * rng.integers(0, 2) * taper
@@ -71,7 +71,7 @@ def draw_beam(rng: np.random.Generator, taper: bool = True, tip: bool = True) ->
 
 
 def draw_mount(rng: np.random.Generator, length: float) -> bd.Mount:
-    """Draw a mount with hubs to 1e6 lengths, all angles, many of them at or near a quarter turn."""
+    """Draw a mount with a hub radius up to 1e6 lengths and any angles, many at or near a quarter turn."""
     angles = [0.0, np.pi, _QUARTER, _QUARTER + rng.choice([-1, 1]) * 1e-12, rng.uniform(-np.pi, np.pi)]
     return bd.Mount(
         length * rng.choice([0.0, 10 ** rng.uniform(-3, 6)]),
@@ -95,7 +95,7 @@ def draw_scene_that_may_buckle(rng: np.random.Generator) -> bd.Scene:
 
 
 def draw_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """Draw any scene and speed: gamma to 1e4, past the critical speed."""
+    """Draw any scene and speed: gamma to 1e4, also past the critical speed."""
     beam = draw_beam(rng)
     scene = bd.Scene(beam, draw_mount(rng, beam.length))
     gamma = rng.choice([0.0, 10 ** rng.uniform(-8, 4)]) / time_unit(beam)
@@ -105,7 +105,7 @@ def draw_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
     return scene, float(gamma * rng.choice([1, -1]))
 
 
-# What is known ------------------------------------------------------------------------------------
+# Checks against references ------------------------------------------------------------------------
 
 
 def check_by_bounds(rng: np.random.Generator) -> Outcome:
@@ -114,7 +114,7 @@ def check_by_bounds(rng: np.random.Generator) -> Outcome:
     modes = bd.natural_modes(scene, speed)
     bounds = bd.frequency_bounds(scene, speed)
     squared = -np.real(modes.eigenvalue**2)
-    # Near the critical speed the squared frequency is a small difference: 4 eps times its condition.
+    # Near the critical speed the squared frequency is a small difference of large terms: rounding grows.
     cond = np.abs(squared[-1] / squared) if len(squared) else 1.0
     error = np.maximum(modes.error, 4 * _EPS * cond)
     room = np.abs(squared) * (2 * error + error**2)
@@ -148,7 +148,7 @@ def check_at_rest(rng: np.random.Generator) -> Outcome:
 
 
 def check_critical_by_bounds(rng: np.random.Generator) -> Outcome:
-    """Check a critical speed against guaranteed bounds beside it; a missing one up to a high speed."""
+    """Check a critical speed by guaranteed bounds on either side; its absence up to a high speed."""
     scene = draw_scene_that_may_buckle(rng)
     discretization = rng.choice(["ritz", "fem"], p=[0.9, 0.1])
     point = bd.critical_point(scene, str(discretization), draw_tolerance(rng))
@@ -168,7 +168,7 @@ def check_critical_by_bounds(rng: np.random.Generator) -> Outcome:
 
 
 class Prover:
-    """Prover that the stiffness of a scene at a speed is positive, or is not, by bounds of two sizes."""
+    """Prover, by guaranteed bounds of two sizes, that a scene's stiffness at a speed is positive or not."""
 
     def __init__(self, scene: bd.Scene) -> None:
         scaled, self.time = _nondimensional(scene)
@@ -176,7 +176,7 @@ class Prover:
         self.splits = [PlaneEnclosure(scaled, size, 0.0, flexibility) for size in (32, 64)]
 
     def is_stable(self, speed: float) -> bool | None:
-        """Whether the stiffness is proven positive, or not; None if neither is proven."""
+        """Return whether the stiffness is proven to be positive, or not; None if neither is proven."""
         for split in self.splits:
             lower = split.stiffness_form((speed * self.time) ** 2)
             if lower is not None and np.isfinite(lower).all() and np.linalg.eigvalsh(lower)[0] >= 0:
@@ -188,14 +188,14 @@ class Prover:
 
 
 def draw_tolerance(rng: np.random.Generator) -> float | None:
-    """Draw no tolerance, or one of 0.1 to 1e-9."""
+    """Draw a tolerance of 0.1 to 1e-9, or None."""
     return None if rng.integers(0, 2) else float(10 ** rng.uniform(-9, -1))
 
 
 def check_critical_by_series(rng: np.random.Generator) -> Outcome:
     """Check a critical speed against the power series, up to a tension of 1e4 EI / L^2."""
     tension = np.inf
-    while tension > _QUICK_TENSION:  # past it, and where there is none, the series would take long
+    while tension > _QUICK_TENSION:  # above, or without a critical speed, the series takes long
         scene = draw_scene_that_may_buckle(rng)
         point = bd.critical_point(scene, tolerance=draw_tolerance(rng))
         tension = point.speed**2 * largest_tension(scene)
@@ -238,12 +238,12 @@ def check_with_stretch(rng: np.random.Generator) -> Outcome:
 
 
 def judge(kind: str, modes: bd.Modes, fits: bool, known: float, detail: str) -> Outcome:
-    """Return the outcome for modes that agree with the known values, or do not."""
+    """Return the outcome for modes, given whether they agree with the known values."""
     return judge_answer(kind, bool(modes.error.max() > _WARNED), fits, known, detail)
 
 
 def judge_answer(kind: str, warned: bool, fits: bool, known: float, detail: str) -> Outcome:
-    """Return the outcome for an answer that agrees with the known value, or does not."""
+    """Return the outcome for an answer, given whether it agrees with the known value."""
     if not fits:
         return Outcome(kind, "wrong in silence", known, detail)
     return Outcome(kind, "right, with a warning" if warned else "right", known)
@@ -260,7 +260,7 @@ _KINDS: tuple[tuple[str, float, Callable[[np.random.Generator], Outcome]], ...] 
 
 
 def draw_and_check(number: int, seed: int) -> Outcome:
-    """Return the outcome of the draw with a number."""
+    """Draw the scene with a number, check it, and return the outcome."""
     rng = np.random.default_rng([seed, number])
     name, _, check = _KINDS[rng.choice(len(_KINDS), p=[share for _, share, _ in _KINDS])]
     try:
@@ -274,7 +274,7 @@ def draw_and_check(number: int, seed: int) -> Outcome:
 
 
 def summarize(outcomes: Sequence[Outcome]) -> Iterator[Row]:
-    """Yield counts of verdicts, and what was refused."""
+    """Yield counts of verdicts, and the reasons of refusals."""
     verdicts = Counter(o.verdict for o in outcomes)
     yield "random draws", str(len(outcomes)), "100000"
     yield "wrong in silence", str(verdicts["wrong in silence"]), "0"
@@ -300,7 +300,7 @@ def summarize(outcomes: Sequence[Outcome]) -> Iterator[Row]:
 
 
 def draw_all(first: int, scenes: int, workers: int, seed: int) -> list[Outcome]:
-    """Compute all draws from a first one on, in several processes."""
+    """Draw and check a number of scenes, from a first number on, in several processes."""
     with ProcessPoolExecutor(workers) as pool:
         return list(pool.map(partial(draw_and_check, seed=seed), range(first, first + scenes), chunksize=64))
 
@@ -311,7 +311,7 @@ def measure_sample() -> Iterator[Row]:
 
 
 def measure_linear_models() -> Iterator[Row]:
-    """Measure linear models of steel beams of 1 um to 1 km that are the same without dimensions."""
+    """Measure deviations between linear models of similar steel beams of 1 um to 1 km."""
     apart = [deviation(10.0**power, planes) for power in range(-6, 4) for planes in (1, 2)]
     yield "linear models of 1 um to 1 km, over those of 1 m", f"{max(apart):.0e}", "1e-9"
 

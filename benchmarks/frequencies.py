@@ -1,6 +1,6 @@
 """Accuracy and speed of natural frequencies and their limits.  Run: python -m benchmarks.frequencies
 
-Held against the power series, published tables and the published harvester.
+The results are compared with the power series, published tables and the published harvester.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from benchmarks.peers import pybmodes
 from benchmarks.peers.ours import BLADE_SCENE
 from benchmarks.rows import Row, best_time, show, time_text
 
-_CALLS = 50  # number of calls of milliseconds, of which the shortest counts
+_CALLS = 50  # number of calls (of milliseconds each), of which the shortest counts
 _FIRST_CALL = """
 import beamdyn as bd
 bd.natural_modes(bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0)), 1.0)
@@ -55,7 +55,7 @@ def compare_with_tables() -> Iterator[Row]:
 
 
 def find_deviation(case: dict, discretization: str) -> np.ndarray:
-    """Compute relative deviations from the digits of a published case."""
+    """Compute relative deviations from the printed digits of a published case."""
     expected = np.array(case["frequency"])
     modes = bd.natural_modes(of_case(case), case["gamma"], len(expected), discretization)
     return np.abs(2 * np.pi * modes.frequency / expected - 1)
@@ -75,7 +75,7 @@ def compare_published_scene() -> Iterator[Row]:
 
 
 def check_many_functions() -> Iterator[Row]:
-    """Yield the largest error as the basis grows: no digit may be lost."""
+    """Yield the largest error for increasing numbers of trial functions: no digit may be lost."""
     for gamma in (0, 12):
         expected, worst = exact_eigenvalues(gamma), 0.0
         for n in (20, 40, 80, 120, 160, 200):
@@ -84,7 +84,7 @@ def check_many_functions() -> Iterator[Row]:
 
 
 def time_locus() -> Iterator[Row]:
-    """Yield time and error of a locus, and the time of the command's help."""
+    """Yield time and error of frequencies over 1000 speeds, and the time of the command's help."""
     speeds = np.linspace(0, 150, 1000)
     locus = bd.frequency_locus(HARVESTER, speeds, 3)
     time = best_time(lambda: bd.frequency_locus(HARVESTER, speeds, 3))
@@ -102,7 +102,7 @@ def time_locus() -> Iterator[Row]:
 
 
 def time_one_call() -> Iterator[Row]:
-    """Yield times of one call for a uniform blade, of a peer with 5 elements, and of the first call."""
+    """Yield times of one call for a uniform blade, of pyBModes with 5 elements, and of the first call."""
     scenes = (
         replace(BLADE_SCENE, beam=replace(BLADE_SCENE.beam, length=1 + 1e-13 * k)) for k in range(_CALLS)
     )
@@ -123,7 +123,7 @@ def time_one_call() -> Iterator[Row]:
 def time_process(script: str) -> float:
     """Measure the shortest processor time [s] of fresh processes that run a script.
 
-    Bytecode is kept between them, as that of an installed package is.
+    Bytecode is cached between processes, as for an installed package.
     """
 
     def taken() -> float:

@@ -1,8 +1,8 @@
 """Are mutated files and wrong calls answered or refused in a sentence?  Run: python -m benchmarks.fuzzing
 
-All in one process, so that a state that one case leaves behind would spoil the next. A file goes through a
-command, a call through a public function. Anything but an answer or a refusal of the program's own is a
-failure: a traceback or another package's message, a warning of numpy, more than 20 s of computing.
+All cases run in one process, to detect state that one case leaves for the next. A mutated file is given to a
+command, wrong arguments to a public function. Anything except an answer or an error message of the program
+is a failure: a traceback, another package's message, a warning of numpy, more than 20 s of computing.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from random import Random
 from types import FrameType
 from typing import Any
 
-# Several threads would only wait for each other on small matrices.
+# More threads do not speed up small matrices.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("MPLBACKEND", "agg")
 
@@ -40,9 +40,9 @@ from benchmarks.rows import Row, show
 
 ROOT = Path(__file__).parents[1]
 SEED, CASES = 13, 2000
-LIMIT = 20.0  # processor time of one case [s], so that other programs do not count
-_HUNG = 300.0  # time [s] after which a case that waits, or that no signal interrupts, ends the run
-_MEMORY = 8 << 30  # largest memory [bytes]; a program reports if it needs more
+LIMIT = 20.0  # limit of the processor time of one case [s], in which other programs do not count
+_HUNG = 300.0  # time [s] after which a case that waits, or cannot be interrupted, ends the run
+_MEMORY = 8 << 30  # largest memory [bytes]; a case that needs more fails
 _OURS = tuple(f"{ROOT / package}{os.sep}" for package in ("beamdyn", "brakes"))
 _REFUSALS = (ValueError, TypeError, ArithmeticError)
 
@@ -59,7 +59,7 @@ _SCENE = (
     "simulate --t-end 50ms --modes 2 --tolerance 1e-3 --csv out.csv",
     "sweep --speeds 1,20rad/s --window 0:50ms --modes 2 --tolerance 1e-3",
 )
-_BLADE = (*_SCENE[1:3], "terms --json out.json")  # motions of 48 segments take longer than the limit
+_BLADE = (*_SCENE[1:3], "terms --json out.json")  # no motions: those of 48 segments exceed the limit
 _CALIPER = ("caliper --json out.json", "caliper --csv out.csv", "caliper --free-bodies out.svg", "caliper")
 _DRUM = ("drum --json out.json", "drum --csv out.csv", "drum --vary friction=0.1:0.5:3")
 _FORKLIFT = ("forklift --json out.json", "forklift --csv out.csv", "forklift --vary speed=10:30:3km/h")
@@ -90,18 +90,18 @@ def kinds() -> tuple[Kind, ...]:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a case.
+    """Outcome of a case.
 
     Parameters
     ----------
     case : str
-        What was asked.
+        Command or call.
     verdict : str
         "answered", "refused", or the kind of failure.
     detail : str
-        What was said.
+        Text of the answer or of the error.
     seconds : float
-        How long it computed.
+        Processor time [s].
     """
 
     case: str
@@ -111,7 +111,7 @@ class Outcome:
 
     @property
     def failed(self) -> bool:
-        """Whether the case has neither an answer nor a refusal of the program itself."""
+        """Whether the case has neither an answer nor an error message of the program."""
         return self.verdict not in ("answered", "refused")
 
 
@@ -119,12 +119,12 @@ class Outcome:
 
 
 class TookTooLongError(BaseException):
-    """Raised if a case is not done in time; nothing in the programs catches it."""
+    """Raised if a case takes too long; the programs do not catch it."""
 
 
 @contextmanager
 def _time_limit(seconds: float) -> Iterator[None]:
-    """Raise `TookTooLongError` after a time of computing, as soon as Python has control again."""
+    """Raise `TookTooLongError` after a processor time [s], when Python regains control."""
 
     def end(_: int, frame: FrameType | None) -> None:
         where = f"{frame.f_code.co_filename}:{frame.f_lineno}" if frame else ""
@@ -162,11 +162,11 @@ def watch(case: str, run: Callable[[], tuple[str, str]], limit: float = LIMIT) -
 
 @contextmanager
 def _foreign_warnings() -> Iterator[list[str]]:
-    """Raise warnings, such as those of numpy, and collect those for the user that are not ours."""
+    """Turn warnings such as numpy's into errors, and collect user warnings of other packages."""
     warned: list[str] = []
 
     def note(message: Warning | str, category: type[Warning], filename: str, lineno: int, *_: object) -> None:
-        giver = sys._getframe(2).f_code.co_filename  # the frame between is the module `warnings`
+        giver = sys._getframe(2).f_code.co_filename  # the intermediate frame belongs to the module `warnings`
         if category is not UserWarning or not giver.startswith(_OURS):
             warned.append(f"{category.__name__}: {message} ({Path(filename).name}:{lineno})")
 
@@ -179,7 +179,7 @@ def _foreign_warnings() -> Iterator[list[str]]:
 
 
 def _is_ours(error: BaseException) -> bool:
-    """Whether a statement of the packages raises the error, not an operation that fails."""
+    """Return whether a `raise` statement of the packages raised the error, not a failing operation."""
     last = error.__traceback__
     while last is not None and last.tb_next is not None:
         last = last.tb_next
@@ -215,7 +215,7 @@ def check_file(number: int, seed: int = SEED) -> Outcome:
 
 
 def _run(main: Callable[[Sequence[str]], int], arguments: Sequence[str]) -> tuple[str, str]:
-    """Return the verdict on a command, and its text on standard error."""
+    """Run a command; return the verdict and the text on standard error."""
     out, err = io.StringIO(), io.StringIO()
     with redirect_stdout(out), redirect_stderr(err):
         code = main(arguments)
@@ -260,7 +260,7 @@ def check_all(check: Callable[[int, int], Outcome], cases: range, seed: int = SE
 
 
 def _unhung(check: Callable[[int, int], Outcome], number: int, seed: int) -> Outcome:
-    """Return the outcome of a case; end the process if it hangs in a library, and show the place."""
+    """Return the outcome of a case; if it hangs in a library, end the process and print the traceback."""
     faulthandler.dump_traceback_later(_HUNG, exit=True, file=sys.__stderr__)
     try:
         return check(number, seed)

@@ -1,9 +1,9 @@
-"""Hostile entries in each field of the interactive programs: what they answer, and whether they go on.
+"""Hostile entries in each field of the interactive programs: their answers, and whether they keep running.
 
 Run: python -m benchmarks.hostile_entries [--program brakes|beamdyn] [--entries 50] [--seed 1]
 
-First each entry alone, on the design that its screen opens with, in the processes that make answers.
-Then all of them in one tab of a browser, as fast as it sends them, while another tab is used.
+First each entry is made alone, on the initial design of its screen, in the processes that compute answers.
+Then all entries are made in one browser tab, as fast as possible, while another tab is used.
 """
 
 from __future__ import annotations
@@ -46,16 +46,16 @@ _TEXTS = (
 
 
 def hostile_texts(entry: Input, count: int, seed: int) -> list[str]:
-    """Return entries for one field that no one should make, in an order that follows from the seed.
+    """Return absurd entries for one field, in an order that follows from the seed.
 
     Parameters
     ----------
     entry : Input
-        The field's input, whose unit some of them have.
+        The field's input, whose unit some of the texts have.
     count : int
-        How many.
+        Number of texts.
     seed : int
-        Of the random ones.
+        Seed of the random texts.
     """
     chance, unit = random.Random(f"{seed} {entry.path}"), entry.quantity.unit
     known = [*_NUMBERS, *(f"{number} {unit}".strip() for number in _NUMBERS), *_TEXTS]
@@ -80,7 +80,7 @@ class Found:
     memory: float = 0.0
 
     def add(self, where: str, path: str, outcome: page_tasks.Outcome, seconds: float) -> None:
-        """Count an outcome."""
+        """Add an outcome to the counts."""
         self.slow = sorted([*self.slow, (seconds, where)], reverse=True)[:3]
         if isinstance(outcome, ShownAnswer):
             self.kinds["answered"] += 1
@@ -108,7 +108,7 @@ async def _alone(name: str, program: Program, count: int, seed: int) -> Found:
 
 
 async def _warm(processes: Processes, program: Program) -> None:
-    """Wait until as many processes are ready as there may be: how long that takes is no answer's fault."""
+    """Wait until all worker processes are ready, so that no answer's time includes their start."""
     document = program.documents[0]
     waits = [
         processes.submit(page_tasks.solve, document, document.screens[0], document.base_entries)
@@ -141,7 +141,7 @@ async def _one(processes: Processes, found: Found, case: Any, room: asyncio.Sema
 
 
 def memory_of(ids: Iterable[int]) -> float:
-    """Return the memory of processes [MB], from /proc; processes that have ended have none."""
+    """Return the memory of processes [MB], from /proc; ended processes count as 0."""
     pages = 0
     for process in ids:
         with suppress(OSError):
@@ -150,7 +150,7 @@ def memory_of(ids: Iterable[int]) -> float:
 
 
 def children_of(process: int) -> list[int]:
-    """List the processes that a process has started, and that still run."""
+    """List the running child processes of a process."""
     try:
         return [int(child) for child in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
     except OSError:
@@ -158,7 +158,7 @@ def children_of(process: int) -> list[int]:
 
 
 def each_alone(program: Program, count: int, seed: int) -> Iterator[Row]:
-    """Yield the outcomes of the entries of each field, made one at a time."""
+    """Yield the outcomes of absurd entries in each field, made one at a time."""
     found = asyncio.run(_alone(program.name, program, count, seed))
     yield "entries solved one by one", str(found.kinds.total()), ""
     for kind, number in found.kinds.most_common():
@@ -173,7 +173,7 @@ def each_alone(program: Program, count: int, seed: int) -> Iterator[Row]:
 
 # In a tab beside another ------------------------------------------------------------------------------------
 
-# Types texts into fields, whether they are folded or not, with a pause after each.
+# Script: types texts into fields, visible or folded, with a pause after each.
 ENTER = """async ([entries, pause]) => {
   for (const [path, text] of entries) {
     for (const field of document.querySelectorAll(`[data-path="${path}"]`)) {
@@ -189,7 +189,7 @@ _BEGIN = """([enter, given]) => {
   window.sent = false;
   eval(enter)(given).finally(() => { window.sent = true; });
 }"""
-# How long until the screen in front says anything new after an entry, and until it is solved [ms].
+# Script: times from an entry until the visible screen changes its text, and until it is solved [ms].
 _ANSWER = """async ([path, text, patience]) => {
   const status = [...document.querySelectorAll(".status[role=status]")].find((e) => e.checkVisibility());
   const board = [...document.querySelectorAll(".board, .charts")].find(
@@ -207,30 +207,30 @@ _ANSWER = """async ([path, text, patience]) => {
   watch.disconnect();
   return [reacted, performance.now() - begin];
 }"""
-_TYPING = 100.0  # that a field waits for a pause in typing [ms]
+_TYPING = 100.0  # delay of a field until it accepts typed text [ms]
 
 
 class Memory(threading.Thread):
-    """A thread that watches the memory of a process and of those that it has started."""
+    """A thread that monitors the memory of a process and of its child processes."""
 
     def __init__(self, process: int) -> None:
         super().__init__(daemon=True)
         self.most, self._root, self._on = 0.0, process, True
 
     def run(self) -> None:
-        """Watch until `stop` is called."""
+        """Monitor the memory until `stop` is called."""
         while self._on:
             self.most = max(self.most, memory_of([self._root, *children_of(self._root)]))
             time.sleep(0.2)
 
     def stop(self) -> None:
-        """Stop watching."""
+        """Stop monitoring the memory."""
         self._on = False
         self.join()
 
 
 def beside_another_tab(program: Program, count: int, seed: int) -> Iterator[Row]:
-    """Measure how another tab responds while one sends the entries of all fields."""
+    """Measure the response times of one tab while another tab sends the entries of all fields."""
     process = start(port := free_port(), program.name)
     memory = Memory(process.pid)
     memory.start()
@@ -238,7 +238,7 @@ def beside_another_tab(program: Program, count: int, seed: int) -> Iterator[Row]
     try:
         with browser() as made:
             hostile, other = (open_page(made.new_context(), port) for _ in range(2))
-            # No number occurs twice, so that each counts as an entry.
+            # No number occurs twice, so that each one is a change of the field.
             numbers = (f"0.{digits} m" for digits in range(1100, 1_000_000))
             times = [
                 time
@@ -283,7 +283,7 @@ def _beside(
     entries: list[tuple[str, str]],
     numbers: Iterator[str],
 ) -> Iterator[tuple[float, float]]:
-    """Yield times of the other tab [ms] while all fields of one screen get their entries."""
+    """Yield times of the other tab [ms] while entries are typed into all fields of one screen."""
     name, path = OTHER[program.name]
     hostile.reload()
     hostile.wait_for_function("window.did_handshake")

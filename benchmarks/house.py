@@ -1,4 +1,4 @@
-"""How large and how winding the code is: what runs for an answer, reads prose, is imported late.
+"""Size and complexity of the code: what runs for an answer, parses sentences, is imported late.
 
 Run: python -m benchmarks.house            (½ minute; --list prints what the rows of prose and circles count)
 
@@ -44,13 +44,13 @@ COMMANDS = (
     (("brakes", "caliper", "v-brake"), "60"),
 )
 PATTERN = {("brakes", room) for room in ("answers", "config", "drawings", "machines")}
-BENT = (  # what computes beams that bend far
+BENT = (  # modules that compute large deflections
     *("equations/beam_in_space/*.py", "modes/equilibria.py", "modes/modal/equilibrium.py"),
     *("modes/modal/continuation.py", "transient/elastica_*.py", "transient/beam_in_space_system.py"),
 )
 BODIES = {"<module>", "<lambda>", "<listcomp>", "<setcomp>", "<dictcomp>", "<genexpr>"}
 PROSE = re.compile(r"warning|sentence|message|note(?!d)|remark|advice|refusal|said|error")
-NAMED = re.compile(r"(name|label|place|field|number)\b")  # names of subjects that are no prose
+NAMED = re.compile(r"(name|label|place|field|number)\b")  # names of variables that hold no sentences
 TESTS = {"startswith", "endswith", "find", "count", "index"}
 PATTERNS = {"compile", "match", "fullmatch", "search", "sub", "split", "findall", "finditer"}
 # Modules whose patterns read what a person or another program wrote: options, entries of forms, files.
@@ -92,7 +92,7 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 class Profile:
-    """Codes of functions of both packages that have been entered, while it is the profile function."""
+    """A function for `sys.setprofile` that records the functions of both packages that are called."""
 
     def __init__(self) -> None:
         self.entered: set[CodeType] = set()
@@ -112,7 +112,7 @@ class Profile:
 
 
 def probe(arguments: Sequence[str]) -> None:
-    """Run a command in this process, and write to standard error the modules of which a function has run."""
+    """Run a command in this process, and print to standard error the modules whose functions have run."""
     import atexit
 
     package, *rest = arguments
@@ -140,7 +140,7 @@ def modules_run(command: Sequence[str]) -> list[str]:
 
 
 def functions_of_modes() -> set[tuple[str, str, int]]:
-    """List file, name and line of each named function that one warm `natural_modes` enters."""
+    """List file, name and line of each named function that a second call of `natural_modes` enters."""
     import beamdyn as bd
 
     beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
@@ -153,7 +153,7 @@ def functions_of_modes() -> set[tuple[str, str, int]]:
     return {each for each in profile.functions() if each[1] not in BODIES}
 
 
-# What the code says -----------------------------------------------------------------------------------
+# What the source code contains ------------------------------------------------------------------------
 
 
 @cache
@@ -167,8 +167,8 @@ def sources() -> list[Path]:
 
 
 def _is_prose(node: ast.AST, made_of: dict[str, ast.expr]) -> bool:
-    """Whether a value has a name that sentences have, or is made of one that has."""
-    # The attribute of an error is a key, no sentence.
+    """Return whether an expression has a name typical of sentences, or is made from one."""
+    # The attribute of an error is a key, not a sentence.
     if isinstance(node, ast.Attribute) and node.attr == "field":
         return False
     names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
@@ -220,7 +220,7 @@ def late_imports(tree: ast.Module) -> int:
 
 
 def _imports(node: ast.AST) -> bool:
-    """Whether a node calls `import_module`."""
+    """Return whether a syntax node calls `import_module`."""
     return isinstance(node, ast.Call) and getattr(node.func, "id", "") == "import_module"
 
 
@@ -242,7 +242,7 @@ def circles() -> list[list[str]]:
 
 
 def _dynamic_imports() -> Iterator[tuple[str, str]]:
-    """Yield a module, and one that it imports by `import_module` of a text."""
+    """Yield each module with a module that it imports by `import_module("...")`."""
     for path in sources():
         name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
         for node in ast.walk(_tree(path)):
@@ -273,14 +273,14 @@ def code_lines(path: Path) -> int:
 
 
 def count_what_runs() -> Iterator[Row]:
-    """Yield the modules of two commands, and the functions of one answer."""
+    """Yield the numbers of modules run by two commands, and of functions called for one answer."""
     for command, bound in COMMANDS:
         yield f"modules run by `{' '.join(command)}`", f"{len(modules_run(command))}", bound
     yield "named functions entered by a warm natural_modes", f"{len(functions_of_modes())}", "130"
 
 
 def count_readings_of_prose() -> Iterator[Row]:
-    """Yield tests and patterns by which code reads its own sentences."""
+    """Yield the numbers of tests and patterns by which code parses its own sentences."""
     tests = sum(1 for path in sources() for _ in sentence_tests(_tree(path)))
     yield "substring tests on sentences", f"{tests}", "0"
     prose = (path for path in sources() if path.relative_to(ROOT).as_posix() not in READERS)
@@ -288,7 +288,7 @@ def count_readings_of_prose() -> Iterator[Row]:
 
 
 def count_modules() -> Iterator[Row]:
-    """Yield what is imported late and in circles, and sizes."""
+    """Yield counts of late imports, circles, repeated names and code lines."""
     yield "imports inside functions", f"{sum(late_imports(_tree(path)) for path in sources())}", "90"
     yield "circles, `import_module` counted", f"{len(circles())}", "0"
     yield "module names used more than once, but for the pattern of rooms", f"{len(names_used_again())}", "10"
@@ -300,7 +300,7 @@ def count_modules() -> Iterator[Row]:
 
 
 def main() -> None:
-    if "--list" in sys.argv:  # lists what the rows count
+    if "--list" in sys.argv:  # print the items that the rows count
         for path in sources():
             name = path.relative_to(ROOT).as_posix()
             for node in sentence_tests(_tree(path)):

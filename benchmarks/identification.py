@@ -1,9 +1,10 @@
-"""Numbers of scenes found from their frequencies: exact without noise, covered by intervals with noise.
+"""Numbers of scenes identified from frequencies: exact without noise, within their intervals with noise.
 
 Run: python -m benchmarks.identification [--exact N] [--noisy N] [--first N] [--workers N] [--save FOLDER]
 
-Each scene has an unknown spring of 0.3 to 30 EI/L at the root, thickness and body at the tip; data are three
-modes at five speeds.  Seed k makes scene k.  Noise of 0.5 % has a normal distribution, whose size is given.
+Each scene has an unknown thickness, tip body, and spring of 0.3 to 30 EI/L at the root.  The data are the
+frequencies of three modes at five speeds.  Seed k determines scene k.  Noise is normally distributed with a
+known standard deviation of 0.5 %.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -26,12 +27,12 @@ from benchmarks.rows import Row, show
 
 NOISE = 0.005
 _FOUND = 1e-7  # largest relative error without noise
-_MOST = 40  # most solves for each number
+_MOST = 40  # largest number of solutions of the equations for each number
 
 
 @dataclass(frozen=True)
 class Answer:
-    """Largest relative error of the numbers of a scene, whether each is in its interval, and solves."""
+    """Largest relative error of a scene's numbers, is each in its interval, and number of solutions."""
 
     number: int
     error: float
@@ -40,7 +41,7 @@ class Answer:
 
 
 def outcome(seed: int, noise: float) -> list[Answer]:
-    """Identify the scene of a seed, and return the outcome."""
+    """Identify the numbers of the scene of a seed, and return the outcome."""
     true = unknowns(seed)
     found, values = identify(true, noise, seed), np.array([*true.values()])
     error = np.abs(found.value / values - 1)
@@ -69,7 +70,7 @@ def _rows(seeds: range, noise: float, workers: int, folder: Path | None) -> Iter
 
 
 def main(arguments: Sequence[str] | None = None) -> list[Row]:
-    """Print how well numbers are found."""
+    """Print how accurately numbers are found."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--exact", type=int, default=200, help="scenes without noise")
     parser.add_argument("--noisy", type=int, default=2000, help="scenes with noise")

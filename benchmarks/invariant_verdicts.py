@@ -1,10 +1,10 @@
-"""Whether verdicts on mechanisms depend on rounding.
+"""Test whether verdicts on mechanisms depend on rounding.
 
 Run: python -m benchmarks.invariant_verdicts [--mechanisms N].
 
-Random mechanisms of one free motion with friction, half of them on a grid, so that loads act in line, stand
-still or are zero, are turned, shifted, drawn in other units and perturbed.  Their toggle positions, the
-verdicts on friction and the kinds of warnings must stay.
+Random mechanisms of mobility 1 with friction are rotated, shifted, scaled to other units and perturbed.  Half
+of them have their points on a grid, so that loads are collinear, do no work or are zero.  Their toggle
+positions, verdicts on friction and kinds of warnings must not change.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def transform(
 
 
 def _power(part: Any, name: str) -> int:
-    """Return the power of the unit of length in a number of a joint or load, for unchanged forces."""
+    """Return the exponent of length in the unit of a joint's or load's number, for unchanged forces."""
     if isinstance(part, planar.Moment | planar.TorsionSpring):
         return 1
     return {"stiffness": -1, "magnitude": 0}.get(name, 1)
@@ -89,7 +89,7 @@ TRANSFORMS: dict[str, Transform] = {
 
 
 def draw_mechanism(rng: np.random.Generator) -> tuple[planar.Mechanism, str]:
-    """Draw a mechanism of mobility 1 with friction, every other on a grid, and the load that drives it."""
+    """Draw a mechanism of mobility 1 with friction, half of them on a grid, and its driving load."""
     is_on_grid = rng.random() < 0.5
     while True:
         drawn = mechanisms.random_mechanism(rng)
@@ -104,7 +104,7 @@ def draw_mechanism(rng: np.random.Generator) -> tuple[planar.Mechanism, str]:
         try:
             mechanism = _on_grid(mechanism)
             planar.solve_with_friction(mechanism, driver.name)
-        except ValueError:  # two points of a part meet on the grid, or it no longer moves
+        except ValueError:  # on the grid two points coincide, or the mechanism cannot move
             continue
         return mechanism, driver.name
 
@@ -164,7 +164,7 @@ def _kind(sentence: str) -> str:
 def count_changes(
     number: int, seed: int = SEED
 ) -> Iterator[tuple[int, str, tuple[Any, ...], tuple[Any, ...]]]:
-    """Yield mechanisms whose verdicts a transform changes: number, transform, verdicts before and after."""
+    """Yield mechanisms with changed verdicts: number, transformation, verdicts before and after."""
     rng = np.random.default_rng(seed)
     for k in range(number):
         mechanism, driver = draw_mechanism(rng)

@@ -1,12 +1,12 @@
 """Loads at the root and at mid-span against closed forms and the unreduced model: python -m benchmarks.loads
 
-A uniform steel cantilever of 0.5 m, with and without a tip body: under its weight, spun, and shaken across
-at 40 rad/s.  Closed forms are those of statics and of u'''' = b^4 u; for the bent spinning beam the
-differential equation is solved by collocation.  The unreduced model keeps all functions of its
-discretization, and its moment is that of its own curvature, EI u''.  Deviations are over the largest along
-the span.
+A uniform steel cantilever of 0.5 m, with and without a tip body, is loaded by its weight, rotates, or has its
+root shaken across at 40 rad/s.  Closed forms are those of statics and of u'''' = b^4 u; for the rotating beam
+that bends, the differential equation is solved by collocation.  The unreduced model keeps all functions of
+its discretization, and its moment follows from its curvature, EI u''.  Deviations are relative to the largest
+value along the span.
 
-Of the shaken beam the moments of the modes left out fall as k^-7 and the shear forces as k^-6.
+For the shaken beam, the moments of mode k, if left out, decrease as k^-7, and the shear forces as k^-6.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ class Found:
 
     @classmethod
     def of(cls, loads: bd.SpanLoads, case: int = 0) -> Found:
-        """Return moments, strains and forces of a case of loads."""
+        """Return moments, strains and shear forces of one case of a result."""
         axial = loads.force[case, :, 0] / EA
-        moment = (loads.strain[case, :, 0] - axial) * EI / (THICK / 2)  # from the strain of the point at -h/2
+        moment = (loads.strain[case, :, 0] - axial) * EI / (THICK / 2)  # from the strain at the point -h/2
         return cls(moment, loads.force[case, :, 1])
 
 
@@ -84,7 +84,7 @@ def weighed() -> Iterator[Row]:
 
 
 def spun() -> Iterator[Row]:
-    """Check spinning beams: the axial force of an outward one, and the moment of one beside the axis."""
+    """Check rotating beams: the axial force of an outward beam, the moment of a beam offset from the axis."""
     for words, tip in (("spun", None), ("spun with a tip body", BODY)):
         beam = replace(BEAM, tip=tip)
         straight = bd.static_loads(bd.Scene(beam, bd.Mount(RADIUS, math.pi)), SPEED, at=AT)
@@ -100,7 +100,7 @@ def spun() -> Iterator[Row]:
 
 
 def _bent_by_rotation(tip: bd.TipMass | None) -> Found:
-    """Compute moment and shear of a spinning beam with centrifugal forces across it.
+    """Compute moment and shear force of a rotating beam with centrifugal forces across its axis.
 
     With the hub radius along and across the beam, d and h: EI u'''' = (N u')' + m omega^2 (u + h), and at
     the tip the same of the body.
@@ -131,7 +131,7 @@ def _bent_by_rotation(tip: bd.TipMass | None) -> Found:
 
 
 def shaken() -> Iterator[Row]:
-    """Check a root that shakes across, without and with a tip body, against both references."""
+    """Check a beam whose root is shaken across, without and with a tip body, against both references."""
     for words, tip in (("shaken", None), ("shaken with a tip body", BODY)):
         beam, exact = replace(BEAM, tip=tip), _forced(tip)
         by_modes, whole = (_vibration(beam, modes) for modes in (_MODES, None))
@@ -147,7 +147,7 @@ def _shake(t: np.ndarray) -> bd.MotionSample:
 
 
 def _vibration(beam: bd.Beam, modes: int | None) -> Found:
-    """Compute loads of the forced vibration at its largest, by modes; of all functions by EI u''."""
+    """Compute amplitudes of loads in forced vibration, by modes; with all functions from EI u''."""
     scene = bd.Scene(beam, bd.Mount(0.0, bending_angle=math.pi / 2))
     model = Model(scene, bd.Ritz(_FUNCTIONS))
     equations = model.equations
@@ -164,7 +164,7 @@ def _vibration(beam: bd.Beam, modes: int | None) -> Found:
 
 
 def _forced(tip: bd.TipMass | None) -> Found:
-    """Compute amplitudes of a uniform cantilever whose root shakes; its body pushes with inertia and arm."""
+    """Compute amplitudes of a uniform cantilever with a shaken root and a tip body, in closed form."""
     w2 = SHAKEN**2
     b = (MASS * w2 / EI) ** 0.25
 
@@ -177,7 +177,7 @@ def _forced(tip: bd.TipMass | None) -> Found:
 
     m, eps, J = (tip.mass, tip.offset, tip.inertia) if tip else (0.0, 0.0, 0.0)
     u, slope, bend, third = (each(LENGTH, k) for k in range(4))
-    push = m * w2 * (u + eps * slope)  # of the body on the beam, by the absolute deflection
+    push = m * w2 * (u + eps * slope)  # force of the body on the beam, from the absolute deflection
     ends = np.array([each(0.0, 0), each(0.0, 1), EI * bend - J * w2 * slope - eps * push, EI * third + push])
     found = np.linalg.solve(ends, [-ACCELERATION / w2, 0, 0, 0])
     return Found(EI * found @ each(AT, 2), -EI * found @ each(AT, 3))

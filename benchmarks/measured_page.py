@@ -1,9 +1,9 @@
 """All figures that the README quotes, in one run: python -m benchmarks  (--save FILE: in parts)
 
 Writes docs/measured.md, docs/tradeoff.md and the README's table of measurements, which repeats rows of the
-first, on a machine that does nothing else.  With a file, a run that is interrupted goes on after the last
-section that was finished; a file of other versions is refused.  The long samples (10 000 scenes and more)
-have commands of their own.
+first page.  It should run on a machine that does nothing else.  With --save, an interrupted run is resumed
+after the last finished section; a file of other versions is refused.  The long samples (10 000 scenes and
+more) have separate commands.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ the size of the full run. Times are those of two cores, and scatter by a tenth.
 
 
 def describe_machine() -> tuple[str, str]:
-    """Return machine and versions, on which the figures depend."""
+    """Describe machine and versions of packages, on which the figures depend."""
     packages = ("numpy", "scipy", "scikit-fem")
     machine = (
         f"Python {platform.python_version()}, {platform.system()} {platform.machine()}, {cpu_count()} cores"
@@ -110,7 +110,7 @@ def write_section(title: str, rows: list[Row]) -> str:
 
 
 def measure(title: str) -> list[Row]:
-    """Measure the rows of a section, and print them with the time that it took."""
+    """Measure the rows of a section, and print them with the computing time."""
     start = perf_counter()
     rows = show(title, *SECTIONS[title].PARTS)
     print(f"{title}: {perf_counter() - start:.0f} s", flush=True)
@@ -118,13 +118,13 @@ def measure(title: str) -> list[Row]:
 
 
 def measure_apart(title: str) -> list[Row]:
-    """Measure a section in a new process, so that memory and caches of one do not affect the next."""
+    """Measure a section in a new process, so that memory and caches do not affect other sections."""
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
         return pool.submit(measure, title).result()
 
 
 def quote_in_readme(page: str) -> None:
-    """Write the rows that the README quotes."""
+    """Copy the rows that the README quotes from the page to the README."""
     cells = [line.split(" | ") for line in page.splitlines() if line.startswith("| ")]
     measured = {row[0].removeprefix("| "): row[1] for row in cells}
     table = ["| what | measured |", "|---|---|", *(f"| {name} | {measured[name]} |" for name in QUOTED)]

@@ -1,8 +1,9 @@
-"""Records, ringing and abrupt motions, beside Table 3's transient in the same run.
+"""Computing times of recorded, oscillating and abrupt motions, relative to the transient of Table 3.
 
 Run: python -m benchmarks.motions
 
-The record is a minute of a spin-up with some ripple, sampled at 1 kHz; `noise` adds errors of its samples.
+The transient of Table 3 (Lee and Yoo 2019) is measured in the same run.  The record is a minute of a spin-up
+with some ripple, sampled at 1 kHz; `noise` adds random errors to the samples.
 """
 
 from __future__ import annotations
@@ -17,13 +18,13 @@ import beamdyn as bd
 from benchmarks.cases.scenes import HARVESTER, ROLLING, STEADY_ROLLING
 from benchmarks.rows import Row, best_time, show
 
-TILTED = replace(HARVESTER, mount=bd.Mount(0.215, 0.3))  # so that rotation about a fixed centre bends it
+TILTED = replace(HARVESTER, mount=bd.Mount(0.215, 0.3))  # tilted, so that rotation bends the beam
 MINUTE = np.arange(60_001) / 1000
 RUNS = 3
 
 
 def record(noise: float = 0.0) -> bd.Scene:
-    """Make a minute of rotation at 1 kHz, with normal errors of a size [rad/s]."""
+    """Make a record of a minute of rotation at 1 kHz, with normal errors of a given size [rad/s]."""
     x = np.minimum(MINUTE / 10, 1)
     speed = 55 * x**2 * (3 - 2 * x) + 0.2 * np.sin(3 * MINUTE) ** 2
     speed = speed + noise * np.random.default_rng(1).standard_normal(len(MINUTE))
@@ -31,7 +32,7 @@ def record(noise: float = 0.0) -> bd.Scene:
 
 
 def jump() -> bd.Scene:
-    """Make 10 s in 5000 samples, with a jump by 5 rad/s at half time."""
+    """Make a record of 10 s in 5000 samples, with a jump of the speed by 5 rad/s at half time."""
     t = np.linspace(0, 10.0, 5000)
     x = np.minimum(t / (10.0 / 3), 1)
     return replace(TILTED, motion=bd.SampledRotation(t, 50 * x**2 * (3 - 2 * x) + 5.0 * (t > 5.0)))
@@ -58,7 +59,7 @@ MOTIONS = {  # scene, end [s], tolerance, bound over Table 3's transient
 
 
 def time_motions() -> Iterator[Row]:
-    """Yield times of each kind of motion, modes by the tolerance, alternating with Table 3's transient."""
+    """Yield the time of each kind of motion, measured in turn with that of Table 3's transient."""
     for name, (scene, t_end, tolerance, bound) in MOTIONS.items():
         runs = [time_beside_table_3(scene, t_end, tolerance) for _ in range(RUNS)]
         time, table_3 = np.min(runs, axis=0)
@@ -67,7 +68,7 @@ def time_motions() -> Iterator[Row]:
 
 
 def time_beside_table_3(scene: bd.Scene, t_end: float, tolerance: float) -> tuple[float, float]:
-    """Measure processor times [s] of a run, and of Table 3's transient before it."""
+    """Measure processor times [s] of a transient, and of Table 3's transient before it."""
     table_3 = best_time(lambda: bd.simulate(ROLLING, 30.0, 5, tolerance=1e-5), 2, process_time)
     return best_time(lambda: bd.simulate(scene, t_end, tolerance=tolerance), 1, process_time), table_3
 

@@ -1,9 +1,10 @@
-"""What transients, sweeps and steady responses cost over one stock integrator's run.
+"""Times of transients, sweeps and steady responses, relative to one run of scipy's integrator.
 
 Run: python -m benchmarks.ratios            (two minutes)
 
-The stock run is Table 3's transient by solve_ivp's Radau, with right-hand side and Jacobian by hand, as in
-`benchmarks.transient`; all is measured in one run of this program.
+The reference time is that of Table 3's transient (Lee and Yoo 2019) by solve_ivp's Radau with hand-written
+right-hand side and Jacobian, as in `benchmarks.transient`.  All times are measured in one run of this
+program.
 """
 
 from __future__ import annotations
@@ -38,12 +39,12 @@ IMPORTS = {
 
 @cache
 def time_radau() -> float:
-    """Measure the time of the stock run [s]."""
+    """Measure the time of the transient by scipy's Radau [s]."""
     return solve_stock(*STOCK[0])[1]
 
 
 def compare_transients() -> Iterator[Row]:
-    """Yield the stock run over ours, and modes by the tolerance over the basis that these chose."""
+    """Yield the time of scipy's run over ours, and of `modes="auto"` over the modes chosen by it."""
     chosen = bd.simulate(ROLLING, T_END, tolerance=TOLERANCE).request
     runs = [
         (
@@ -62,14 +63,14 @@ def compare_transients() -> Iterator[Row]:
 
 
 def compare_sweeps() -> Iterator[Row]:
-    """Yield sweeps of 151 speeds on two workers, over the stock run."""
+    """Yield the times of sweeps of 151 speeds on two workers, over scipy's run."""
     for modes, name, bound in ((MODES, f"{MODES} modes", "0.10"), ("auto", "modes by the tolerance", "0.12")):
         ratio = f"{run_sweep(modes)[1] / time_radau():.3f}"
         yield f"sweep of 151 speeds, 1e-5, two workers, {name}, over the Radau run", ratio, bound
 
 
 def compare_steady() -> Iterator[Row]:
-    """Yield the steady response at 1000 speeds, over the stock run."""
+    """Yield the time of the steady response at 1000 speeds, over scipy's run."""
     speeds = np.linspace(1, 150, 1000)
     time = best_time(lambda: bd.steady_response(STEADY_ROLLING, speeds, 3))
     ratio = f"{time / time_radau():.4f}"
@@ -77,7 +78,7 @@ def compare_steady() -> Iterator[Row]:
 
 
 def compare_record() -> Iterator[Row]:
-    """Yield a minute of a record at 1 kHz, over Table 3's transient."""
+    """Yield the time for a record of a minute at 1 kHz, over that of Table 3's transient."""
     runs = [motions.time_beside_table_3(motions.record(), 60.0, 1e-3) for _ in range(3)]
     record, table_3 = np.min(runs, axis=0)
     name = "a minute of a 1 kHz record, 1e-3, modes by the tolerance, over Table 3's transient"
@@ -85,7 +86,7 @@ def compare_record() -> Iterator[Row]:
 
 
 def compare_import() -> Iterator[Row]:
-    """Yield import and a first answer, over the import of scipy.linalg, each in fresh processes."""
+    """Yield the time of import and a first answer, over that of importing scipy.linalg, in new processes."""
     programs = [[sys.executable, "-c", program] for program in IMPORTS.values()]
     runs = [[time_once(lambda p=p: subprocess.run(p, check=True)) for p in programs] for _ in range(RUNS)]
     first, scipy_linalg = np.min(runs, axis=0)
@@ -93,7 +94,7 @@ def compare_import() -> Iterator[Row]:
 
 
 def compare_start() -> Iterator[Row]:
-    """Yield a command on a file, over the import of scipy.linalg, each in fresh processes."""
+    """Yield the time of a command on a file, over that of importing scipy.linalg, in new processes."""
     command = [sys.executable, "-m", "beamdyn", "modes", "examples/tyre_harvester.toml"]
     programs = [command, [sys.executable, "-c", IMPORTS["import scipy.linalg"]]]
     runs = [
@@ -105,7 +106,7 @@ def compare_start() -> Iterator[Row]:
 
 
 def compare_tolerances() -> Iterator[Row]:
-    """Yield a frequency response at a loose tolerance, over one at a tight one."""
+    """Yield the time of a frequency response at a loose tolerance, over that at a tight tolerance."""
     scene, frequencies = replace(STEADY_ROLLING, damping_ratio=0.01), np.linspace(1.0, 2000.0, 200)
     loose, tight = (
         best_time(lambda t=t: bd.frequency_response(scene, 50.0, frequencies, tolerance=t))

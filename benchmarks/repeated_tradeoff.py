@@ -19,7 +19,7 @@ RUNS, BUDGET = 5, 10.0
 
 
 def agree(one: Digit, other: Digit) -> bool:
-    """Whether two runs give the same advice on a digit, or name what differs as a tie."""
+    """Return whether two runs give the same advice on a digit, or name each other's setting as a tie."""
     return one.advice == other.advice or other.advice in one.ties or one.advice in other.ties
 
 

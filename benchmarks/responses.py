@@ -1,8 +1,8 @@
-"""Frequency and random responses and state spaces by two routes.  Run: python -m benchmarks.responses
+"""Frequency and random responses and state spaces by two methods.  Run: python -m benchmarks.responses
 
-A steel beam of 50 mm with a tip body, damped in three ways, at 50 rad/s up to 2000 Hz: 60 elements against
-direct complex solves of the same matrices, assumed modes against these elements, mean squares against
-quadrature of their density, and the state space through `scipy.signal.lsim` against `simulate`.
+The scene is a steel beam of 50 mm with a tip body, damped in three ways, at 50 rad/s up to 2000 Hz.  Compared
+are 60 finite elements with direct complex solutions of the same matrices, assumed modes with these elements,
+mean squares with quadrature of the density, and the state space in `scipy.signal.lsim` with `simulate`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ STEP, SAMPLES = 2.5e-3, 41
 
 
 def damped_scene() -> bd.Scene:
-    """Make the scene."""
+    """Make the damped scene on which all methods are compared."""
     tip = bd.TipMass(1e-4, offset=1e-3, inertia=1e-10)
     beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, tip)
     damping = bd.Damping(tip_damper=1e-3, stiffness_factor=1e-6)
@@ -28,7 +28,7 @@ def damped_scene() -> bd.Scene:
 
 
 def compare() -> Iterator[Row]:
-    """Yield deviations, each over the largest value, beside the bounds of the tests."""
+    """Yield deviations, relative to the largest value, beside the bounds used in the tests."""
     scene = damped_scene()
     elements = bd.frequency_response(scene, SPEED, FREQUENCIES, discretization=ELEMENTS)
     direct = _solve_directly(scene)

@@ -1,4 +1,4 @@
-"""Files in which long runs keep their answers, so that they can go on.
+"""Files in which long runs store their answers, so that interrupted runs can be resumed.
 
 A file has one answer, or the rows of one table, as JSON, on each line.
 """
@@ -21,12 +21,12 @@ Answer = TypeVar("Answer")
 
 @dataclass(frozen=True)
 class Cases(Generic[Answer]):
-    """Random cases, known by their numbers.
+    """Random cases, identified by their numbers.
 
     Parameters
     ----------
     measure : callable
-        Answers for the case with a number; it can be sent to another process.
+        Returns the answers for the case with a number; must be picklable.
     kind : type
         The dataclass that answers are, with the field `number`; its fields are numbers, strings, tuples of
         numbers, and dictionaries of them.
@@ -41,7 +41,7 @@ class Cases(Generic[Answer]):
             return [answer for answers in pool.map(self.measure, numbers) for answer in answers]
 
     def resume(self, path: Path, numbers: Iterable[int], workers: int = 2) -> list[Answer]:
-        """Measure the cases that the file lacks, and add them.
+        """Measure the cases that are missing in the file, and add their answers.
 
         Return all answers that are then in the file.
         """
@@ -50,18 +50,18 @@ class Cases(Generic[Answer]):
         done = {row["number"] for row in rows}
         with path.open("a", encoding="utf-8") as file, ProcessPoolExecutor(workers) as pool:
             cases = [pool.submit(self.measure, number) for number in numbers if number not in done]
-            for answers in (case.result() for case in as_completed(cases)):  # a slow case holds up no other
+            for answers in (case.result() for case in as_completed(cases)):  # as they complete
                 file.write("".join(f"{json.dumps(vars(answer))}\n" for answer in answers))
                 file.flush()
         wanted = set(numbers)
         return [answer for answer in self.load(path) if vars(answer)["number"] in wanted]
 
     def load(self, path: Path) -> list[Answer]:
-        """Load the answers in a file; none if there is no such file."""
+        """Load the answers from a file; an empty list if there is no such file."""
         return [self.kind(**{name: _frozen(value) for name, value in row.items()}) for row in _rows(path)]
 
     def run(self, given: argparse.Namespace) -> list[Answer]:
-        """Measure what the options of `add_options` ask for."""
+        """Measure the cases that the options of `add_options` request."""
         numbers = range(given.first, given.first + given.scenes)
         if given.save:
             return self.resume(given.save, numbers, given.workers)
@@ -77,7 +77,7 @@ class SavedRows:
     path : Path or None
         The file; None keeps nothing.
     versions : str
-        What the rows depend on: rows of other versions are refused.
+        Versions of packages: a file with rows of other versions is refused.
     """
 
     path: Path | None
@@ -125,7 +125,7 @@ def measure_random(
 
 
 def _rows(path: Path) -> list[dict[str, Any]]:
-    """Read the lines of a file, without one that a run did not finish."""
+    """Read the lines of a file, without an incomplete last line."""
     text = path.read_text(encoding="utf-8") if path.exists() else ""
     return [json.loads(line) for line in text[: text.rfind("\n") + 1].splitlines()]
 

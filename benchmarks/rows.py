@@ -1,4 +1,4 @@
-"""Rows of measurements, printed and in Markdown, and the clock that times them."""
+"""Rows of measurements, printed and in Markdown, and measurement of times."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from rich.markup import escape
 from rich.table import Table
 
 AnyRow = TypeVar("AnyRow", bound=Sequence[str])
-Row = tuple[str, str, str]  # what is measured, the measured value, and the bound
-RUNS = 7  # number of runs, of which the shortest counts
+Row = tuple[str, str, str]  # measured quantity, value, and bound
+RUNS = 7  # number of repetitions, of which the shortest counts
 
 
 def best_time(
@@ -28,14 +28,14 @@ def best_time(
 
 
 def show(title: str, *parts: Callable[[], Iterator[Row]]) -> list[Row]:
-    """Print the rows of all parts as one table, and return them."""
+    """Print the rows of all measurements as one table, and return the rows."""
     return show_table(("what", "measured", "bound"), (row for part in parts for row in part()), title, 120)
 
 
 def show_table(
     head: Sequence[str], rows: Iterable[AnyRow], title: str | None = None, width: int = 160
 ) -> list[AnyRow]:
-    """Print rows below a head, and return them."""
+    """Print rows below a line of headings, and return the rows."""
     table, shown = Table(*head, title=title), list(rows)
     for row in shown:
         table.add_row(*map(escape, row))
@@ -50,7 +50,7 @@ def markdown_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> str:
 
 
 def time_text(time: float) -> str:
-    """Word a time [s] with three digits, in s, ms or µs."""
+    """Format a time [s] with three digits, in s, ms or µs."""
     for unit, size in (("s", 1.0), ("ms", 1e-3)):
         if time >= size:
             return f"{time / size:.3g} {unit}"

@@ -2,10 +2,10 @@
 
 Run: python -m benchmarks.scale   (--designs 20000 --speeds 50: reduced, a minute; --save FILE: in parts)
 
-Random designs, each with a speed of its own, are solved in this process and on the cluster; there a worker
-is killed in the middle.  The sweep is that of Table 3's wheel, 5 modes at 1e-3.  Efficiency is the time in
-one process over that on the cluster, times its workers; at sizes beyond a sample the time in one process is
-that of the sample, scaled.  Memory is the largest that each process has had.
+Random designs, each with a random speed, are solved in this process and on the cluster, where one worker is
+killed during the run.  The sweep is that of the wheel of Table 3 (Lee and Yoo 2019), with 5 modes and a
+tolerance of 1e-3.  Efficiency is the time in one process over the product of time on the cluster and number
+of workers; the time in one process is extrapolated from a sample.  Memory is the largest of each process.
 """
 
 from __future__ import annotations
@@ -54,21 +54,21 @@ def designs(count: int) -> dict[str, np.ndarray]:
 
 @dataclass
 class Accident:
-    """A progress callback that kills a worker once half is done, and looks at the memory of all.
+    """A progress callback that kills a worker when half is done, and records the workers' memory.
 
     Parameters
     ----------
     client : Client
         The cluster's client.
     victim : int
-        The process that is killed.
+        Identifier of the process that is killed.
     """
 
     client: Any
     victim: int
     calls: list[int] = field(default_factory=list)
     killed: bool = False
-    memory: float = 0.0  # largest memory of a worker [MB] that the scheduler has heard of
+    memory: float = 0.0  # largest memory of a worker reported to the scheduler [MB]
 
     def __call__(self, done: int, total: int) -> None:
         self.calls.append(done)
@@ -82,7 +82,7 @@ class Accident:
 
 @contextmanager
 def cluster(workers: int) -> Iterator[Accident]:
-    """Start a cluster of processes of this machine; yield the accident that will happen to it."""
+    """Start a cluster of processes on this machine; yield the `Accident` that will kill one."""
     from distributed import Client, LocalCluster
 
     options: dict[str, Any] = {"threads_per_worker": 1, "processes": True, "dashboard_address": None}
@@ -104,7 +104,7 @@ def timed(action: Callable[[], Any]) -> tuple[float, Any]:
 
 
 def many_designs(count: int, workers: int) -> Iterator[Row]:
-    """Yield results of random designs on the cluster, with a worker killed, beside one process."""
+    """Yield times and memory for random designs on the cluster, with a killed worker, and in one process."""
     sample = min(count, SAMPLE)
     alone, own = timed(lambda: bd.study(SCENE, designs(sample), combine="zip"))
     before = peak_memory()
@@ -137,7 +137,7 @@ def many_designs(count: int, workers: int) -> Iterator[Row]:
 
 
 def worst(study: bd.Study) -> float:
-    """Compute the largest deviation of some designs from single calls, over the stated errors of both."""
+    """Compute the largest deviation of designs from single calls, over the sum of their stated errors."""
     random, largest = np.random.default_rng(1), 0.0
     for place in random.integers(study.shape[0], size=COMPARED).tolist():
         single = bd.natural_modes(study.scene_at(place), study.design(place)["speed"])
@@ -147,7 +147,7 @@ def worst(study: bd.Study) -> float:
 
 
 def many_speeds(count: int, workers: int) -> Iterator[Row]:
-    """Yield results of a sweep on the cluster, with a worker killed, beside one process."""
+    """Yield times and memory for a sweep on the cluster, with a killed worker, and in one process."""
     sample = min(count, SPEED_SAMPLE)
 
     def run(number: int, executor: Executor | None = None, **more: Any) -> bd.Sweep:

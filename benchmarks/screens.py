@@ -1,7 +1,8 @@
-"""Speed of the interactive programs' screens, without their page.  Run: python -m benchmarks.screens
+"""Speed of the interactive programs' screens, without a browser.  Run: python -m benchmarks.screens
 
-Prints how long each screen takes to answer a change of its form, to draw the answer as a file, and how many
-positions a second one process solves and makes into what the page shows while something is dragged.
+Prints the times in which each screen answers a change of its form and draws the answer to a file, and the
+number of positions per second that one process solves and prepares for the page while a point or slider is
+dragged.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ from beamdyn.common.screens.screens import Document, Program, Screen
 from benchmarks.rows import Row, show
 from brakes.app.program import BRAKES
 
-RUNS, BOUND = 9, 100  # number of runs; longest answer that feels immediate [ms]
-POSITIONS = 20  # positions in a second that feel fluent
+RUNS, BOUND = 9, 100  # number of repetitions; longest time of an answer that feels immediate [ms]
+POSITIONS = 20  # number of positions per second that appear as fluent motion
 
 
 def time_screens(program: Program) -> Iterator[Row]:
-    """Time every screen of a program, on the design that it opens with."""
+    """Measure the times of every screen of a program, on the screen's initial design."""
     for document in program.documents:
         work = OpenDocument(document)
         for screen in document.screens:
@@ -50,13 +51,13 @@ def _positions(document: Document, screen: Screen, entries: Entries) -> Row:
         assert isinstance(found, ShownAnswer)
         _show(screen, found.answer)
         times.append(process_time() - start)
-    # Only screens that are solved coarsely meanwhile have a bound.
+    # Only screens with a coarser solution while something is dragged have a bound.
     bound = f"{POSITIONS}" if screen.coarser({}) else ""
     return f"{screen.name}: positions a second while dragging", f"{1 / min(times):.0f}", bound
 
 
 def _show(screen: Screen, answer: Any) -> None:
-    """Prepare what the page is sent of an answer."""
+    """Prepare the parts of an answer that are sent to the page."""
     draw_sheet(screen, answer, screen.last)
     for chart in screen.charts(answer, screen.last) if screen.charts else ():
         json.dumps(options_of(chart))

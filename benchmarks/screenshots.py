@@ -1,10 +1,11 @@
-"""Pictures of every screen of the interactive programs, and what is wrong with it for its users.
+"""Pictures of every screen of the interactive programs, and faults in its accessibility and layout.
 
 Run: python -m benchmarks.screenshots [--folder DIR] [--program brakes|beamdyn] [--width 390]
 
-Each screen at five widths, light and dark: serious findings of axe-core (where axe-playwright-python is
-there), horizontal scrolling, controls that neither keyboard nor finger can reach, tables that are cut, halves
-of a page that are empty for more than a third of its height, and code in texts.
+Each screen is examined at five widths, light and dark.  Faults are serious findings of axe-core (if
+axe-playwright-python is installed), horizontal scrolling, controls that neither keyboard nor finger can
+reach, tables that are cut off, halves of a page that are empty over more than a third of its height, and code
+in texts.
 """
 
 from __future__ import annotations
@@ -29,21 +30,21 @@ _SERIOUS = ("serious", "critical")
 _LEFT = (
     200  # Quasar's tabs can be stopped at again 30 ms after the focus has left them; keys outrun timers [ms]
 )
-_STEPS, _MOST = 12, 30  # presses of the Tab key between two checks whether it has come round, and most checks
+_STEPS, _MOST = 12, 30  # number of Tab key presses between two checks for a full cycle, and most checks
 _BEGIN = """() => {
   document.activeElement.blur();
   if (!window.reached) document.addEventListener("focusin", (event) => window.reached.push(event.target));
   window.reached = [];
 }"""
 _AROUND = "() => window.reached.indexOf(window.reached[0], 1) > 0"
-# Names of visible controls at which the Tab key has not stopped; of tabs one is enough, the others are
-# reached from it by arrow keys.
+# Script: names of visible controls that the Tab key did not reach; of tabs one is enough, as arrow keys reach
+# the others.
 _NOT_REACHED = """() => [...document.querySelectorAll(
   "button, input, textarea, a[href], summary, [role=slider], [role=tablist], [role=button], [role=switch]")]
   .filter((e) => e.checkVisibility({visibilityProperty: true}) && !e.disabled && e.type !== "file")
   .filter((e) => !window.reached.some((stop) => e.contains(stop) || stop.contains(e)))
   .map((e) => e.getAttribute("aria-label") || e.innerText || e.outerHTML.slice(0, 80))"""
-# Names of controls that are covered where a finger would touch them, after the page has been scrolled there.
+# Script: names of controls that other elements cover at their centre, after the page has been scrolled there.
 _NOT_BY_TOUCH = """() => [...document.querySelectorAll("button, input, textarea, [role=tab], .handle")]
   .filter((e) => e.checkVisibility({visibilityProperty: true}) && !e.disabled && e.type !== "file")
   .filter((e) => {
@@ -55,13 +56,13 @@ _NOT_BY_TOUCH = """() => [...document.querySelectorAll("button, input, textarea,
       || (e.matches(".handle") && hit.matches(".handle"))));
   }).map((e) => e.getAttribute("aria-label") || e.innerText || e.outerHTML.slice(0, 80))"""
 
-# First words of visible tables that are wider than what shows them, or the column of it.
+# Script: first words of visible tables that are wider than their container.
 _CUT = """() => [...document.querySelectorAll("table")]
   .filter((e) => e.checkVisibility({visibilityProperty: true}))
   .filter((e) => [...e.getClientRects()].some((part) => part.width > e.parentElement.clientWidth + 1))
   .map((e) => `${Math.round(e.getBoundingClientRect().width)} px: ${e.innerText.slice(0, 60)}`)"""
-# Of the part beside the form, each half in which there is nothing over more than a third of the page's
-# height; the form stays in sight, and needs no room of its own.
+# Script: halves of the area beside the form that are empty over more than a third of the page's height; the
+# form scrolls with the window, and needs no further space.
 _EMPTY = """() => {
   const page = document.documentElement.scrollHeight;
   const right = [...document.querySelectorAll(".right")].find((e) => e.checkVisibility());
@@ -82,7 +83,7 @@ _EMPTY = """() => {
   return [["left", gap((box) => box.left < middle)], ["right", gap((box) => box.right > middle)]]
     .filter(([, most]) => most > page / 3).map(([name, most]) => `${name} half over ${Math.round(most)} px`);
 }"""
-# Visible texts with a name that only code has, a call, an optional value of Python, or a list.
+# Script: visible texts that contain code: a variable name, a call, an optional value of Python, or a list.
 _CODE = """() => {
   const found = [], texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   while (texts.nextNode()) {
@@ -96,7 +97,7 @@ _CODE = """() => {
 
 
 def serious_findings(page: Any) -> list[str] | None:
-    """Return serious findings of axe-core: rule, count, first place; None if it is not installed."""
+    """Return serious findings of axe-core: rule, count, first element; None if it is not installed."""
     try:
         from axe_playwright_python.sync_playwright import Axe
     except ImportError:
@@ -124,7 +125,7 @@ def not_by_keyboard(page: Any) -> list[str]:
 
 
 def faults(page: Any, width: int) -> dict[str, list[str]]:
-    """Return the faults of the screen in front, by kind."""
+    """Return the faults of the visible screen, by kind."""
     wide = page.evaluate("document.documentElement.scrollWidth")
     return {
         "axe-core": serious_findings(page) or [],
@@ -157,7 +158,7 @@ def _of_width(browser: Any, port: int, program: Program, width: int, folder: Pat
         go(page, screen.name)
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)
-            page.wait_for_timeout(300)  # waits, as colours change gradually
+            page.wait_for_timeout(300)  # waits until gradual changes of colour have ended
             name = f"{program.name}-{screen.name.lower().replace(' ', '-')}-{width}-{scheme}"
             page.evaluate(_TO_TOP)
             page.screenshot(path=folder / f"{name}.png")

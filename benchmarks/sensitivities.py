@@ -1,14 +1,14 @@
-"""Derivatives of frequencies by the numbers of a scene, against differences in 40 digits.
+"""Derivatives of frequencies by the numbers of a scene, compared with differences in 40 digits.
 
 Run: python -m benchmarks.sensitivities [--scenes N] [--first N] [--workers N] [--save FILE]
 
-Half of the scenes are slender beams in one plane, to 0.999 of the critical speed and a tension of 1e5 EI/L^2;
-half have every kind of input: two planes, twist, shear, rotary inertia, stretch, precone, springs at the root
-and along the beam, point masses, tip bodies, all kinds of damping, some of them 0.  The reference are
-differences of eigenvalues of 40 digits (`cases.reference.many_digits`).  Printed is the largest error of the
-relative change of a frequency over that of a number (over this change itself where it is larger than one, as
-near the critical speed), how many errors exceed the stated ones, and by which kinds of numbers frequencies
-were differentiated.
+Half of the scenes are slender beams in one plane, up to 0.999 of the critical speed and a tension of 1e5
+EI/L^2.  The other half have every kind of input: two planes, twist, shear, rotary inertia, stretch, precone,
+springs at the root and along the beam, point masses, tip bodies, and all kinds of damping, some of them 0.
+The reference is differences of eigenvalues in 40 digits (`cases.reference.many_digits`).  Printed are the
+largest error of relative derivatives (relative to the derivative where this exceeds 1, as near the critical
+speed), the number of errors above the stated ones, and the kinds of numbers by which frequencies were
+differentiated.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from time import process_time
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -45,15 +45,15 @@ class Case:
     Parameters
     ----------
     number : int
-        Its seed.
+        Seed of the scene.
     names : tuple of str
-        The number that each derivative is by.
+        Name of the number by which each derivative is taken.
     errors, stated : tuple of float
-        Errors of the relative changes, and the stated ones with the reference's.
+        True errors of the relative changes, and stated errors plus those of the reference.
     seconds : float
         Processor time of the reference [s].
     refusal : str
-        Why there is no answer, or no reference.
+        Reason why there is no answer, or no reference.
     """
 
     number: int
@@ -83,7 +83,7 @@ def _measured(seed: int) -> Case:
     start = process_time()
     values, truths, doubts = frequency_derivatives(found.scene, speed, MODES, numbers)
     seconds = process_time() - start
-    # The reference leaves out modes that do not vibrate, such as turning about a hinge at the axis.
+    # The reference leaves out modes that do not vibrate, such as free rotation about a hinge at the axis.
     apart = np.abs(found.value[:, None] - values) / values
     partner, same = apart.argmin(axis=1), np.nanmin(apart, axis=1, initial=np.inf) < _SAME
     known, truths, doubts = known & same, np.array(truths)[:, partner], np.array(doubts)[:, partner]
@@ -99,12 +99,12 @@ def _measured(seed: int) -> Case:
 
 
 def at_its_size(given: SceneNumber) -> Number:
-    """Return the number for the reference, with the size of its kind where it is near 0."""
+    """Return the number for the reference, with a typical magnitude of its kind if it is near 0."""
     return Number(given.name, given.value, max(abs(given.value), 100 * given.step))
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Yield the largest error, and how many errors the stated ones do not cover."""
+    """Yield the largest error, and the number of errors that exceed the stated ones."""
     answered = [case for case in cases if not case.refusal]
     pairs = [
         (case, *each) for case in answered for each in zip(case.names, case.errors, case.stated, strict=True)

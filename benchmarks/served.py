@@ -1,4 +1,4 @@
-"""An interactive program as a process of its own, and a browser that shows it."""
+"""An interactive program in a separate process, and a browser that shows it."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from typing import Any
 ROOT = Path(__file__).parents[1]
 CHROMIUM = shutil.which("chromium")
 NO_BROWSER = "a browser is driven by playwright and Debian's chromium: pip install 'beamdyn[browser]'"
-PATIENCE = 240  # time limit of anything that a program does, on a busy machine [s]
+PATIENCE = 240  # time limit of any action of a program on a busy machine [s]
 
 
 def free_port() -> int:
-    """Return a port that nothing listens on."""
+    """Return a free network port."""
     with socket.socket() as trial:
         trial.bind(("127.0.0.1", 0))
         return int(trial.getsockname()[1])
@@ -29,7 +29,7 @@ def free_port() -> int:
 def start(port: int, program: str = "brakes", *options: str, folder: Path = ROOT) -> subprocess.Popen[bytes]:
     """Start the program as a separate process, and wait until it answers."""
     command = [sys.executable, "-m", program, "app", "--no-browser", "--port", str(port), *options]
-    # With pytest's variables set, NiceGUI would behave as in a test of itself.
+    # With pytest's environment variables set, NiceGUI would run in its test mode.
     clean = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "NICEGUI"))}
     clean["PYTHONPATH"] = str(ROOT)
     process = subprocess.Popen(
@@ -46,7 +46,7 @@ def start(port: int, program: str = "brakes", *options: str, folder: Path = ROOT
 
 
 def stop(process: subprocess.Popen[bytes]) -> float:
-    """End a program as the system does (SIGTERM); return the time that it took [s]."""
+    """End a program by SIGTERM; return the time until it has ended [s]."""
     begin = time.perf_counter()
     process.terminate()
     process.wait(PATIENCE)
@@ -55,12 +55,12 @@ def stop(process: subprocess.Popen[bytes]) -> float:
 
 @contextmanager
 def browser() -> Iterator[Any]:
-    """Yield a browser without a window.
+    """Start a headless browser, and yield it.
 
     Raises
     ------
     SystemExit
-        If there is none.
+        If no browser is installed.
     """
     try:
         from playwright.sync_api import sync_playwright
@@ -86,7 +86,7 @@ def open_page(context: Any, port: int) -> Any:
 
 
 def go(page: Any, screen: str) -> None:
-    """Bring a screen to the front, and wait for its answer."""
+    """Open a screen of the page, and wait for its answer."""
     page.get_by_role("tab", name=screen).first.click()
     page.wait_for_function(
         "name => document.querySelector('[role=tab][aria-selected=true]')?.innerText.startsWith(name)",
@@ -96,5 +96,5 @@ def go(page: Any, screen: str) -> None:
 
 
 def up_to_date(page: Any) -> None:
-    """Wait until the screen in front says that it is."""
+    """Wait until the visible screen shows that its answer is up to date."""
     page.get_by_text("Up to date.").locator("visible=true").first.wait_for()

@@ -1,4 +1,4 @@
-"""Pages of the built site at two widths, light and dark: pictures, and what is wrong with them for readers.
+"""Pages of the built site at two widths, light and dark: pictures, and faults in layout and accessibility.
 
 Run: python -m benchmarks.site_pages [--all] [--folder DIR] [--site build/site]
 
@@ -19,7 +19,7 @@ from benchmarks.served import ROOT, browser
 
 SITE = ROOT / "build" / "site"
 WIDTHS = (390, 1280)
-OF_EACH_KIND = (  # names, of which the first page of the site with each is taken
+OF_EACH_KIND = (  # patterns of names: for each, the first matching page is used
     "index.html",
     "tour.html",
     "eight_tasks.html",
@@ -47,14 +47,14 @@ OF_EACH_KIND = (  # names, of which the first page of the site with each is take
 
 
 def pages_of(site: Path, every: bool) -> list[Path]:
-    """Return one page of each kind, or all that have their own title."""
+    """Return one page of each kind, or all pages with different titles."""
     if every:
         return sorted(path for path in site.rglob("*.html") if "_static" not in path.parts)
     return [sorted(site.glob(pattern))[0] for pattern in OF_EACH_KIND]
 
 
 def faults(page: Any, width: int) -> Iterator[str]:
-    """Yield the faults of the page in front."""
+    """Yield the faults of the visible page."""
     wide = page.evaluate("document.documentElement.scrollWidth")
     if wide > width:
         yield f"scrolls to {wide} px"
@@ -63,7 +63,7 @@ def faults(page: Any, width: int) -> Iterator[str]:
 
 
 def look(paths: Sequence[Path], site: Path, folder: Path) -> Iterator[Row]:
-    """Take the pictures, and yield the faults of each page at each width in each scheme."""
+    """Take the pictures, and yield the faults of each page at each width, in light and dark colours."""
     folder.mkdir(parents=True, exist_ok=True)
     with browser() as made:
         for width in WIDTHS:
@@ -78,7 +78,7 @@ def _of_page(page: Any, path: Path, place: Path, width: int, folder: Path) -> It
     page.goto(path.as_uri())
     for scheme in SCHEMES:
         page.emulate_media(color_scheme=scheme)
-        page.wait_for_timeout(200)  # waits, as colours change gradually
+        page.wait_for_timeout(200)  # waits until gradual changes of colour have ended
         name = f"{place.with_suffix('').as_posix().replace('/', '-')}-{width}-{scheme}"
         page.screenshot(path=folder / f"{name}.png")
         yield name, "; ".join(faults(page, width)) or "nothing wrong", "nothing wrong"

@@ -1,9 +1,9 @@
-"""What solid bodies say of beams: references of random rectangular cantilevers by CalculiX, kept in a file.
+"""Reference frequencies of random rectangular cantilevers as solid bodies (CalculiX), kept in a file.
 
 Run: python -m benchmarks.solids [--make N] [--first K] [--workers 1].  With --make it computes the references
-of N cases, known by their numbers, and adds those that the file lacks.  It prints how well the references
-from the first one on are known, and how far the strips are from them as plates in two planes with shear and
-rotary inertia.  What is compared with them needs the file alone.
+of N numbered cases, and adds those that are missing in the file.  It prints the accuracy of the references
+from the first number on, and their differences from strips as plates in two planes with shear and rotary
+inertia.  Comparisons with the references need only the file.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from functools import partial
 from pathlib import Path
 from time import perf_counter
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -40,10 +40,10 @@ from benchmarks.rows import Row, show, time_text
 
 SEED = 31
 FILE = Path(__file__).parent / "cases" / "data" / "solids.jsonl"
-LISTED = 3  # number of bending modes that a beam lists; the solid's modes are kept up to the last of them
-_LEAST = 4  # least number of modes kept
+LISTED = 3  # number of compared bending modes; the solid's modes are kept up to the last of these
+_LEAST = 4  # least number of kept modes
 RICHEST = bd.Physics(planes=2, shear=True, rotary_inertia=True, camber=True, torsion=True)
-_MORE = 2  # further modes of the model, as those of the solid may have another order
+_MORE = 2  # number of further modes of the beam, because the solid's modes may have another order
 
 
 # References ---------------------------------------------------------------------------------------
@@ -51,7 +51,7 @@ _MORE = 2  # further modes of the model, as those of the solid may have another 
 
 @dataclass(frozen=True)
 class Reference:
-    """The modes of one strip as a solid, from the lowest frequency, as columns.
+    """The modes of one strip as a solid body, in ascending order of frequency, as columns.
 
     `strip` are the fields of `Strip`; `frequency` [Hz] is extrapolated, with the relative `error`; `coarse`,
     `medium` and `fine` are the frequencies of the three meshes; `share` is that of the kind in the shape.
@@ -70,7 +70,7 @@ class Reference:
     refusal: str = ""
 
     def body(self) -> Strip:
-        """The strip."""
+        """The strip, built from the stored fields."""
         return Strip(**self.strip)
 
     def modes(self) -> list[SolidMode]:
@@ -84,12 +84,12 @@ class Reference:
 
     @property
     def complete(self) -> bool:
-        """Whether the modes reach the last bending mode that a beam lists."""
+        """Whether the stored modes include the last bending mode that is compared."""
         return self.kind.count(BENDING) >= LISTED
 
 
 def measure(number: int, seed: int) -> list[Reference]:
-    """Compute the reference of the case with a number."""
+    """Compute the reference solution of the random strip with a number."""
     strip, start = random_strip(np.random.default_rng([seed, number])), perf_counter()
     try:
         modes = reference(strip)
@@ -118,17 +118,17 @@ def _digits(value: float, digits: int) -> float:
 
 
 def cases(seed: int = SEED) -> Cases[Reference]:
-    """Return the random strips of a seed."""
+    """Return the random strips of a seed, as resumable cases."""
     return Cases(partial(measure, seed=seed), Reference)
 
 
 def known(path: Path = FILE) -> list[Reference]:
-    """Load the references in the file, by number."""
+    """Load the references from the file, by number."""
     return sorted(cases().load(path), key=lambda each: each.number)
 
 
 def summarize_references(references: Sequence[Reference]) -> Iterator[Row]:
-    """Yield the number of references, and how accurate they are."""
+    """Yield the number of references, and their accuracies."""
     solved = [each for each in references if not each.refusal]
     yield "references", f"{len(solved)}", "200"
     for each in references:
@@ -146,19 +146,19 @@ def summarize_references(references: Sequence[Reference]) -> Iterator[Row]:
         yield "median and longest time", f"{time_text(np.median(times))}, {time_text(times.max())}", ""
 
 
-# Strips as plates beside them ---------------------------------------------------------------------
+# Comparison of strips as plates with solids --------------------------------------------------------
 
 
-_NARROW = 5.0  # width over thickness; narrower sections are no plates
+_NARROW = 5.0  # width over thickness below which a section does not behave as a plate
 
 
 def compare_plate(reference: Reference) -> Iterator[tuple[str, float]]:
-    """Yield the kind of each mode, and the relative difference of the strip as a plate from the solid.
+    """Yield each mode's kind and the relative difference in frequency of plate and solid.
 
     The modes are paired by their kind and their number within it.
     """
     strip, modes = reference.body(), reference.modes()
-    with warnings.catch_warnings(action="ignore"):  # warnings of speeds at which a strip bends far
+    with warnings.catch_warnings(action="ignore"):  # warnings about speeds at which deflections are large
         found = bd.natural_modes(strip.scene(RICHEST), strip.speed, len(modes) + _MORE, tolerance=1e-3)
     own = kinds_of(found)
     for mode in modes:
@@ -168,7 +168,7 @@ def compare_plate(reference: Reference) -> Iterator[tuple[str, float]]:
 
 
 def kinds_of(modes: bd.Modes) -> np.ndarray:
-    """Return the kind of each mode, as solids have it."""
+    """Return the kind of each beam mode, in the terms used for solids."""
     across = (modes.kind == BENDING) & (modes.plane_share[:, 1] > 0.5)
     return np.where(across, OTHER, modes.kind)
 
@@ -193,11 +193,11 @@ def _is_narrow(strip: Strip) -> bool:
     return strip.width < _NARROW * strip.thickness
 
 
-_FITTED = 63  # number of the first case to which warping was not fitted
+_FITTED = 63  # number of the first case that was not used to fit the warping constant
 
 
 def summarize_torsion(references: Sequence[Reference]) -> Iterator[Row]:
-    """Yield the differences of first torsional modes from solids to which nothing was fitted."""
+    """Yield differences of first torsional modes from solids that were not used to fit constants."""
     found = []
     for solid in references:
         strip = solid.body()
@@ -211,17 +211,17 @@ def summarize_torsion(references: Sequence[Reference]) -> Iterator[Row]:
 
 # Model errors of the plain beam -------------------------------------------------------------------
 
-# Factor within which the stated difference is to lie, and least ratio to the true one.
+# Factor within which the stated difference should lie, and least ratio to the true difference.
 _FACTOR, _FEWEST = 2.0, 0.2
-_TRUE = 1e-3  # smallest difference that counts, which also exceeds twice the reference's error
-_PAIRED = 0.1  # relative distance of the frequency of a named mode from the solid's
+_TRUE = 1e-3  # smallest true difference that is compared; it must also exceed twice the reference's error
+_PAIRED = 0.1  # largest relative distance of a named mode's frequency from that of the solid's mode
 
 
 @dataclass(frozen=True)
 class StatedError:
     """A model error of one mode of a beam, and the true difference from the solid, both relative.
 
-    `counts` says whether the difference is large enough to be known.
+    `counts` is true if the difference is larger than the uncertainty of the reference.
     """
 
     number: int
@@ -232,7 +232,7 @@ class StatedError:
 
 
 def stated_errors(reference: Reference) -> list[StatedError]:
-    """Return model errors of the modes of a strip as a plain beam."""
+    """Return stated and true model errors of the modes of a strip as a plain beam."""
     strip, found = reference.body(), _plain_modes(reference)
     bending = [mode for mode in reference.modes() if mode.kind == BENDING]
     made = []
@@ -246,12 +246,12 @@ def stated_errors(reference: Reference) -> list[StatedError]:
 
 def _plain_modes(reference: Reference) -> bd.Modes:
     strip = reference.body()
-    with warnings.catch_warnings(action="ignore"):  # warnings of model errors, which are measured here
+    with warnings.catch_warnings(action="ignore"):  # warnings about model errors, which are measured here
         return bd.natural_modes(strip.scene(bd.Physics()), strip.speed, LISTED)
 
 
 def unnamed(reference: Reference) -> list[str]:
-    """Return modes of a solid below the third of bending that the plain beam neither lists nor names."""
+    """Return solid modes below the third bending mode that the plain beam's result does not mention."""
     named = _plain_modes(reference).left_out_effects.unlisted
     modes, missing = reference.modes(), []
     last = next(m.frequency for m in modes if (m.kind, m.number) == (BENDING, LISTED))
@@ -265,12 +265,12 @@ def unnamed(reference: Reference) -> list[str]:
 
 
 def _kind_of(mode: UnlistedMode) -> str:
-    """Return the kind of a named mode, as solids have it."""
+    """Return the kind of a mode named in a warning, in the terms used for solids."""
     return mode.kind if mode.kind in (TORSION, STRETCH) else OTHER
 
 
 def summarize_stated(references: Sequence[Reference]) -> Iterator[Row]:
-    """Yield how model errors of plain beams compare with the true ones, and which modes are not named."""
+    """Yield ratios of stated to true model errors of plain beams, and modes that are not mentioned."""
     each = [stated for reference in references for stated in stated_errors(reference)]
     counted = [stated for stated in each if stated.counts]
     ratio = np.array([stated.stated / stated.true for stated in counted])
@@ -285,15 +285,15 @@ def summarize_stated(references: Sequence[Reference]) -> Iterator[Row]:
         yield f"... {words}", "", ""
 
 
-# Physics that is chosen ---------------------------------------------------------------------------
+# Errors with automatically chosen physics ------------------------------------------------------------
 
 _TOLERANCES = 1e-2, 3e-3
 
 
 def chosen_errors(reference: Reference, tolerance: float) -> tuple[float, bool]:
-    """Return the largest difference of bending with chosen physics, and whether a warning says it.
+    """Return the largest difference of bending frequencies with chosen physics, and if a warning says so.
 
-    Differences below the reference's own error are none.
+    Differences below the reference's error count as 0.
     """
     strip = reference.body()
     with warnings.catch_warnings(action="ignore"):
@@ -311,7 +311,7 @@ def chosen_errors(reference: Reference, tolerance: float) -> tuple[float, bool]:
 
 
 def summarize_chosen(references: Sequence[Reference]) -> Iterator[Row]:
-    """Yield how often chosen physics is within its tolerance of the solids, or warns that it is not."""
+    """Yield how often chosen physics agrees with solids within the tolerance, or warns that it may not."""
     for tolerance in _TOLERANCES:
         each = [(reference, *chosen_errors(reference, tolerance)) for reference in references]
         met = np.array([error <= tolerance for _, error, _ in each])

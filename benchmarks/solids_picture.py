@@ -1,8 +1,8 @@
-"""Picture of beams beside solids: how far the plain beam is off, and what is stated of that.
+"""Plot of true errors of plain beams, relative to solid bodies, and of the stated model errors.
 
-Run: python -m benchmarks.solids_picture FILE.  It draws the references of `benchmarks.solids` over the length
-of the strips over their width: each strip by the worst of three modes of bending, its colour by width over
-thickness.
+Run: python -m benchmarks.solids_picture FILE.  It plots the references of `benchmarks.solids` over the
+strips' ratio of length to width: for each strip the worst of three bending modes, coloured by the ratio of
+width to thickness.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from benchmarks.solids import Reference, StatedError, chosen_errors, known, stated_errors
 
 _TOLERANCE = 1e-2
-_FLOOR = 1e-5  # least difference drawn; smaller ones are drawn there
+_FLOOR = 1e-5  # smallest difference in the plot; smaller differences are plotted at this value
 
 
 def main() -> None:
@@ -28,7 +28,7 @@ def main() -> None:
 
 
 def drawn(references: Sequence[Reference]) -> Figure:
-    """Draw the three panels."""
+    """Plot true errors, ratios of stated to true errors, and errors with chosen physics, in three panels."""
     strips = [reference.body() for reference in references]
     slender = np.array([strip.length / strip.width for strip in strips])
     flat = np.array([strip.width / strip.thickness for strip in strips])
@@ -63,7 +63,7 @@ def drawn(references: Sequence[Reference]) -> Figure:
 
 
 def _worst(each: Sequence[StatedError]) -> StatedError:
-    """Return the mode of the largest true difference."""
+    """Return the bending mode with the largest true difference from the solid."""
     return max(each, key=lambda stated: stated.true)
 
 

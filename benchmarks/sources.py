@@ -1,4 +1,4 @@
-"""The page of the validation manual that says where its references stand."""
+"""The page of the validation manual that lists the sources of published values."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from beamdyn import published
 from benchmarks.rows import markdown_table
 from brakes import published as published_brakes
 
-_CITED = (  # sources that the data name in short
+_CITED = (  # sources that the data files name by short names
     (
         "Hodges and Rutkowski (1981)",
         "Free-vibration analysis of rotating beams by a variable-order finite-element method. "
@@ -70,7 +70,7 @@ def _rows() -> Iterator[tuple[str, str, str]]:
 
 
 def _who(data: dict[str, Any]) -> str:
-    """Return authors and year, or that a set of data has no author."""
+    """Return authors and year of a source, or a text saying that it has no author."""
     authors = data.get("authors", [])
     *others, last = authors or ["without an author"]
     names = f"{', '.join(others)} and {last}" if others else last
@@ -78,7 +78,7 @@ def _who(data: dict[str, Any]) -> str:
 
 
 def _what(data: dict[str, Any]) -> str:
-    """Return the title, and the place of publication."""
+    """Return title and publication of a source."""
     places = [str(data[key]) for key in ("journal", "source", "url") if key in data]
     places += [f"doi:{data['doi']}"] if "doi" in data else []
     return "; ".join([data["title"], *places])

@@ -1,11 +1,12 @@
-"""Spreads: statistics and Sobol' indices against closed forms, their standard errors, and the time they take.
+"""Spreads (ranges of answers over tolerances of inputs): statistics against closed forms, and times.
 
 Run: python -m benchmarks.spread [--seeds N]
 
-Of Ishigami's function, and of a frequency that is a product of powers of its inputs, mean, standard deviation
-and indices are known.  Printed are the root mean square of deviations over their standard errors, over seeds
-and all statistics, and the largest of one statistic (of 50 seeds it scatters by 0.1); and how many exceed 3
-standard errors.  Student's t with 15 degrees of freedom, as 16 blocks of samples have: 1.07 and 0.9 %.
+Mean, standard deviation and Sobol' indices are known in closed form for Ishigami's function, and for a
+frequency that is a product of powers of its inputs.  Printed are the root mean square, over seeds, of
+deviations over their standard errors, for all statistics and the largest of one statistic (which scatters by
+0.1 with 50 seeds), and the fraction above 3 standard errors.  Student's t distribution with 15 degrees of
+freedom (16 blocks of samples) gives 1.07 and 0.9 %.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ def product_of_powers(seed: int) -> np.ndarray:
 
 
 def _moments(low: float, high: float, power: float) -> list[float]:
-    """Compute means of x^power and of its square, for x between two ends."""
+    """Compute the means of x^power and of its square, for x uniform between two ends."""
     ends = (
         (high ** (p + 1) - low ** (p + 1)) / ((p + 1) * (high - low)) for p in (power, 2 * power) if p != -1
     )
@@ -86,7 +87,7 @@ def scores(
 
 
 def statistics(seeds: int) -> Iterator[Row]:
-    """Yield how far statistics are from closed forms."""
+    """Yield deviations of statistics from closed forms."""
     for name, case in (("Ishigami's function", ishigami), ("a product of powers", product_of_powers)):
         found = np.array([case(seed) for seed in range(seeds)])
         each, size = np.sqrt((found**2).mean(axis=0)), np.sqrt((found**2).mean())
@@ -97,7 +98,7 @@ def statistics(seeds: int) -> Iterator[Row]:
 
 
 def times() -> Iterator[Row]:
-    """Yield the time of a spread of three inputs with 5120 random designs."""
+    """Yield the computing time of a spread of three inputs with 5120 random designs."""
     run = partial(bd.spread, PLAIN, TOLERANCES, speed=50.0)
     yield "5120 designs of three inputs, three modes", time_text(best_time(run, 3, process_time)), ""
 

@@ -1,4 +1,4 @@
-"""Charts of stability: their time over a run of the stock integrator, and their verdicts point by point.
+"""Charts of stability: time relative to a run of scipy's integrator, and verdicts point by point.
 
 Run: python -m benchmarks.stability            (ten minutes)
 """
@@ -29,7 +29,7 @@ VARY = {
 
 
 def race_a_stock_integrator() -> Iterator[Row]:
-    """Yield times of charts of 200 x 200 points with three modes, over one run of Radau."""
+    """Yield times of charts of 200 x 200 points with three modes, relative to one run of scipy's Radau."""
     method, rtol, atol = STOCK[0]
     _, stock = solve_stock(method, rtol, atol)
     yield f"one run of {method}, rtol {rtol:g}: time [s]", f"{stock:.1f}", ""
@@ -58,7 +58,7 @@ def _rows(name: str, ranges: dict[str, tuple[float, float]], ratio: float, stock
 
 
 def _compare(scene: bd.Scene, vary: dict[str, np.ndarray], chart: bd.StabilityChart) -> tuple[int, int]:
-    """Count points with another verdict, and with another growth rate, by a stock integrator."""
+    """Count points with another verdict or growth rate by scipy's integrator."""
     generator, wrong, missed = np.random.default_rng(0), 0, 0
     edges = np.argwhere(np.diff((chart.status == "unstable").astype(int), axis=0))
     places = [*generator.permutation(edges)[: CHECKED // 2].tolist()]
@@ -66,7 +66,7 @@ def _compare(scene: bd.Scene, vary: dict[str, np.ndarray], chart: bd.StabilityCh
     for i, j in places:
         numbers = {path: float(values[k]) for (path, values), k in zip(vary.items(), (i, j), strict=True)}
         radius, period = spectral_radius(scene, numbers)
-        # Square root of the tolerance, for points at limits.
+        # Square root of the integrator's tolerance, for points at the limits of stability.
         rate, uncertain = np.log(radius) / period, 1e-5 / period
         unstable = chart.status[i, j] == "unstable"
         wrong += bool(abs(rate) > uncertain and unstable != (rate > 0) and chart.status[i, j] != "undecided")
@@ -75,7 +75,7 @@ def _compare(scene: bd.Scene, vary: dict[str, np.ndarray], chart: bd.StabilityCh
 
 
 def spectral_radius(scene: bd.Scene, numbers: dict[str, float]) -> tuple[float, float]:
-    """Compute the size of the largest multiplier by DOP853 at 1e-12, and the period [s]."""
+    """Compute the magnitude of the largest Floquet multiplier by DOP853 at 1e-12, and the period [s]."""
     scenes = PeriodicScenes(scene, MODES, "ritz")
     scene = scenes.at(numbers)
     _, equations = scenes.modal(scene)

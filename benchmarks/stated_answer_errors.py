@@ -1,10 +1,10 @@
-"""Whether the errors that answers state at any tolerance cover the true ones.
+"""Test whether the stated errors of answers at any tolerance cover the true errors.
 
 Run: python -m benchmarks.stated_answer_errors [--scenes N] [--save FILE]
 
-Loads in equilibrium, responses and their peaks, random responses, poles, equilibria, amplitude-frequency
-coefficients, setting-angle limits and resonance speeds of random scenes, at tolerances from 0.1 to 1e-8,
-against the same without one.
+The answers are loads in equilibrium, responses and their peaks, random responses, poles, equilibria,
+amplitude-frequency coefficients, setting-angle limits and resonance speeds of random scenes, at tolerances
+from 0.1 to 1e-8.  They are compared with the same answers without a tolerance.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -27,14 +27,14 @@ from benchmarks.resumable import Cases, measure_random
 from benchmarks.rows import Row
 
 SEED = 7
-_NEGLIGIBLE = 1e-10  # share of the largest value; smaller values are within the error of the reference
+_NEGLIGIBLE = 1e-10  # fraction of the largest value, below which values are within the error of the reference
 Found = tuple[np.ndarray, np.ndarray]  # values and stated errors
 Answer = Callable[[bd.Scene, float, "float | None"], Found]
 
 
 @dataclass(frozen=True)
 class Case:
-    """Stated and true errors of one answer over its largest value, or why it was refused."""
+    """Stated and true errors of one answer, relative to its largest value, or the reason of a refusal."""
 
     number: int
     answer: str
@@ -156,7 +156,7 @@ def _measure(number: int, name: str, answer: Answer, scene: bd.Scene, speed: flo
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Yield how many of the true errors the stated ones cover, and by how much they exceed them."""
+    """Yield the fraction of true errors covered by stated errors, and ratios of stated to true errors."""
     for name in (*IN_SPACE, *IN_A_PLANE):
         own = [case for case in cases if case.answer == name]
         answered = [case for case in own if not case.refusal and case.stated]
@@ -182,7 +182,7 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
 
 
 def cases(seed: int = SEED) -> Cases[Case]:
-    """Return the random scenes of a seed."""
+    """Return the random scenes of a seed, as resumable cases."""
     return Cases(partial(measure, seed=seed), Case)
 
 

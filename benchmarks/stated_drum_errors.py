@@ -1,7 +1,8 @@
-"""Whether the stated errors of drum brakes, duo-servo brakes and stops cover the true ones.
+"""Test whether the stated errors of drum brakes, duo-servo brakes and stops cover the true errors.
 
-Run: python -m benchmarks.stated_drum_errors [--drums N].  Random brakes down to a margin to self-locking of
-1e-12, and trucks that drive either way down to 1e-9 beside never stopping, against closed forms to 40 digits.
+Run: python -m benchmarks.stated_drum_errors [--drums N].  Random brakes down to a margin of 1e-12 to
+self-locking, and trucks in both directions on slopes down to 1e-9 from the steepest on which they stop, are
+compared with closed forms in 40 digits.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from brakes import drum, forklift
 SEED = 12
 LEAST_MARGIN = 1.001e-12
 LEAST_MARGIN_OF_STOPS = 1.1e-9
-_LEAST = 1e-17  # least true error that counts, as a double is no more exact
+_LEAST = 1e-17  # least true error, because double precision is no more accurate
 
 
 class Errors(NamedTuple):
@@ -36,7 +37,7 @@ def _margin(rng: np.random.Generator, least: float = LEAST_MARGIN) -> float:
 
 
 def _compared(found: object, exact: Mapping[str, Any], scale: mpf | None = None) -> Errors:
-    """Compare numbers; return the largest relative error; of vectors over a scale, or else their size."""
+    """Compare numbers with exact ones; return the largest relative error (vectors: over a scale)."""
     true = max(_relative(getattr(found, name), value, scale) for name, value in exact.items())
     return Errors(float(getattr(found, "error")), max(float(true), _LEAST))  # noqa: B009
 
@@ -58,12 +59,12 @@ def draw_shoe(rng: np.random.Generator) -> drum.Shoe:
         zero = "axis" if rng.random() < 0.3 else "pivot"
         try:
             return drum.Shoe(r, r * rng.uniform(0.1, 1), (start, end), pivot, r * rng.uniform(-0.04, 1), zero)
-        except ValueError:  # a lining that covers the pin is refused
+        except ValueError:  # a lining that covers the pin raises an error
             continue
 
 
 def errors_of_shoe(rng: np.random.Generator) -> Errors:
-    """Compute errors of a leading or trailing shoe, near self-locking if it can lock."""
+    """Compute stated and true errors of a leading or trailing shoe, near self-locking if it can lock."""
     shoe, leading, force = draw_shoe(rng), bool(rng.random() < 0.8), 10 ** rng.uniform(-3, 6)
     limit = digits.locking_friction_of_shoe(shoe, leading)
     mu = float(limit * (1 - mpf(_margin(rng)))) if limit else rng.uniform(0.05, 1)
@@ -101,7 +102,7 @@ def draw_levers(rng: np.random.Generator) -> forklift.Levers:
 
 
 def errors_of_duo_servo(rng: np.random.Generator) -> Errors:
-    """Compute errors of a duo-servo brake, from levers or shape, and from friction or torque."""
+    """Compute errors of a duo-servo brake, given by levers or geometry, and by friction or torque."""
     if rng.random() < 0.5:
         geometry, clearance = draw_duo_servo(rng)
         exact = digits.exact_levers(geometry, clearance)
@@ -121,7 +122,7 @@ def errors_of_duo_servo(rng: np.random.Generator) -> Errors:
 
 
 def errors_of_stop(rng: np.random.Generator) -> Errors:
-    """Compute errors of a truck's stop, in either direction, on a slope nearly too steep."""
+    """Compute errors of a truck's stop, in either direction, on a slope that is nearly too steep."""
     size = 10 ** rng.uniform(-2, 2)
     truck = forklift.Truck(
         5950,
@@ -135,7 +136,7 @@ def errors_of_stop(rng: np.random.Generator) -> Errors:
     h, direction = y + truck.front_wheel_radius, "forward" if rng.random() < 0.5 else "reverse"
     mu, steepness = rng.uniform(0.3, 1), 1 - _margin(rng, LEAST_MARGIN_OF_STOPS)
     if direction == "forward":
-        mu, h = min(mu, 0.99 * a / h), -h  # from a / h on, braking overturns it
+        mu, h = min(mu, 0.99 * a / h), -h  # with friction above a / h, braking overturns the truck
     slope = steepness * np.arctan(mu * (L - a) / (L + mu * h))
     conditions = forklift.StopConditions(
         slope, rng.uniform(1, 20), mu, 0.5, rng.uniform(0, 1), direction=direction
@@ -158,7 +159,7 @@ def measure(kind: str, number: int, seed: int = SEED) -> list[Errors]:
 
 
 def rows(number: int) -> Iterator[Row]:
-    """Yield how many stated errors cover the true ones, and by how much they are too large."""
+    """Yield the fraction of true errors covered by stated errors, and the over-estimate."""
     for kind in KINDS:
         stated, true = np.array([each for each in measure(kind, number) if not np.isnan(each.stated)]).T
         over = stated / true

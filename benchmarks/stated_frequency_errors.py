@@ -1,4 +1,4 @@
-"""Whether the stated errors of frequencies cover the true ones.
+"""Test whether the stated errors of frequencies cover the true errors.
 
 Run: python -m benchmarks.stated_frequency_errors [--scenes N] [--save FILE].  Random scenes, from a range in
 which every scene has an answer, against the power series in mpmath.
@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -22,14 +22,14 @@ from benchmarks.cases.reference.of_scene import exact, relative_errors
 from benchmarks.resumable import Cases, measure_random
 from benchmarks.rows import Row
 
-_COVERED, _OVER_ESTIMATE = 0.999, 30.0  # share covered and median over-estimate that are the goals
-SEED = 5  # another seed than 4, which was used to fit the estimate of rounding
+_COVERED, _OVER_ESTIMATE = 0.999, 30.0  # target fraction of covered errors, and target median over-estimate
+SEED = 5  # not seed 4, which was used to fit the estimate of rounding errors
 _DIGITS = 22  # digits of the reference, which resolve errors down to the last bit of a double
 
 
 @dataclass(frozen=True)
 class Case:
-    """One random scene: stated and true errors of its first three frequencies, or why it was refused."""
+    """One random scene: stated and true errors of the first three frequencies, or the reason of a refusal."""
 
     number: int
     stated: tuple[float, ...] = ()
@@ -49,7 +49,7 @@ def measure(number: int, seed: int) -> list[Case]:
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Yield the share of the true errors that the stated ones cover, and the over-estimate."""
+    """Yield the fraction of true errors covered by stated errors, and the over-estimate."""
     answered = [case for case in cases if not case.refusal]
     stated, true = (np.array([getattr(case, name) for case in answered]) for name in ("stated", "true"))
     covered = stated >= true
@@ -66,7 +66,7 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
 
 
 def cases(seed: int = SEED) -> Cases[Case]:
-    """Return the random scenes of a seed."""
+    """Return the random scenes of a seed, as resumable cases."""
     return Cases(partial(measure, seed=seed), Case)
 
 

@@ -1,12 +1,12 @@
-"""Whether the stated errors of loads along the span cover the true ones, in random transients.
+"""Test whether the stated errors of loads along the span cover the true errors, in random transients.
 
-Run: python -m benchmarks.stated_load_errors [--scenes N] [--physics | --cycles] [--save FILE].  Random scenes
-in motion as in `benchmarks.stated_transient_errors`; with --physics, of two planes, twist, shear, rotary
-inertia and springs in all combinations; with --cycles, damage-equivalent ranges of the moment at the root,
-against cycles counted from 200 001 samples of the same run.  The reference of the others has twice as many
-modes at three speeds, at least 24 shapes, in a large basis, and finer steps: both errors together, of modes
-and of time.  Modes contribute to shear forces as k^-2 after a sudden load, so that the reference itself has a
-part of the error there.
+Run: python -m benchmarks.stated_load_errors [--scenes N] [--physics | --cycles] [--save FILE].  The random
+scenes in motion are those of `benchmarks.stated_transient_errors`; with --physics they have two planes,
+twist, shear, rotary inertia and springs in all combinations.  With --cycles, damage-equivalent ranges of the
+root's moment are compared with ranges counted from 200 001 samples of the same run.  Otherwise the reference
+has twice as many modes at three speeds, at least 24 shapes, in a large basis, and finer time steps, so that
+the errors by modes and by time integration are tested together.  Modes contribute to shear forces as k^-2
+after a sudden load: there the error of the reference is not negligible.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -32,25 +32,25 @@ from benchmarks.rows import Row, show
 from benchmarks.stated_transient_errors import random_physics_run, random_run
 
 _BOUND, _MOST_OVER = 0.99, 10.0
-_FUNCTIONS = 120  # number of functions of the reference
+_FUNCTIONS = 120  # number of trial functions of the reference
 _TIMES = 1000  # number of times at which loads are compared
-_MORE, _MANY = 2, 8  # modes of the reference over those of the run at each of its speeds, and at least
-_ROUNDING = 1e-8  # rounding error of the reference, over the largest along the span
-_FINER, _FINEST = 1e-2, 1e-9  # tolerance of the reference over that of the run, and its least value
-# Number of samples of the run from which cycles are counted, and of parts at once.
+_MORE, _MANY = 2, 8  # ratio of the reference's modes to the run's at each speed, and least number of modes
+_ROUNDING = 1e-8  # rounding error of the reference, relative to the largest load along the span
+_FINER, _FINEST = 1e-2, 1e-9  # tolerance of the reference over that of the run, and smallest tolerance
+# Number of samples of the run from which cycles are counted, and number evaluated at once.
 _SAMPLES, _PARTS = 200_001, 400
 _EXPONENTS = 3.0, 10.0
 _QUANTITIES = "force", "moment", "strain"
-_STATIONS = np.linspace(0, 0.9, 7)  # positions over the length; at the tip all loads but a body's vanish
+_STATIONS = np.linspace(0, 0.9, 7)  # positions x/L; at the tip only the loads of a tip body are not 0
 SEED = 18
 
 
 @dataclass(frozen=True)
 class Case:
-    """One random run: stated and true errors of each component, or why it was refused.
+    """One random run: stated and true errors of each load component, or the reason of a refusal.
 
-    Errors are over the largest of the component along the span, at the station with the largest true error
-    over the stated one; the over-estimate is that of the largest along the span.
+    Errors are relative to the component's largest value along the span, at the station with the largest ratio
+    of true to stated error; the over-estimate is that of the largest errors along the span.
     """
 
     number: int
@@ -80,7 +80,7 @@ def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] 
 
 
 def measure_cycles(number: int, seed: int) -> list[Case]:
-    """Compute stated and true errors of equivalent ranges of the root's moment in the run with a number."""
+    """Compute stated and true errors of equivalent ranges of the root's moment, for the run with a number."""
     from rainflow import extract_cycles
 
     given = of_few_modes(np.random.default_rng([seed, number]), random_run)
@@ -109,7 +109,7 @@ def _times(run: Transient) -> np.ndarray:
 
 
 def _reference(run: Transient) -> Transient:
-    """Run the same with many more modes, integrated nearly without error."""
+    """Repeat a run with many more modes and a very small time-integration error."""
     ends = find_speed_range(run.request.motion, run.path.end)
     speeds = tuple(np.unique([*ends, np.mean(ends)]).tolist())
     modes = max(_MANY, _MORE * (run.request.basis.modes or 0))
@@ -119,7 +119,7 @@ def _reference(run: Transient) -> Transient:
 
 
 def _values(reference: Transient, like: bd.TransientLoads) -> dict[str, np.ndarray]:
-    """Return loads of the reference at the same stations and times, without its errors."""
+    """Return the reference's loads at the same stations and times, without error estimates."""
     outputs = like.path.outputs
     return outputs.split(LoadPath(reference, like.path.stations, outputs).at(like.t))
 
@@ -139,7 +139,7 @@ def _errors(
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Yield the share of true errors that stated ones cover, the over-estimate, and what was refused."""
+    """Yield the fraction of true errors covered by stated errors, the over-estimate, and refusals."""
     answered = [case for case in cases if not case.refusal]
     yield "random transients", str(len(cases)), "500"
     yield "refused", str(len(cases) - len(answered)), ""

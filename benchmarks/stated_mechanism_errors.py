@@ -1,8 +1,9 @@
-"""Whether the stated errors of mechanisms cover the true ones.
+"""Test whether the stated errors of mechanisms cover the true errors.
 
-Run: python -m benchmarks.stated_mechanism_errors [--mechanisms N].  Random mechanisms, without friction and
-sliding in either direction, some of them drawn far away or with nearly the friction that jams them, and
-blocks on round drums that have turned, against equilibrium to 40 digits.
+Run: python -m benchmarks.stated_mechanism_errors [--mechanisms N].  Random mechanisms are solved without
+friction and sliding in either direction; some of them are far from the origin, some have nearly the friction
+at which they jam.  Blocks on round drums that have rotated are solved, too.  The reference is equilibrium in
+40 digits.
 """
 
 from __future__ import annotations
@@ -23,12 +24,12 @@ from benchmarks.rows import Row, show
 from brakes import planar
 
 SEED = 4
-_LEAST = 1e-17  # least true error that counts, as a double is no more exact
+_LEAST = 1e-17  # least true error, because double precision is no more accurate
 _FAR = 1e4  # largest shift of a mechanism [m]
 
 
 class Case(NamedTuple):
-    """A mechanism, the load that drives it where it has friction, and by how much that has moved [rad, m]."""
+    """A mechanism, its driving load if it has friction, and the travel of this load [rad, m]."""
 
     mechanism: planar.Mechanism
     driver: str | None
@@ -43,7 +44,7 @@ class Errors(NamedTuple):
 
 
 def draw(rng: np.random.Generator) -> Case:
-    """Draw a random mechanism; one in three is drawn far away."""
+    """Draw a random mechanism; one in three is far from the origin."""
     mechanism, driver = (
         draw_mechanism(rng) if rng.random() < 0.5 else (mechanisms.random_mechanism(rng), None)
     )
@@ -53,7 +54,7 @@ def draw(rng: np.random.Generator) -> Case:
 
 
 def draw_on_round_face(rng: np.random.Generator) -> Case:
-    """Draw one or two levers that press blocks on a drum, which has turned."""
+    """Draw one or two levers that press blocks on a drum that has rotated from the drawing."""
     axle, radius = mechanisms.random_point(rng), rng.uniform(0.1, 0.5)
     joints: list[planar.Joint] = [
         planar.Pin("axle", "drum", "ground", axle, radius=0.1 * radius, friction=rng.choice([0.0, 0.2]))
@@ -79,7 +80,7 @@ def draw_on_round_face(rng: np.random.Generator) -> Case:
 
 
 def _maybe_far(rng: np.random.Generator, mechanism: planar.Mechanism) -> planar.Mechanism:
-    """Return the mechanism; one in three turned and shifted by up to 10 km."""
+    """Return the mechanism, in one of three cases rotated and shifted by up to 10 km."""
     if rng.random() >= 0.3:
         return mechanism
     away = 10 ** rng.uniform(0, np.log10(_FAR)) * np.exp(2j * np.pi * rng.random())
@@ -87,7 +88,7 @@ def _maybe_far(rng: np.random.Generator, mechanism: planar.Mechanism) -> planar.
 
 
 def _near_jamming(mechanism: planar.Mechanism, driver: str, part: float) -> planar.Mechanism:
-    """Return the mechanism with a share of the friction that jams it, if 20 times its own does."""
+    """Return the mechanism with friction slightly below jamming, if 20 times its friction jams it."""
     low, high = 1.0, 20.0
     if _jams(mechanism, driver) or not _jams(_with_friction(mechanism, high), driver):
         return mechanism
@@ -111,7 +112,7 @@ def _with_friction(mechanism: planar.Mechanism, factor: float) -> planar.Mechani
 
 
 def errors_of(mechanism: planar.Mechanism, driver: str | None, moved: float = 0.0) -> Iterator[Errors]:
-    """Yield errors of the equilibria of a mechanism that have an answer."""
+    """Yield stated and true errors of those equilibria of a mechanism that have a solution."""
     if driver is None:
         yield from _compared(planar.solve(mechanism))
         return
@@ -155,7 +156,7 @@ def measure(number: int, kind: str = "mechanisms", seed: int = SEED) -> list[Err
 
 
 def rows(number: int) -> Iterator[Row]:
-    """Yield how many stated errors cover the true ones, and by how much they are too large."""
+    """Yield the fraction of true errors covered by stated errors, and the over-estimate."""
     for kind in KINDS:
         stated, true = np.array(measure(number, kind)).T
         over = stated / np.maximum(true, _LEAST)

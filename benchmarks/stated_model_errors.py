@@ -1,10 +1,10 @@
-"""Whether the stated model errors are right: what each left-out effect changes, estimated and solved.
+"""Test whether stated model errors are right: changes by each left-out effect, estimated and solved.
 
-Run: python -m benchmarks.stated_model_errors [--scenes N] [--first N] [--save FILE].  Random scenes; each
-effect that a scene leaves out is estimated from the modes without it, then solved with it.  A mode with the
-effect is that which overlaps most with the one without, by the mass; where none does by more than
-half, the effect has made other modes of it, and there is no change to compare.  Every fourth scene is one
-that rotation bends, solved with large deflection by collocation, which shares nothing with the package.
+Run: python -m benchmarks.stated_model_errors [--scenes N] [--first N] [--save FILE].  For random scenes, the
+change by each left-out effect is estimated from the modes without the effect, then solved with the effect.
+Modes with and without the effect are paired by their overlap (mass product); a mode whose largest overlap is
+below one half has no partner, and no change to compare.  In every fourth scene rotation bends the beam; large
+deflection is solved by collocation that uses no code of the package.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from functools import partial
 from time import perf_counter
 from typing import Any
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -39,26 +39,26 @@ from benchmarks.rows import Row, time_text
 
 SEED = 15
 _MODES = 3
-_FUNCTIONS = 18  # number of functions of the reference, over all segments
+_FUNCTIONS = 18  # number of trial functions of the reference, on all segments
 _KNOWN = 1e-9  # relative error of the reference for large deflection
-_MORE_MODES = 12  # further modes solved with the effect, among which a mode may be
-_LEAST, _MOST = 1e-3, 0.1  # least and largest changes that are judged
-_FACTOR, _SHARE = 2.0, 0.95  # factor of the truth within which this share is to lie
+_MORE_MODES = 12  # number of further modes solved with the effect, among which a mode is searched
+_LEAST, _MOST = 1e-3, 0.1  # least and largest changes that are compared
+_FACTOR, _SHARE = 2.0, 0.95  # factor of the true change, within which this fraction of estimates should lie
 _FIFTH = 0.2
 _STEEL = 200e9, 7850.0  # Young's modulus [Pa] and density [kg/m3]
-_BENT = 4  # number of scenes of which one is for large deflection
-_DEFLECTION = 0.02, 0.4  # least and most of the linear static deflection of those over the length
+_BENT = 4  # one in this number of scenes has large deflection
+_DEFLECTION = 0.02, 0.4  # least and largest linear static deflection of these scenes, over the length
 _SLENDEREST = 40.0  # length over thickness of the stockier plane
-_STRAIGHT = 0.85  # share of scenes without twist that bend obliquely, but for those of large deflection
-_KEPT = 0.1  # share of scenes that model an effect already
-_OVERLAP = 0.5  # squared mass product above which a mode is the same
+_STRAIGHT = 0.85  # fraction of scenes without twist that bend obliquely, except those with large deflection
+_KEPT = 0.1  # fraction of scenes that already model an effect
+_OVERLAP = 0.5  # squared mass product of two mode shapes above which they are the same mode
 
 
 @dataclass(frozen=True)
 class Answer:
-    """The changes by one effect in one scene.
+    """Changes of frequencies by one effect in one scene.
 
-    `estimated` and `true` are relative changes of each frequency; nan where there is none.
+    `estimated` and `true` are relative changes of each frequency; nan where there is no such mode.
     """
 
     number: int
@@ -71,7 +71,7 @@ class Answer:
 
 def measure(number: int, seed: int) -> list[Answer]:
     """Compute the answers for the scene with a number."""
-    with warnings.catch_warnings(action="ignore"):  # warnings of beams that no material has
+    with warnings.catch_warnings(action="ignore"):  # warnings of beams without a real material
         draw = random_left_out_scene if number % _BENT else random_bent_scene
         scene, speed = draw(np.random.default_rng([seed, number]))
         start = perf_counter()
@@ -87,12 +87,12 @@ def measure(number: int, seed: int) -> list[Answer]:
 
 
 def _bent_answer(number: int, modes: bd.Modes, time: float) -> Answer:
-    """Compute the change by large deflection, for the equilibrium that is continued from rest."""
+    """Compute the change by large deflection, about the equilibrium on the branch from rest."""
     beam, unit = elastica_of_scene(modes.scene)
     estimated = tuple(modes.left_out[LARGE_DEFLECTION.name].tolist())
     try:
         bent = converged(from_rest(beam, modes.speed * unit), _MODES, _KNOWN)
-    except ArithmeticError as error:  # the branch turns back
+    except ArithmeticError as error:  # the branch of equilibria turns back
         return Answer(number, LARGE_DEFLECTION.name, time, estimated, (np.nan,) * _MODES, str(error))
     true = bent.frequency / (2 * np.pi * unit) / modes.frequency - 1
     return Answer(number, LARGE_DEFLECTION.name, time, estimated, tuple(true.tolist()))
@@ -102,7 +102,7 @@ def _bent_answer(number: int, modes: bd.Modes, time: float) -> Answer:
 
 
 def random_left_out_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """Draw a scene and a speed with all properties, and with much physics left out.
+    """Draw a scene with all properties of the beam, of which the physics leaves out many, and a speed.
 
     Three beams of twenty may be twisted, the others bend obliquely: else a second plane would change nothing.
     """
@@ -126,19 +126,19 @@ def random_bent_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
         setting_angle=rng.uniform(-np.pi, np.pi),
         bending_angle=rng.choice([0.0, np.pi]),
     )
-    if mount.root_stiffness == 0:  # a hinge has no one equilibrium at rest
+    if mount.root_stiffness == 0:  # a hinge has no unique equilibrium at rest
         mount = replace(mount, root_stiffness=np.inf)
     scene = bd.Scene(beam, mount, physics=bd.Physics(rotary_inertia=bool(rng.random() < _KEPT)))
     return scene, speed_of_deflection(scene, 10 ** rng.uniform(*np.log10(_DEFLECTION)))
 
 
 def _random_beam(rng: np.random.Generator) -> bd.Beam:
-    with warnings.catch_warnings(action="ignore"):  # warnings of beams that no material has
+    with warnings.catch_warnings(action="ignore"):  # warnings of beams without a real material
         beam = random_physics_beam(rng, stocky=True, slenderest=_SLENDEREST)
     return replace(beam, axial_stiffness=beam.mass_per_length.scaled(_STEEL[0] / _STEEL[1]))
 
 
-# The truth ----------------------------------------------------------------------------------------
+# True changes -------------------------------------------------------------------------------------
 
 
 def _answer(number: int, modes: bd.Modes, added: Addition, estimated: np.ndarray, time: float) -> Answer:
@@ -150,7 +150,7 @@ def _answer(number: int, modes: bd.Modes, added: Addition, estimated: np.ndarray
 
 
 def solved_change(modes: bd.Modes, scene: bd.Scene) -> np.ndarray:
-    """Compute the relative change of each frequency by an effect; nan where the mode is lost."""
+    """Compute the relative change of each frequency by an effect; nan if the mode is not found."""
     simple, full = _reference(modes.scene, scene.beam), _reference(scene, scene.beam)
     speeds, m = np.array([modes.speed]), len(modes.frequency)
     before, after = simple.solver.solve(speeds, m), full.solver.solve(speeds, _MORE_MODES)
@@ -167,14 +167,14 @@ def solved_change(modes: bd.Modes, scene: bd.Scene) -> np.ndarray:
 
 
 def _reference(scene: bd.Scene, beam: bd.Beam) -> Model:
-    """Return a model of given size on segments that suit both scenes."""
+    """Return a model of fixed size, on segments that suit the scene with and without the effect."""
     functions = max(8, _FUNCTIONS // (len(beam.breakpoints) - 1))
     return _OverBeam(scene, bd.Ritz(functions), beam)
 
 
 @dataclass(frozen=True)
 class _OverBeam(Model):
-    """A model over the function spaces of a beam with all its properties."""
+    """A model whose function spaces suit a beam with all its properties."""
 
     beam: bd.Beam
 
@@ -187,7 +187,7 @@ class _OverBeam(Model):
 
 
 def cases(seed: int = SEED) -> Cases[Answer]:
-    """Return the random scenes of a seed."""
+    """Return the random scenes of a seed, as resumable cases."""
     return Cases(partial(measure, seed=seed), Answer)
 
 
@@ -195,7 +195,7 @@ def cases(seed: int = SEED) -> Cases[Answer]:
 
 
 def summarize(answers: Sequence[Answer]) -> Iterator[Row]:
-    """Yield for each effect the share of estimates within a factor of two, and the worst."""
+    """Yield for each effect the fraction of estimates within a factor of two, and the worst estimate."""
     yield "random scenes", str(len({a.number for a in answers})), "1000"
     for effect in sorted({a.effect for a in answers}):
         yield from _summarize_effect(effect, [a for a in answers if a.effect == effect])

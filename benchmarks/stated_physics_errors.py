@@ -1,9 +1,9 @@
-"""Whether the stated errors of frequencies cover the true ones, with all physics in all combinations.
+"""Test whether the stated errors of frequencies cover the true errors, with all combinations of physics.
 
-Run: python -m benchmarks.stated_physics_errors [--scenes N] [--stations] [--discretization fem]
-[--save FILE].  Random scenes with two planes, twist, shear, rotary inertia and springs at the root, or with
---stations blades of 10 to 100 stations, at three tolerances, against collocation of the differential
-equations, which shares nothing with the package.
+Run: python -m benchmarks.stated_physics_errors [--scenes N] [--stations] [--discretization fem] [--save
+FILE].  Random scenes have two planes, twist, shear, rotary inertia and springs at the root; with --stations
+they are blades of 10 to 100 stations.  They are solved at three tolerances, and compared with collocation of
+the differential equations, which uses no code of the package.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from functools import partial
 from time import process_time
 from typing import TypeAlias
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -29,20 +29,20 @@ from benchmarks.cases.reference.resolved import Known, known_frequencies
 from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show, time_text
 
-_OVER_ESTIMATE = 30.0  # median over-estimate that is the goal
-_LONGEST = 10.0  # largest time, over the median of all
+_OVER_ESTIMATE = 30.0  # target median over-estimate
+_LONGEST = 10.0  # target of the longest computing time, over the median
 SEED = 6
 Draw: TypeAlias = "Callable[[np.random.Generator], tuple[bd.Scene, float]]"  # draws a scene and a speed
 TOLERANCES = (None, 1e-3, 1e-6)
 _MODES = {1: 3, 2: 5}  # numbers of modes by the number of planes
-_KNOWN = 1e-9  # uncertainty above which a reference is not used
+_KNOWN = 1e-9  # relative uncertainty above which a reference is not used
 
 
 @dataclass(frozen=True)
 class Answer:
-    """Modes of one scene at one tolerance: stated and true errors, or why it was refused.
+    """Modes of one scene at one tolerance: stated and true errors, or the reason of a refusal.
 
-    `known` are the uncertainties of the true errors.
+    `known` are the uncertainties of the true errors, due to the reference.
     """
 
     number: int
@@ -55,13 +55,13 @@ class Answer:
 
     @property
     def covered(self) -> np.ndarray:
-        """Whether each stated error reaches the true one, as far as that is known; a nan does not."""
+        """Whether each stated error is at least the true error, within its uncertainty; false for nan."""
         stated, true, known = map(np.array, (self.stated, self.true, self.known))
         return (stated == np.inf) | (true <= stated + known)
 
     @property
     def resolved(self) -> np.ndarray:
-        """Whether each true error is above the uncertainty of the reference, and one is stated."""
+        """Whether each true error exceeds the reference's uncertainty, and an error is stated."""
         stated, true, known = map(np.array, (self.stated, self.true, self.known))
         return np.isfinite(stated) & (true > known) & (stated > 0)
 
@@ -74,7 +74,7 @@ def measure(
     draw: Draw = random_physics_scene,
 ) -> list[Answer]:
     """Compute the answers for the scene with a number."""
-    with warnings.catch_warnings(action="ignore"):  # warnings of beams that no material has
+    with warnings.catch_warnings(action="ignore"):  # warnings of beams without a real material
         scene, speed = draw(np.random.default_rng([seed, number]))
         count = _MODES[scene.physics.planes]
         try:
@@ -87,7 +87,7 @@ def measure(
 def answer(
     number: int, scene: bd.Scene, speed: float, discretization: str, tolerance: float | None, known: Known
 ) -> Answer:
-    """Solve a scene and compare it with what is known."""
+    """Solve a scene, and compare the result with the reference."""
     start = process_time()
     try:
         modes = bd.natural_modes(scene, speed, len(known.eigenvalue), discretization, tolerance)
@@ -117,9 +117,9 @@ def cases(
 
 
 def summarize(answers: Sequence[Answer], scenes: int = 3000, covered: float = 0.999) -> Iterator[Row]:
-    """Yield the share of true errors that stated ones cover, and the over-estimate, at each tolerance.
+    """Yield the fraction of true errors covered by stated errors, and the over-estimate, at each tolerance.
 
-    The number of scenes and the share covered are those that are aimed at.
+    `scenes` and `covered` are the targets: number of scenes, and fraction of covered errors.
     """
     yield "random scenes", str(len({a.number for a in answers})), str(scenes)
     lost = [a for a in answers if a.refusal.startswith("reference")]

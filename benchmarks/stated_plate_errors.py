@@ -1,7 +1,8 @@
-"""Whether the errors stated of strips as plates cover the true ones.
+"""Test whether the stated errors of strips as plates cover the true errors.
 
-Run: python -m benchmarks.stated_plate_errors [--scenes N] [--save FILE].  The random cantilevers that solids
-are computed of, as plates at tolerances from 0.1 to 1e-3, against 14 functions on each segment and across.
+Run: python -m benchmarks.stated_plate_errors [--scenes N] [--save FILE].  The random cantilevers of
+`benchmarks.solids` are solved as plates at tolerances from 0.1 to 1e-3.  The reference has 14 trial functions
+on each segment and across the width.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -42,7 +43,7 @@ def measure(number: int, seed: int) -> list[Case]:
     strip = random_strip(rng)
     scene = replace(strip.scene(), physics=bd.Physics(camber=True, torsion=True))
     tolerance = 10 ** rng.uniform(-3, -1)
-    with warnings.catch_warnings(action="ignore"):  # warnings of speeds at which a strip bends far
+    with warnings.catch_warnings(action="ignore"):  # warnings about speeds at which deflections are large
         modes = bd.natural_modes(scene, strip.speed, _MODES, tolerance=tolerance)
         true = bd.natural_modes(scene, strip.speed, _MODES, discretization=_REFERENCE).frequency
     errors = np.abs(modes.frequency / true - 1)
@@ -50,7 +51,7 @@ def measure(number: int, seed: int) -> list[Case]:
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Yield how many of the true errors the stated ones cover, and how large they are beside these."""
+    """Yield the fraction of true errors covered by stated errors, and ratios of stated to true errors."""
     stated, true = (np.concatenate([getattr(case, name) for case in cases]) for name in ("stated", "true"))
     tolerance = np.repeat([case.tolerance for case in cases], _MODES)
     yield "random strips; modes", f"{len(cases)}; {len(stated)}", "300"
@@ -64,7 +65,7 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
 
 
 def cases(seed: int = SEED) -> Cases[Case]:
-    """Return the random scenes of a seed."""
+    """Return the random scenes of a seed, as resumable cases."""
     return Cases(partial(measure, seed=seed), Case)
 
 

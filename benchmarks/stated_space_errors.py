@@ -1,9 +1,10 @@
-"""Whether the stated errors of frequencies of beams in space cover the true ones.
+"""Test whether the stated errors of frequencies of beams in space cover the true errors.
 
-Run: python -m benchmarks.stated_space_errors [--scenes N] [--seed N] [--save FILE].  Random beams that are
-twisted, swept and prebent, shear, stretch and have offsets, about their equilibria under rotation, at three
-tolerances, against the same equations over a basis of many functions, whose uncertainty is its distance from
-one of fewer: what is tested is the stated error of the discretization, not the equations.
+Run: python -m benchmarks.stated_space_errors [--scenes N] [--seed N] [--save FILE].  Random beams with twist,
+sweep, prebend, shear, stretch and offsets are solved about their equilibria under rotation, at three
+tolerances.  The reference solves the same equations with many trial functions; its uncertainty is the
+difference from a solution with fewer.  So the stated error of the discretization is tested, not the
+equations.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import warnings
 from collections.abc import Iterator
 from functools import partial
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -26,7 +27,7 @@ from benchmarks.rows import Row
 from benchmarks.stated_physics_errors import TOLERANCES, Answer, answer, summarize
 
 SEED, _MODES, _SCENES, _COVERED = 33, 4, 300, 0.995
-_REFERENCE = 24, 20  # numbers of functions of the reference and of a coarser one
+_REFERENCE = 24, 20  # numbers of trial functions of the reference and of a coarser reference
 
 
 def measure(number: int, seed: int) -> list[Answer]:
@@ -41,14 +42,14 @@ def measure(number: int, seed: int) -> list[Answer]:
 
 
 def _known(scene: bd.Scene, speed: float) -> Known:
-    """Compute eigenvalues over many functions, with their distance from those over fewer, and rounding."""
+    """Compute reference eigenvalues, with their change by fewer functions, and rounding errors."""
     fine, coarse = (bd.natural_modes(scene, speed, _MODES, bd.Ritz(n)).eigenvalue for n in _REFERENCE)
     uncertainty = np.abs(fine / coarse - 1) + 1e-13
     return Known(fine, uncertainty, 0.0)
 
 
 def cases(seed: int = SEED) -> Cases[Answer]:
-    """Return the random scenes of a seed."""
+    """Return the random scenes of a seed, as resumable cases."""
     return Cases(partial(measure, seed=seed), Answer)
 
 

@@ -1,8 +1,8 @@
-"""Whether the errors stated at any tolerance cover the true ones, and no mode is lost.
+"""Test whether the stated errors at any tolerance cover the true errors, and no mode is missing.
 
 Run: python -m benchmarks.stated_tolerance_errors [--scenes N] [--critical] [--save FILE].  Random beams with
 a body at the tip, at speeds to 0.999 of the critical one and gamma to 3000, at tolerances from 0.1 to 1e-8,
-by assumed modes and by elements in turn, against assumed modes on segments that shrink towards both ends,
+alternately by assumed modes and by elements, against assumed modes on segments that shrink towards both ends,
 which are doubled until they hold to a tenth of the stated error.
 """
 
@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -30,12 +30,12 @@ from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show
 
 SEED = 7
-_LOST = 0.02  # relative error above which a mode is another one: the true one was lost
+_LOST = 0.02  # relative error above which a mode is a different one: the true mode is missing
 
 
 @dataclass(frozen=True)
 class Case:
-    """Stated and true errors of one answer, relative to frequency or speed, or why it was refused."""
+    """Stated and true errors of one answer, relative to frequency or speed, or the reason of a refusal."""
 
     number: int
     discretization: str
@@ -51,7 +51,7 @@ def measure(number: int, seed: int, critical: bool) -> list[Case]:
     rng = np.random.default_rng([seed, number])
     discretization = "fem" if number % 2 else "ritz"
     tolerance = 10 ** rng.uniform(-8, -1)
-    with warnings.catch_warnings(action="ignore"):  # warnings of tolerances that elements miss
+    with warnings.catch_warnings(action="ignore"):  # warnings about tolerances that elements do not meet
         scene, speed = random_tip_scene(rng)
         try:
             if critical:
@@ -83,7 +83,7 @@ def _of_critical_speed(scene: bd.Scene, discretization: str, tolerance: float) -
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Yield how many of the true errors the stated ones cover, and by how much they are off."""
+    """Yield the fraction of true errors covered by stated errors, and ratios of stated to true errors."""
     refused = [case for case in cases if case.refusal]
     yield "random scenes; refused", f"{len(cases)}; {len(refused)}", ""
     for name in ("ritz", "fem"):

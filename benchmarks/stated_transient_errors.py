@@ -1,12 +1,12 @@
-"""Whether the stated errors of transients cover the true ones.
+"""Test whether the stated errors of transients cover the true errors.
 
 Run: python -m benchmarks.stated_transient_errors [--scenes N] [--physics | --bent | --waves] [--save FILE].
-Random scenes in motion; with --physics, of two planes, twist, shear, rotary inertia and springs in all
-combinations; with --bent, of large deflection, where the modal truncation error is not measured; with
---waves, of tip bodies on wheels that spin up until the road's wave is near a mode, kept or left out.  The
-time-integration error is measured against DOP853 of `solve_ivp`, or where that takes too long against our
-own steps at a tolerance of 1e-11; the modal truncation error against many modes at three speeds in a large
-basis.
+The scenes and motions are random.  With --physics they have two planes, twist, shear, rotary inertia and
+springs in all combinations; with --bent they have large deflection, and the modal truncation error is not
+measured; with --waves they have tip bodies on wheels that spin up until the road excites a mode that is kept
+or left out.  The reference for the time-integration error is DOP853 of `solve_ivp` or, where this takes too
+long, our method at a tolerance of 1e-11; for the modal truncation error it has many modes at three speeds in
+a large basis.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -33,18 +33,18 @@ from benchmarks.resumable import Cases, add_options
 from benchmarks.rows import Row, show
 
 _BOUND = 0.99
-_FUNCTIONS = 120  # number of functions of the reference
-_MANY = 8  # least number of modes of the reference at rest; it has three at two more speeds
+_FUNCTIONS = 120  # number of trial functions of the reference
+_MANY = 8  # least number of modes of the reference
 _DOP853 = 5e3  # largest phase angle of the fastest mode up to which DOP853 is the reference [rad]
 SEED = 7
 _ROUNDING = 1e-8  # rounding error of the references, over the largest deflection
-_TIMES = 2000  # number of times at which tips are compared
-_SOFTEST = 0.1  # spring at the root, over EI/L: with a softer one the first period has very many of others
+_TIMES = 2000  # number of times at which tip deflections are compared
+_SOFTEST = 0.1  # least spring at the root, over EI/L: with a softer spring the first period is very long
 
 
 @dataclass(frozen=True)
 class Case:
-    """One random run: its stated and true errors over the largest deflection, or why it was refused."""
+    """One random run: stated and true errors over the largest deflection, or the reason of a refusal."""
 
     number: int
     stated: tuple[float, float] = (0.0, 0.0)  # errors of time integration and modal truncation
@@ -65,7 +65,7 @@ def random_run(rng: np.random.Generator) -> dict:
 
 
 def random_physics_run(rng: np.random.Generator) -> dict:
-    """Draw such arguments with all physics; clamped or on springs from a tenth of EI/L."""
+    """Draw arguments of `simulate` with all physics; clamped, or on springs of at least 0.1 EI/L."""
     scene = random_still_scene(rng)
     least = _SOFTEST * float(scene.beam.bending_stiffness(np.zeros(1))[0]) / scene.beam.length
     stiff = (k if k >= least else np.inf for k in scene.mount.root_stiffnesses)
@@ -74,7 +74,7 @@ def random_physics_run(rng: np.random.Generator) -> dict:
 
 
 def random_bent_run(rng: np.random.Generator) -> dict:
-    """Draw such arguments with large deflection, at tolerances of 1e-3, 1e-6 or 1e-9."""
+    """Draw arguments of `simulate` with large deflection, at tolerances of 1e-3, 1e-6 or 1e-9."""
     beam = random_beam(rng)
     mount = bd.Mount(
         radius=beam.length * rng.choice([0.0, 10 ** rng.uniform(-1, 0.7)]),
@@ -86,7 +86,7 @@ def random_bent_run(rng: np.random.Generator) -> dict:
 
 
 def random_wave_run(rng: np.random.Generator) -> dict:
-    """Draw a tip body on a wheel that spins up until the road's wave is near a mode."""
+    """Draw a beam with tip body on a wheel that spins up until the road excites it near a mode."""
     beam = random_beam(rng)
     own = beam.length * float(beam.mass_per_length(np.linspace(0, 1, 101)).mean())
     mass = own * 10 ** rng.uniform(-1, 1)
@@ -169,7 +169,7 @@ def measure(number: int, seed: int, draw: Callable[[np.random.Generator], dict] 
 
 
 def find_time_error(run: Transient, t: np.ndarray) -> float:
-    """Find the largest deviation from the same modes integrated nearly without error [m]."""
+    """Compute the largest deviation [m] from the same modes with negligible time-integration error."""
     straight = run.system.straight if isinstance(run.system, ElasticaSystem) else run.system
     _, K, _ = straight.coefficients(np.zeros(1))
     phase = run.path.end * float(np.sqrt(np.abs(np.linalg.eigvals(K)).max()))
@@ -182,7 +182,7 @@ def find_time_error(run: Transient, t: np.ndarray) -> float:
 
 
 def find_mode_error(run: Transient, t: np.ndarray) -> float:
-    """Find the largest deviation from a run with many more modes, both nearly without time error [m]."""
+    """Compute the largest deviation [m] from a run with many more modes, both without time error."""
     ends = find_speed_range(run.request.motion, run.path.end)
     speeds = tuple(np.unique([*ends, np.mean(ends)]).tolist())
     basis = ModalBasis(max(_MANY, 2 * (run.request.basis.modes or 0)), speeds)
@@ -190,30 +190,30 @@ def find_mode_error(run: Transient, t: np.ndarray) -> float:
 
 
 def find_error_by_twice_the_modes(run: Transient, t: np.ndarray) -> float:
-    """Find the largest deviation from a run with twice the modes, at least four [m]."""
+    """Compute the largest deviation [m] from a run with twice as many modes, at least four."""
     ends = find_speed_range(run.request.motion, run.path.end)
     modes = max(_MANY // 2, 2 * (run.request.basis.modes or 0))
     return _distance_with(run, ModalBasis(modes, ends), bd.Ritz(max(_FUNCTIONS // 2, 2 * modes)), t)
 
 
 def _distance_with(run: Transient, basis: ModalBasis, discretization: bd.Ritz, t: np.ndarray) -> float:
-    """Find the largest distance from a run in another basis [m], both nearly without time error."""
+    """Compute the largest difference [m] from a run in another basis, both without time error."""
     few = replace(run.request, tolerance=1e-8, t_eval=None)
     many = replace(few, discretization=discretization, basis=basis)
     try:
         return _largest_distance(few.run(), many.run(), t)
-    except ArithmeticError:  # with more modes the motion grows without bound
+    except ArithmeticError:  # with more modes the motion is unstable
         return np.inf
 
 
 def _largest_distance(run: Transient, other: Transient, t: np.ndarray) -> float:
-    """Find the largest distance of the tips of two runs [m], both directions of bending together."""
+    """Compute the largest distance of the tips of two runs [m], as vectors in both directions."""
     each = (run.deflection(t, i) - other.deflection(t, i) for i in range(run.system.equations.planes))
     return float(np.hypot.reduce([np.abs(difference) for difference in each]).max())
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Yield the share of true errors that stated ones cover, the over-estimate, and what was refused."""
+    """Yield the fraction of true errors covered by stated errors, the over-estimate, and refusals."""
     answered = [case for case in cases if not case.refusal]
     yield "random runs", str(len(cases)), "200"
     yield "refused", str(len(cases) - len(answered)), ""

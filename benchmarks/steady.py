@@ -51,7 +51,7 @@ def check_instability() -> Iterator[Row]:
 
 
 def time_responses() -> Iterator[Row]:
-    """Yield times of the steady response at 1000 speeds."""
+    """Yield the times of steady responses at 1000 speeds."""
     speeds = np.linspace(1, 150, 1000)
     for name, scene, bound in (
         ("undamped", STEADY_ROLLING, "0.5"),

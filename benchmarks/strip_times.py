@@ -1,4 +1,4 @@
-"""Time of a strip as a plate beside that of the plain beam, and that of CalculiX for the same error.
+"""Computing times of a strip as a plate, of the plain beam, and of CalculiX for the same error.
 
 Run: python -m benchmarks.strip_times.  The strip is that of Lee and Yoo (2019), of steel, at 100 rad/s.
 """
@@ -21,16 +21,16 @@ PUBLISHED = Strip(0.05, 0.01, 0.0002, 200e9, 7850.0, 0.3, 0.215, speed=100.0)
 PLATE = bd.Physics(camber=True, torsion=True)
 _MODES, _TOLERANCE, _REPEATS = 3, 1e-3, 60
 _FINE, _LIMIT = 1e-4, bd.Ritz(18)
-# Meshes, finer and finer.
+# Meshes, in order of refinement.
 _MESHES = ((16, 1, 4), (24, 1, 6), (32, 1, 8), (48, 1, 12), (64, 1, 16), (96, 1, 24))
 
 
 def summarize() -> Iterator[Row]:
-    """Yield the two ratios."""
+    """Yield the time of the plate over that of the beam, and that of CalculiX over that of the plate."""
     count = itertools.count(1)
 
     def solve(physics: bd.Physics, tolerance: float | None = None) -> Callable[[], bd.Modes]:
-        """A call of which nothing is kept from the one before."""
+        """Return a function that solves the strip without cached results."""
         scene = PUBLISHED.scene(physics)
 
         def run() -> bd.Modes:
@@ -39,7 +39,7 @@ def summarize() -> Iterator[Row]:
 
         return run
 
-    solve(PLATE, _FINE)()  # once large arrays are freed, the allocator keeps the memory of smaller ones
+    solve(PLATE, _FINE)()  # after large arrays were freed, the allocator keeps the memory of smaller ones
     as_plate = solve(PLATE, _TOLERANCE)
     of_plate, of_plain = shortest(as_plate), shortest(solve(bd.Physics()))
     found = as_plate()

@@ -1,9 +1,9 @@
-"""Answers of many designs at once, over a loop of single calls.  Run: python -m benchmarks.study
+"""Time of many designs solved at once, against a loop of single calls.  Run: python -m benchmarks.study
 
-10 000 designs: ten thicknesses, tip masses, radii and speeds each.  The loop makes the scene of each design
-and calls `natural_modes`, of this commit, with the default tolerance, as the study has; it is timed on a
-random sample of the designs, whose answers are compared.  Both run in one process with one thread.
-Then other answers and scenes, with random thickness, radius and speed, in processor time.
+The 10 000 designs combine ten thicknesses, tip masses, radii and speeds.  The loop builds the scene of each
+design and calls `natural_modes` of this version with the default tolerance, as in the study; it is timed on a
+random sample of the designs, whose answers are compared.  Both run in one process with one thread.  Then
+other analyses are timed in processor time, with random thickness, radius and speed.
 """
 
 from __future__ import annotations
@@ -29,20 +29,20 @@ VARY = {
     "speed": np.linspace(0.0, 80.0, 10),
 }
 SAMPLE = 300  # number of designs in the loop of single calls
-SIDE = 200  # number of values of each input of a map
-# Numbers of designs of other questions, and the top speed [rad/s].
+SIDE = 200  # number of values of each of two inputs of a plot
+# Numbers of designs for the other analyses, and top speed [rad/s].
 OTHERS, SAMPLE_OF_OTHERS, TOP_SPEED = 2000, 20, 150.0
 
 
 def single(design: dict[str, float]) -> bd.Modes:
-    """Solve one design as a user would."""
+    """Solve one design by a single call, as a user would."""
     tip = bd.TipMass(design["beam.tip.mass"])
     beam = bd.Beam.rectangular(LENGTH, WIDTH, design["beam.thickness"], MODULUS, DENSITY, tip)
     return bd.natural_modes(bd.Scene(beam, bd.Mount(design["mount.radius"])), design["speed"], 3)
 
 
 def compare() -> Iterator[Row]:
-    """Yield the time of a design by a study and by single calls, and how far they differ."""
+    """Yield the time per design of a study and of single calls, and their largest difference."""
     beam = bd.Beam.rectangular(LENGTH, WIDTH, 2e-4, MODULUS, DENSITY, bd.TipMass(0.0))
     scene, random = bd.Scene(beam, bd.Mount()), np.random.default_rng(17)
     study = bd.study(scene, VARY)
@@ -56,7 +56,7 @@ def compare() -> Iterator[Row]:
             start = perf_counter()
             singles.append(single(design))
             each.append(perf_counter() - start)
-    # The least of each ten, as other programs only ever lengthen a call.
+    # The shortest of each ten calls, because other programs can only lengthen a call.
     one = float(np.mean(np.min(np.reshape(each, (-1, 10)), axis=1)))
     yield f"{number} designs, three modes: a design of a study [us]", f"{1e6 * at_once:.0f}", "-"
     yield "... one by one, this commit [us]", f"{1e6 * one:.0f}", "-"
@@ -74,7 +74,7 @@ def _deviation(modes: bd.Modes, frequency: np.ndarray, error: np.ndarray) -> flo
 
 @dataclass(frozen=True)
 class Case:
-    """A question of random designs, and the same question of one design."""
+    """An analysis of many random designs, and the same analysis of one design."""
 
     name: str
     scene: bd.Scene
@@ -84,7 +84,7 @@ class Case:
 
 
 def list_cases() -> Iterator[Case]:
-    """Yield the other questions that are answered in batches."""
+    """Yield the other analyses that solve many designs at once."""
     beam, wheel = bd.Beam.rectangular(LENGTH, WIDTH, 2e-4, MODULUS, DENSITY), bd.Mount(0.1)
     road = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
     rolling = bd.RollingWheel(0.3, bd.SteadyRotation(50.0), road)
@@ -102,7 +102,7 @@ def list_cases() -> Iterator[Case]:
 
 
 def compare_others() -> Iterator[Row]:
-    """Yield the time of a design by studies of other kinds, over single calls."""
+    """Yield the time per design of studies by other analyses, over that of single calls."""
     for case in list_cases():
         random = np.random.default_rng(17)
         ranges = {"beam.thickness": (1e-4, 4e-4), "mount.radius": (0.01, 0.3)} | case.more
@@ -123,7 +123,7 @@ def compare_others() -> Iterator[Row]:
 
 
 def draw_maps() -> Iterator[Row]:
-    """Yield the time of the picture of a study over two inputs, once the answer is there."""
+    """Yield the time to draw the plot of a finished study over two inputs."""
     beam = bd.Beam.rectangular(LENGTH, WIDTH, 2e-4, MODULUS, DENSITY)
     rolling = bd.RollingWheel(0.3, bd.SteadyRotation(50.0), bd.RoadWave(0.3, velocity_amplitude=0.01))
     sides = {"beam.thickness": np.linspace(1e-4, 4e-4, SIDE), "speed": np.linspace(0.0, TOP_SPEED, SIDE)}

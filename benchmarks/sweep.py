@@ -26,7 +26,7 @@ MODES, WORKERS = 5, 2
 
 
 def run_sweep(modes: int | str) -> tuple[bd.Sweep, float]:
-    """Run the sweep, with its progress shown; return it and its wall time [s]."""
+    """Run the sweep, and print its progress; return the result and the wall time [s]."""
     columns = TextColumn("speeds"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn()
     with Progress(*columns, console=Console(stderr=True)) as bar:
         task = bar.add_task("speeds")
@@ -48,7 +48,7 @@ def measure_peak_memory() -> float:
 
 
 def _memory_of_sweep() -> float:
-    """Measure the same for the processes of this one, which is the first of the workers [GB]."""
+    """Measure an upper bound of the memory [GB] of this process, the first worker, and its children."""
     run_sweep(MODES)
     unit = 1 if sys.platform == "darwin" else 1024
     own, largest = (
@@ -74,7 +74,7 @@ def time_chunk() -> float:
 
 
 def measure_fig_6() -> Iterator[Row]:
-    """Yield the sweep of Fig. 6, with the paper's five modes and with those chosen by the tolerance."""
+    """Yield time, memory and peaks of Fig. 6, with five modes and with modes chosen by the tolerance."""
     for modes, bound in ((MODES, "8"), ("auto", "")):
         sweep, time = run_sweep(modes)
         name = f"151 transients of 30 s (Fig. 6), {modes if modes == 'auto' else f'{modes} rest'} modes"

@@ -1,4 +1,4 @@
-"""What accuracy costs, and what `tolerance=` makes of it.  Run: python -m benchmarks.tradeoff
+"""Computing time against accuracy, and the choices of `tolerance=`.  Run: python -m benchmarks.tradeoff
 
 Takes some six minutes; writes docs/tradeoff.md and docs/tradeoff.png.
 """
@@ -72,7 +72,7 @@ def make_scenes() -> dict[str, tuple[bd.Scene, float]]:
     }
 
 
-# The published scene sped up in 1 s instead of 10, so that the stock integrators can be run often.
+# The published scene with a spin-up of 1 s instead of 10 s, so that scipy's integrators can be run often.
 HURRIED = rolling_harvester(bd.SpinUp(55.0, duration=1.0))
 
 
@@ -85,7 +85,7 @@ DESCRIBED = """- published: the rolling harvester of Lee and Yoo, inward, at 55 
   root's, at a nondimensional speed of 10."""
 
 
-# Processor time of one thread, so that other programs do not count.
+# Processor time of one thread, which other programs do not affect.
 best_time = partial(rows.best_time, clock=process_time)
 
 
@@ -99,14 +99,14 @@ class Choice:
     scene: str
     speeds: int
     tolerance: float
-    needed: int  # fewest Legendre functions whose error meets the tolerance, as do those of all larger bases
+    needed: int  # fewest Legendre functions from which on the error meets the tolerance
     chosen: int
     error: float
     estimate: float
-    floor: float  # error of the reference; smaller ones cannot be told
-    cheapest: float  # time of the model with the functions needed [s]
-    own: float  # time of the model that was chosen
-    call: float  # time of the whole call
+    floor: float  # error of the reference, below which errors cannot be measured
+    cheapest: float  # time of the model with the fewest sufficient functions [s]
+    own: float  # time of the chosen model [s]
+    call: float  # time of the whole call [s]
 
     def row(self) -> tuple[str, ...]:
         return (
@@ -138,7 +138,7 @@ CHOICE_HEAD = (
 
 
 def measure_choices(name: str, scene: bd.Scene, speed: float, count: int) -> Iterator[Choice]:
-    """Yield what is chosen at each tolerance for one scene, at one speed or over a locus."""
+    """Yield the `Choice` at each tolerance for one scene, at one speed or over many speeds."""
     speeds = np.linspace(0, speed, count) if count > 1 else np.array([speed])
 
     def solve(functions: int) -> np.ndarray:
@@ -154,7 +154,7 @@ def measure_choices(name: str, scene: bd.Scene, speed: float, count: int) -> Ite
     for tolerance in TOLERANCES:
         needed = 1 + max((n for n, e in errors.items() if e > max(tolerance, floor)), default=MODES - 1)
         result = call_beamdyn(scene, speeds, tolerance)
-        # The size of a locus' basis stands only in the sentence about its method.
+        # The basis size over many speeds is stated only in the sentence about the method.
         chosen = int(result.provenance.method.split("functions=")[1].split(",")[0])
         yield Choice(
             scene=name,
@@ -172,13 +172,13 @@ def measure_choices(name: str, scene: bd.Scene, speed: float, count: int) -> Ite
 
 
 def call_beamdyn(scene: bd.Scene, speeds: np.ndarray, tolerance: float | None) -> bd.Modes | bd.Locus:
-    """Compute frequencies as a user asks for them, at one speed or over a locus."""
+    """Compute frequencies by the public function, at one speed or over many speeds."""
     if len(speeds) == 1:
         return bd.natural_modes(scene, speeds[0], MODES, tolerance=tolerance)
     return bd.frequency_locus(scene, speeds, MODES, tolerance=tolerance)
 
 
-# Loose against tight ------------------------------------------------------------------------------
+# Times at loose and tight tolerances ---------------------------------------------------------------
 
 
 def measure_locus() -> Iterator[tuple[str, ...]]:
@@ -340,7 +340,7 @@ def write_page(
 
 
 def compare_handwritten() -> float:
-    """Measure the general right-hand side over the one written by hand for the published scene."""
+    """Measure the time of the general right-hand side over that of one written by hand."""
     equations, y = modal_system(5), np.linspace(1e-6, 2e-6, 10)
     general, own = (
         best_time(lambda f=f: [f(12.3, y) for _ in range(200)])
@@ -370,7 +370,7 @@ def write_cell(diagram: Diagram, k: int) -> str:
 
 
 def write_section(diagram: Diagram) -> str:
-    """Write a diagram's measurements, with its front marked, and its costs."""
+    """Write a diagram's measurements as text, with its Pareto front marked, and the cost of each digit."""
     rows = (
         (m.family, m.setting, time_text(m.time), f"{m.error:.0e}", "yes" if m in diagram.front else "")
         for m in diagram.measurements
@@ -392,7 +392,7 @@ def write_section(diagram: Diagram) -> str:
 def write_rules(
     diagrams: Sequence[Diagram], published: Diagram, motion: Sequence[Diagram], chosen: Sequence[Choice]
 ) -> str:
-    """Write what the measurements say of the choice."""
+    """Write advice on the choice of a setting that follows from the measurements."""
     points = [m for d in diagrams for m in d.front]
     share = {
         kind: sum(m.family.startswith(kind) for m in points) / len(points) for kind in (LEGENDRE, "elements")
@@ -416,7 +416,7 @@ def write_rules(
 
 
 def compare_sizes(diagram: Diagram) -> str:
-    """Word the cost of more Legendre functions at one speed, as far as it was measured."""
+    """State the measured cost of more Legendre functions at one speed, in words."""
     times = {m.size: m.time for m in diagram.measurements if m.family == LEGENDRE and m.size in SIZES}
     if len(times) < 2:
         return "How little was not measured this time: the budget was used up before."

@@ -1,4 +1,4 @@
-"""What accuracy costs with the error of the model included.  Run: python -m benchmarks.tradeoff_physics
+"""Computing time against accuracy, model error included.  Run: python -m benchmarks.tradeoff_physics
 
 Takes half a minute; writes docs/tradeoff_physics.md and docs/tradeoff_physics.png.
 """
@@ -24,7 +24,7 @@ MODES, BUDGET = 3, 15.0  # number of modes, and time for each scene [s]
 
 
 def make_scenes() -> dict[str, tuple[bd.Scene, float]]:
-    """Make three scenes in each of which another effect leads, with a speed [rad/s] for each."""
+    """Make three scenes, each with a different dominant effect, and a speed [rad/s] for each."""
     oblique = replace(HARVESTER, mount=replace(HARVESTER.mount, setting_angle=math.radians(45)))
     stocky = steel_bar(0.6, 0.06, 0.06)
     twisted = steel_bar(0.1524, 0.0254, 0.0017272, twist=math.radians(45))
@@ -76,7 +76,7 @@ HEAD = ("scene", "physics", "least error", "reached with", "time", "over that as
 
 
 def list_rows(diagrams: dict[str, Diagram]) -> list[tuple[str, ...]]:
-    """List for each scene and choice of physics the least error, what reaches it, and its time."""
+    """List for each scene and physics the least error, the setting that has it, and the time."""
     rows = []
     for name, diagram in diagrams.items():
         reached = {}

@@ -1,4 +1,4 @@
-"""Table 3's transient: ours against the stock integrators, and energy over a million periods.
+"""Table 3's transient: our method against scipy's integrators, and energy over a million periods.
 
 Run: python -m benchmarks.transient            (some minutes: the stock integrators take most of it)
 """
@@ -28,9 +28,9 @@ STOCK = [  # method, rtol, and atol in modal coordinates, which are about 1e-5 k
 
 
 def race_stock_integrators() -> Iterator[Row]:
-    """Yield times and errors in one run; errors against a far finer run, over the peak.
+    """Yield times, and errors against a far more accurate run, relative to the peak deflection.
 
-    Ours is measured everywhere, between steps too; the stock methods only at their own steps.
+    The error of our method is measured also between time steps, those of scipy's methods only at their steps.
     """
     exact = bd.simulate(ROLLING, T_END, MODES, tolerance=1e-10)
     peak, t = exact.peak(20.0, 30.0), np.linspace(0, T_END, 30001)
@@ -52,7 +52,7 @@ def race_stock_integrators() -> Iterator[Row]:
 
 
 def run_stock(method: str, rtol: float, atol: float, exact: bd.Transient) -> tuple[float, float, float]:
-    """Return the time of a stock method, its largest error [m] and its peak [m]."""
+    """Return the time of a scipy method, its largest error [m] and its peak deflection [m]."""
     solution, time = solve_stock(method, rtol, atol)
     thin = slice(None, None, max(1, len(solution.t) // 300_000))
     t = np.linspace(0, T_END, 300_001) if solution.sol else solution.t[thin]
@@ -62,7 +62,7 @@ def run_stock(method: str, rtol: float, atol: float, exact: bd.Transient) -> tup
 
 
 def solve_stock(method: str, rtol: float, atol: float) -> tuple[Any, float]:
-    """Return the solution of Table 3's transient by a stock method, and its time [s]."""
+    """Return the solution of Table 3's transient by a scipy method, and the computing time [s]."""
     rhs, jacobian = handwritten(modal_system(MODES))
     extra = {"dense_output": False} if method == "DOP853" else {"jac": jacobian, "dense_output": True}
     start = perf_counter()
@@ -71,7 +71,7 @@ def solve_stock(method: str, rtol: float, atol: float) -> tuple[Any, float]:
 
 
 def find_summit(size: np.ndarray) -> float:
-    """Find the largest of equally spaced samples, by parabolas through each maximum."""
+    """Find the maximum of equally spaced samples, by parabolas through each local maximum."""
     left, middle, right = size[:-2], size[1:-1], size[2:]
     top = (middle >= left) & (middle > right)
     bend = 2 * middle[top] - left[top] - right[top]
@@ -79,7 +79,7 @@ def find_summit(size: np.ndarray) -> float:
 
 
 def time_handwritten() -> Iterator[Row]:
-    """Yield the time of a call of the hand-written right-hand side, and that its result is right."""
+    """Yield the time of a call of the hand-written right-hand side, and the check of its result."""
     equations = modal_system(MODES)
     rhs, _ = handwritten(equations)
     y = np.linspace(1e-6, 2e-6, 2 * MODES)

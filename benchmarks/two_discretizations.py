@@ -1,7 +1,7 @@
-"""Whether assumed modes and finite elements agree within both their stated errors.
+"""Test whether assumed modes and finite elements agree within the sum of their stated errors.
 
-Run: python -m benchmarks.two_discretizations [--scenes N] [--save FILE].  Random beams whose properties are
-tables with kinks and jumps, with springs at the root and along the beam, point masses and bodies at the tip.
+Run: python -m benchmarks.two_discretizations [--scenes N] [--save FILE].  The random beams have properties
+given by tables with kinks and jumps, springs at the root and along the beam, point masses and tip bodies.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-# Set before numpy is imported: workers share the processors.
+# One thread each, set before numpy is imported: the worker processes share the processors.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
@@ -28,7 +28,7 @@ _MODES = 3
 
 @dataclass(frozen=True)
 class Case:
-    """Relative distance of both answers, mode by mode, and the sum of their stated errors, or a refusal."""
+    """Relative difference of both answers for each mode, and the sum of stated errors, or a refusal."""
 
     number: int
     distance: tuple[float, ...] = ()
@@ -67,8 +67,8 @@ def random_table_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def measure(number: int, seed: int) -> list[Case]:
-    """Compute both answers for the scene with a number."""
-    with warnings.catch_warnings(action="ignore"):  # warnings of beams that no material has
+    """Solve the scene with a number by both discretizations, and compare the frequencies."""
+    with warnings.catch_warnings(action="ignore"):  # warnings of beams without a real material
         scene, speed = random_table_scene(np.random.default_rng([seed, number]))
         try:
             ritz, fem = (bd.natural_modes(scene, speed, _MODES, name) for name in ("ritz", "fem"))
@@ -79,7 +79,7 @@ def measure(number: int, seed: int) -> list[Case]:
 
 
 def summarize(cases: Sequence[Case]) -> Iterator[Row]:
-    """Yield how many scenes agree, and by how much the others do not."""
+    """Yield the number of scenes that agree, and the differences of the others."""
     found = [case for case in cases if not case.refusal]
     ratio = np.array([np.max(np.array(case.distance) / np.array(case.stated)) for case in found])
     yield "random scenes; refused", f"{len(cases)}; {len(cases) - len(found)}", "2000"
@@ -94,7 +94,7 @@ def summarize(cases: Sequence[Case]) -> Iterator[Row]:
 
 
 def cases(seed: int = SEED) -> Cases[Case]:
-    """Return the random scenes of a seed."""
+    """Return the random scenes of a seed, as resumable cases."""
     return Cases(partial(measure, seed=seed), Case)
 
 

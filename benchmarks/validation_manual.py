@@ -74,7 +74,7 @@ _PINS_OF_16_1 = "test_drum.py::test_shigley_problem_16_1_pin_reactions"
 
 @dataclass(frozen=True)
 class Row:
-    """A published value beside ours: the input in words, both values, our stated error, verdict and test."""
+    """A published value beside ours: description of the input, both values, stated error, verdict, test."""
 
     where: str
     printed: str
@@ -92,7 +92,7 @@ Sections = dict[str, list[Row]]
 
 
 def first_of(table: dict[str, str], name: str) -> str:
-    """Entry of the first key with which a name begins."""
+    """Return the entry of the first key that is a prefix of a name."""
     return next(value for key, value in table.items() if name.startswith(key))
 
 
@@ -120,7 +120,7 @@ def _row_of_entry(entry: PrintedValue, test: str) -> Row:
 
 
 def _as_sure(entry: PrintedValue) -> str:
-    """The third value with the digits that our error confirms, of those that it has."""
+    """Return the third value, rounded to the digits that our error confirms."""
     return min(supported(float(entry.exact), entry.error, 12), entry.exact, key=len)
 
 
@@ -322,12 +322,12 @@ def _verdict_of_example(given: dict[str, Any], texts: Sequence[str], ours: Seque
 
 
 def _printed_by(text: str, given: dict[str, Any]) -> str:
-    """The printed number with its digits, of which the last may be zeros that only fill it."""
+    """Return the printed number with all its digits, also trailing zeros."""
     return f"{float(text):.{given['digits'] - 1}e}" if "digits" in given else text
 
 
 def _count_digits(text: str) -> int:
-    """Digits of a printed number."""
+    """Count the significant digits of a printed number."""
     return sum(character.isdigit() for character in text)
 
 
@@ -385,7 +385,7 @@ _ERRATA_OF_BRAKES = {
 
 
 def errata() -> Iterator[str]:
-    """All errata, with their proofs or what follows from them."""
+    """Return all errata, with their proofs or consequences."""
     yield _ERRATA
     found = printed_tables.compare_papers()[1]
     yield _table(_HEADS_OF_VALUES, ([source, *entry.cells()] for source, entry in found))
@@ -402,7 +402,7 @@ def errata() -> Iterator[str]:
 
 
 def errata_of_textbooks() -> Iterator[list[str]]:
-    """Where, printed, right, why and test of what worked examples have wrong."""
+    """Return the errors in worked examples: place, printed value, right value, reason and test."""
     for name, example in load_brakes("drum_textbooks").items():
         for quantity, given in example.items():
             if isinstance(given, dict) and "right" in given:

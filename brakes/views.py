@@ -1,4 +1,4 @@
-"""Tables, columns and pictures of the results of this package, looked up by the name of the result's class.
+"""Tables, columns and plots of the results of this package, by the name of the result's class.
 
 Results of the mechanics that are not listed here are shown by their fields.
 """

@@ -28,7 +28,7 @@ from beamdyn.modes.model_error.effect_choice import NOTHING_BARRED, choose_physi
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
-_MODES = 5  # number of modes by which physics and functions are chosen, where all functions are kept
+_MODES = 5  # number of modes for which physics and trial functions are chosen, if all of these are kept
 _STRAIGHT = "linear models are those about the straight beam"
 _OR_ALL = Named("or None, which keeps all functions", "or auto")
 
@@ -36,7 +36,7 @@ _OR_ALL = Named("or None, which keeps all functions", "or auto")
 def check_linear(
     scene: Scene, speed: float, modes: int | None, barred: Mapping[str, str] = NOTHING_BARRED
 ) -> tuple[Scene, float]:
-    """Check arguments of a linear analysis; return the scene with its physics chosen, and the speed [rad/s].
+    """Check arguments of a linear analysis; return the scene with its effects chosen, and the speed [rad/s].
 
     `barred` names further effects that the choice of physics must not add, each with the reason.
 
@@ -76,7 +76,7 @@ def model_at_speed(
     discretization: DiscretizationChoice,
     tolerance: float | None = None,
 ) -> ModelAtSpeed:
-    """Build the linear model of a scene with a number of modes, and functions that suit undamped modes.
+    """Build the linear model of a scene with a number of modes; trial functions are chosen without damping.
 
     For the tolerance see `natural_modes`.
 
@@ -96,7 +96,7 @@ def model_at_speed(
 def model_of_few_modes(
     scene: Scene, speed: float, few: int, discretization: DiscretizationChoice, tolerance: float | None = None
 ) -> ModelAtSpeed:
-    """Build the model with `few` modes, or with as many as a given `Discretization` can compute."""
+    """Build the linear model with `few` modes, or fewer if a given `Discretization` cannot compute these."""
     return model_at_speed(scene, speed, most_modes(scene, discretization, few), discretization, tolerance)
 
 
@@ -104,42 +104,41 @@ def model_of_few_modes(
 
 
 Evaluation = Callable[[ModelAtSpeed], np.ndarray]
-# A model and its value, and the model with twice as many modes and its value; None if there is no such model.
+# A model, its value, the model with twice as many modes (None if there is none), and that model's value.
 _Doubled: TypeAlias = tuple[ModelAtSpeed, np.ndarray, ModelAtSpeed | None, np.ndarray | None]
 
-# Least number of modes in a basis of "auto", and of those for which functions are chosen at a loose target.
+# Least number of modes for modes="auto"; at a loose tolerance, trial functions are chosen for as many modes.
 _FIRST = 4
-_ACCURATE = 8  # number of modes for which functions are chosen at first at the default target
+_ACCURATE = 8  # number of modes for which trial functions are first chosen at the default tolerance
 _MOST = 40  # number of modes beyond which a model is not refined further
-# Ratio of the error allowed to frequencies to that of a response, which resonance magnifies.
+# Allowed error of natural frequencies over that of a response: resonance magnifies errors of frequency.
 _OF_FREQUENCIES = 0.01
-# Target accuracy up to which the default models are used, with a margin for the last digit.
+# Tolerance down to which the default models are used, with a margin for rounding.
 _DEFAULT = 1.001 * DEFAULT_TARGET
-# Ratio of the next target accuracy of the functions to the last one, at which the response missed its
-# tolerance.
+# Factor on the tolerance for trial functions after the error of a response exceeded its tolerance.
 _FINER = 1e-3
-_MASSLESS = 1e-12  # smallest nonzero eigenvalue of the mass, relative to the largest
+_MASSLESS = 1e-12  # smallest nonzero eigenvalue of the mass matrix, relative to the largest
 _ROUNDING = 1e-12  # rounding error of a value relative to the largest value
 
 
 @dataclass(frozen=True)
 class Refined:
-    """A value with its error, and the linear model with enough modes that gave it.
+    """A value with its error, and the linear model from which the value was computed.
 
     Parameters
     ----------
     model : ModelAtSpeed
         The model.
     larger : ModelAtSpeed or None
-        Model with more modes, or all functions; None if `model` has all, or there is none.
+        Model with more modes, or with all trial functions; None if `model` has all, or there is none.
     value, error : ndarray
         The value and its estimated error, of one shape.
     truncation : float
-        Largest error by the modes left out.
+        Largest error due to the modes left out.
     discretization : ndarray
         Part of the error due to the discretization.
     method, compared_with : str
-        Names of the model, and of those that its error was estimated by.
+        Names of the model, and of the models with which it was compared to estimate the error.
     """
 
     model: ModelAtSpeed
@@ -162,23 +161,23 @@ def evaluate_accurately(
     evaluate: Evaluation,
     most: int,
 ) -> Refined:
-    """Evaluate with all functions where these are few, else with as many modes as the tolerance needs.
+    """Compute a value with all trial functions if these are few, else with as few modes as the error allows.
 
     Parameters
     ----------
     scene, speed, discretization
         As for `model_at_speed`.
     top : float
-        Highest angular frequency at which the beam responds [rad/s], which the functions resolve.
+        Highest angular frequency at which the beam responds [rad/s]; trial functions resolve modes up to it.
     modes : int, "auto" or None
-        Number of modes; "auto": all functions up to `most`, else the fewest modes with which the error meets
-        the tolerance; None: all functions.
+        Number of modes; "auto": all trial functions if at most `most`, else the fewest modes with which the
+        error meets the tolerance; None: all trial functions.
     tolerance : float
         Target of the error for "auto", relative to the largest value.
     evaluate : callable
         Function that computes the value from a model.
     most : int
-        Number of functions up to which all are kept.
+        Number of trial functions up to which all are kept.
     """
     tolerance = within("tolerance", tolerance, 1e-14, 0.1)
     if modes is None:
@@ -210,7 +209,7 @@ def evaluate_accurately(
 def _model_up_to(
     scene: Scene, speed: float, top: float, discretization: DiscretizationChoice, target: float
 ) -> ModelAtSpeed:
-    """Build a model whose functions resolve modes up to an angular frequency [rad/s], within limits."""
+    """Build a model that resolves modes up to an angular frequency [rad/s], or up to a largest number."""
     tolerance = target if target > _DEFAULT else None
 
     def of_modes(modes: int) -> tuple[int, ModelAtSpeed]:
@@ -225,12 +224,12 @@ def _model_up_to(
 
 
 def evaluate_also(refined: Refined, evaluate: Evaluation) -> Refined:
-    """Evaluate another quantity, and its error, with the models from which a value was found."""
+    """Compute another quantity and its error from the models of a `Refined` value."""
     return _with_error(refined.model, evaluate(refined.model), refined.larger, evaluate)
 
 
 def _all_of(model: ModelAtSpeed, most: int) -> ModelAtSpeed | None:
-    """Build the model with all its functions, without reduction to modes.
+    """Build the model with all its trial functions, without reduction to modes.
 
     Return None if there are more than `most`, or some have no mass.
     """
@@ -241,7 +240,7 @@ def _all_of(model: ModelAtSpeed, most: int) -> ModelAtSpeed | None:
 
 
 def _count_with_mass(M: np.ndarray) -> int:
-    """Count the modes of a mass matrix; massless coordinates, as of pure shear, add none."""
+    """Count the modes that have mass: massless coordinates, such as pure shear, add none."""
     values = np.linalg.eigvalsh(M)
     return int((values > _MASSLESS * values[-1]).sum())
 
@@ -249,7 +248,7 @@ def _count_with_mass(M: np.ndarray) -> int:
 def _add_modes(
     model: ModelAtSpeed, tolerance: float, discretization: DiscretizationChoice, evaluate: Evaluation
 ) -> Refined:
-    """Add modes until the error meets the tolerance."""
+    """Double the number of modes until the error of a value meets the tolerance."""
 
     def doubled(model: ModelAtSpeed, value: np.ndarray) -> _Doubled:
         larger = _larger(model, discretization)
@@ -262,7 +261,7 @@ def _add_modes(
         return doubled(larger, finer)
 
     def settles(found: _Doubled) -> bool:
-        """Whether more modes change the value by at most a fraction of the largest value."""
+        """Return whether more modes change the value by at most the tolerance times the largest value."""
         _, value, _, finer = found
         share = tolerance / LINEAR_MODES.factor
         return finer is not None and bool(np.abs(finer - value).max() <= share * np.abs(finer).max())
@@ -272,7 +271,7 @@ def _add_modes(
 
 
 def _larger(model: ModelAtSpeed, discretization: DiscretizationChoice) -> ModelAtSpeed | None:
-    """Build the model with twice as many modes; None if the discretization has too few functions."""
+    """Build the model with twice as many modes; None if the discretization has too few trial functions."""
     assert model.modes is not None
     modes, coarser = 2 * model.modes, model.model.coarser.equations
     masses = (coarser.steady().part(coarser.places(names)).M for names in coarser.coupled)

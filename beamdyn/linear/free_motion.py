@@ -22,12 +22,12 @@ from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 
 _EPS = float(np.finfo(float).eps)
 _MASSLESS = 16 * _EPS  # mass r^2 of a coordinate, over the largest, up to which it counts as 0
-# Ratio of a pole to the shift below which the pole counts as 0: rounding moves double poles by its square
+# Ratio of a pole to the shift below which the pole counts as 0: rounding eps moves double poles by its square
 # root.
 _STILL = 1e-6
 _INFINITE = 1e-12  # inverse pole, over the largest, up to which it counts as 0: rounding
-_NEARLY_FREE = 1e-6  # squared frequency relative to an elastic mode's, below which the stiffness is shifted
-_ELASTIC = 2  # modes that may be without stiffness, one rotation in each plane: the next one is elastic
+_NEARLY_FREE = 1e-6  # squared frequency over an elastic mode's, below which the stiffness is shifted
+_ELASTIC = 2  # number of modes that may lack stiffness: a free rotation in each plane
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class BalancedCoordinates:
 
     @property
     def squared(self) -> np.ndarray:
-        """Squared undamped frequencies [1/s2] of coordinates with mass, in order of magnitude."""
+        """Squared undamped frequencies [rad2/s2] of coordinates with mass, in order of magnitude."""
         with_mass = self.roots[self.roots > 0]
         found = with_mass**-2.0 - self.shift**2
         return found[np.argsort(np.abs(found))]
@@ -58,7 +58,7 @@ class BalancedCoordinates:
 
 @dataclass(frozen=True)
 class FreeMotion:
-    """Free motions, by which a load f causes q(s) = sum_k shapes_k shares_k(f) / (1 - s t_k).
+    """Free motions of linear equations: a load f causes q(s) = sum_k shapes_k shares_k(f) / (1 - s t_k).
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ class FreeMotion:
         return len(self.shapes) * _EPS * float(size.max(where=np.isfinite(size), initial=0.0))
 
     def shares(self, loads: np.ndarray) -> np.ndarray:
-        """Compute the shares (m, k) of the free motions in the responses to loads (n, k)."""
+        """Compute the coefficients (m, k) of the free motions in the responses to k loads (n, k)."""
         z, r = self.coordinates.shift, self.coordinates.roots[:, None]
         u = np.linalg.solve(np.eye(len(r)) + z * self.damping, self.coordinates.basis.T @ loads)
         return _in_terms_of(self.states, np.vstack([u, z * r * u])) * (1 - z * self.inverse_poles)[:, None]
@@ -130,7 +130,7 @@ def free_motion(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> FreeMotion:
 
 
 def balance(M: np.ndarray, K: np.ndarray) -> BalancedCoordinates:
-    """Choose balanced coordinates; with a shift where the stiffness is not safely positive definite."""
+    """Compute balanced coordinates, with a shift if rounding may make the stiffness not positive definite."""
     try:
         found = _diagonal(M, K, 0.0)
     except np.linalg.LinAlgError:
@@ -172,7 +172,7 @@ def _is_definite(A: np.ndarray) -> bool:
 
 
 def _in_terms_of(vectors: np.ndarray, states: np.ndarray) -> np.ndarray:
-    """Express states (m, k) by eigenvectors, in the least-squares sense if these are dependent."""
+    """Express states (m, k) as sums of eigenvectors, by least squares if the eigenvectors are dependent."""
     try:
         return np.linalg.solve(vectors, states)
     except np.linalg.LinAlgError:

@@ -1,4 +1,4 @@
-"""Frequency response at a steady speed: deflection, acceleration, moment or strain by one excitation."""
+"""Frequency response at a steady speed: deflection, acceleration, moment or strain due to one excitation."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 
 _TURN = 2 * np.pi
-_HIGHEST = 1e12  # highest accepted frequency [Hz], with which atoms vibrate
-_DIRECT = 300  # number of functions up to which all are kept: some milliseconds per frequency
+_HIGHEST = 1e12  # highest accepted frequency [Hz], that of the vibration of atoms
+_DIRECT = 300  # number of trial functions up to which all are kept: some milliseconds per frequency
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ class FrequencyResponse(JudgedByRepeating):
     An input Re(u exp(i 2 pi f t)) gives the sum of Re(H_h u exp(i 2 pi (f + h n) t)) over the harmonics h of
     the rotation, with n turns per second; h = 0 is the only one unless the excitation has a fixed direction.
 
-    `error` is numerical; `model_error` and `left_out`, computed when asked for, are what the
-    physics left out would change in the largest response, peaks included.
+    `error` is numerical; `model_error` and `left_out`, computed on first use, are the changes of the
+    largest response (peaks included) by physical effects that the model leaves out.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class FrequencyResponse(JudgedByRepeating):
         Peaks between the lowest and the highest frequency, also between grid points: `frequency`, `size`,
         half-power `bandwidth`, and their errors.
     input, output : str
-        The excitation and what is observed, with units.
+        The excitation and the observed quantity, with units.
     unit : str
         Unit of the response.
     warnings : tuple of str
@@ -111,11 +111,11 @@ class FrequencyResponse(JudgedByRepeating):
     judged_value = "the largest response"
 
     def judged(self, found: FrequencyResponse) -> np.ndarray:
-        """Select the largest response, including peaks, whose model error is stated: shape ()."""
+        """Return the largest response, including peaks, for which the model error is stated: shape ()."""
         return np.array(found.peak[1])
 
     def _curve(self, column: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return excitation frequencies, including peaks of a harmonic, and the magnitudes there."""
+        """Return excitation frequencies, including peaks, and the response's magnitudes at one harmonic."""
         own = (self.peaks.harmonic == self.harmonics[column]) & np.isfinite(self.peaks.size)
         f = np.concatenate([self.frequencies, self.peaks.frequency[own]])
         size = np.concatenate([np.abs(self.response[:, column]), self.peaks.size[own]])
@@ -123,7 +123,7 @@ class FrequencyResponse(JudgedByRepeating):
         return f[order], size[order]
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the magnitude over the excitation frequency, with its peaks, on logarithmic axes."""
+        """Plot the magnitude over the excitation frequency, with its peaks, on logarithmic axes."""
         labels = [{0: "", -1: "answer at f - n", 1: "answer at f + n"}[h] for h in self.harmonics.tolist()]
         value = f"{self.output.partition(' [')[0]} [{self.unit}]"
         curves = [self._curve(k) for k in range(len(labels))]
@@ -157,10 +157,10 @@ def frequency_response(
     frequencies : sequence of float
         Frequencies of the excitation [Hz], ascending from 0 or more, to 1e12.
     input : BaseMotion, PointForce or str
-        What drives the beam.  A word may stand for it: "bending", "across", "n1", "n2" and "n3" are
+        Excitation of the beam.  A word may stand for it: "bending", "across", "n1", "n2" and "n3" are
         accelerations of the base [m/s2], "tip force" and "tip force across" are forces [N].
     output : DeflectionAt, AccelerationAt, MomentAtRoot, StrainAtRoot or str
-        What is observed.  A word may stand for it: "tip", "tip across", "tip acceleration", "root moment" or
+        Observed quantity.  A word may stand for it: "tip", "tip across", "tip acceleration", "root moment" or
         "root strain".  Of a harvester, HarvestedVoltage, HarvestedCurrent or LayerStrain: "voltage",
         "current" or "layer strain".
     modes : int, "auto" or None
@@ -235,7 +235,7 @@ def _warnings(scene: Scene, tolerance: float, modes: int | str | None, refined: 
     yield from warn_of_left_out(scene)
     yield from warn_of_rotation(refined.model.model, refined.model.speed)
     if not scene.is_damped:
-        yield "there is no damping: near natural frequencies the response is that of no real beam"
+        yield "there is no damping: near natural frequencies no real beam has this response"
     largest = np.abs(refined.value).max()
     if isinstance(modes, str) and refined.truncation > tolerance * largest:
         yield (

@@ -1,4 +1,4 @@
-"""Inputs and outputs of linear models: where a beam is excited, and what is observed of it."""
+"""Inputs and outputs of linear models: excitations of a beam, and observed quantities."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class BaseMotion:
         return f"base acceleration, {self.direction}"
 
     def accelerations(self, mount: Mount, speed: float) -> dict[int, Accelerations]:
-        """Compute accelerations of the root per unit of the input, in its axes, by harmonic of rotation.
+        """Compute the root's accelerations in its axes, per unit of the input, for each harmonic of rotation.
 
         Harmonic h has the frequency of the input plus h times the speed; the angle of rotation is 0 at
         time 0.
@@ -87,7 +87,7 @@ class BaseMotion:
 
 
 def _of_unit(mount: Mount, angle: float, direction: str) -> Accelerations:
-    """Compute the root's accelerations by a unit acceleration in a fixed direction, at an angle."""
+    """Compute the root's accelerations by a unit acceleration in a fixed direction, at a rotation angle."""
     unit, zero = np.zeros(3), np.zeros(())
     unit[_FIXED.index(direction)] = 1.0
     root = root_motion(mount, MotionSample(np.array(angle), zero, zero, unit))
@@ -144,7 +144,7 @@ class PointForce:
         return {0: {}}
 
     def force(self, beam: Beam) -> tuple[float, int]:
-        """Return position x/L and direction, 0 or 1, of the force."""
+        """Return position x/L of the force and its direction: 0 that of the bending angle, 1 across it."""
         return fraction_of(self.position, beam), direction_of(self.direction)
 
 
@@ -181,7 +181,7 @@ def place_in_words(position: float | None, direction: str) -> str:
 
 
 def fraction_of(position: float | None, beam: Beam) -> float:
-    """Convert a position [m] to the fraction x/L; an InvalidValue if it is beyond the tip."""
+    """Convert a position [m] to the fraction x/L; raise InvalidValue beyond the tip."""
     if position is None:
         return 1.0
     bound = "it must be at most {limit}, the length"
@@ -235,7 +235,7 @@ class DeflectionAt:
         return f"{self._word} {place_in_words(self.position, self.direction)}"
 
     def place(self, beam: Beam) -> tuple[float, int]:
-        """Return position x/L and direction, 0 or 1, of the deflection."""
+        """Return position x/L and direction of the deflection: 0 that of the bending angle, 1 across it."""
         return fraction_of(self.position, beam), direction_of(self.direction)
 
 
@@ -244,7 +244,7 @@ class AccelerationAt(DeflectionAt):
     """Acceleration of a point of the beam in space [m/s2], along a direction that turns with the carrier.
 
     The acceleration of the root is included, and what rotation adds: centripetal and Coriolis accelerations.
-    The constant acceleration towards the axis is left out, as by accelerometers that lack a constant part.
+    The constant centripetal acceleration is left out, as many accelerometers do not measure constant values.
     Divided by the acceleration of the base, this is the transmissibility.
 
     Parameters
@@ -294,7 +294,7 @@ class StrainAtRoot:
 
     @staticmethod
     def per_moment(scene: Scene) -> float:
-        """Compute the strain per bending moment [1/(N m)]; a ValueError if the beam has no outer fibre."""
+        """Compute the strain per bending moment [1/(N m)]; raise ValueError if no outer fibre is given."""
         if scene.beam.outer_fibre is None:
             raise InvalidValue("output", "root strain", "the strain needs beam.outer_fibre", GIVE_IT)
         return strain_per_moment(scene)
@@ -315,7 +315,7 @@ class HarvestedVoltage:
     label: ClassVar[str] = "voltage"
 
     def rows(self, electrodes: Electrodes, length: float) -> LayerRows:
-        """Return how the voltage follows from the coordinates; a ValueError for a short circuit."""
+        """Return the voltage in terms of the coordinates; raise ValueError for a short circuit."""
         if not electrodes.resistance:
             raise InvalidValue("output", "voltage", "a short circuit has none", "give harvester.resistance")
         return LayerRows(electrodes.is_loaded, 0, -1 / electrodes.capacitance(length))
@@ -336,7 +336,7 @@ class HarvestedCurrent:
     label: ClassVar[str] = "current"
 
     def rows(self, electrodes: Electrodes, length: float) -> LayerRows:
-        """Return how the current follows from the coordinates; a ValueError for an open circuit."""
+        """Return the current in terms of the coordinates; raise ValueError for an open circuit."""
         if math.isinf(electrodes.resistance):
             remedy = "give a finite harvester.resistance"
             raise InvalidValue("output", "current", "an open circuit has none", remedy)
@@ -371,7 +371,7 @@ class LayerStrain:
             set_fields(self, position=not_negative("position", self.position, "m"))
 
     def place(self, electrodes: Electrodes, length: float) -> float:
-        """Return the position x/L of the strain; a ValueError if no layer is there."""
+        """Return the position of the strain as x/L; raise ValueError if no layer covers it."""
         (first, last), given = electrodes.span, self.position
         if given is None:
             return electrodes.inside(0.0)
@@ -384,7 +384,7 @@ class LayerStrain:
 
 @dataclass(frozen=True)
 class LayerRows:
-    """Voltage or current of layers: a factor times the circuit's coordinate or theta^T q, or their rate."""
+    """Voltage or current of layers: a factor times the circuit's charge or coupling theta^T q, or a rate."""
 
     of_circuit: bool
     order: int
@@ -407,7 +407,7 @@ _OBSERVATIONS: dict[str, Observation] = {
 
 
 def as_observation(name: str, given: Any) -> Observation:
-    """Convert a word such as "tip" to an observation; an observation is returned as it is.
+    """Convert a word such as "tip" to an output of the beam; an output is returned as it is.
 
     Raises
     ------

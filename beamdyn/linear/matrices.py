@@ -29,9 +29,9 @@ from beamdyn.scene.points import ACROSS
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_left_out
 
-# Largest rounding error of a function's values at nodes, which are 1 at one node and 0 at all others.
+# Largest rounding error of a trial function at nodes, where it is 1 at one node and 0 at all others.
 _NODAL = 1e-9
-# Number of modes judged: the lowest loses stability first, and is changed most by effects left out.
+# Number of lowest modes whose model error is stated: effects left out change the lowest modes most.
 MOST_JUDGED = 5
 
 
@@ -39,9 +39,9 @@ MOST_JUDGED = 5
 class Matrices(StatesModelError):
     """Equations of motion at a steady speed about the straight beam, M q'' + (C + G) q' + K q = f + B u.
 
-    Axes rotate, the centre of the carrier is fixed, and there is no gravity.  `error` is numerical;
-    `model_error` (m,) and `left_out`, computed when asked for, are what the physics left out would change in
-    the lowest natural frequencies.
+    The axes rotate with the carrier, its centre is fixed, and there is no gravity.  `error` is numerical;
+    `model_error` (m,) and `left_out`, computed on first use, are the changes of the lowest natural
+    frequencies by physical effects that the model leaves out.
 
     Parameters
     ----------
@@ -137,13 +137,13 @@ class Matrices(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of up to five lowest natural frequencies by effects left out of the model: shape (m,)."""
+        """Changes of the lowest natural frequencies, five at most, by effects left out of the model: (m,)."""
         return left_out_of_frequencies(self.scene, self.speed, min(len(self.mass), MOST_JUDGED))
 
     def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
         """Evaluate the deflection [m] at positions x [m] by a unit of each coordinate: (len(x), n).
 
-        Direction 0 is that of the bending angle, 1 the one across.
+        Direction 0 is that of the bending angle, direction 1 is across.
 
         Raises
         ------
@@ -237,9 +237,9 @@ def matrices(
 
 
 def warn_of_model(model: ModelAtSpeed) -> Iterator[Statement]:
-    """Yield warnings about the validity of the equations at the speed, worded as for natural modes."""
+    """Yield warnings about the validity of the linear equations at the speed, as for natural modes."""
     yield from warn_of_left_out(model.scene)
-    # Number of the lowest modes that grow.
+    # Number of the lowest modes examined for growth.
     solver = model.model.solver
     found = solver.solve(np.array([model.speed]), min(model.modes or MOST_JUDGED, solver.size))
     growing = int((np.real(found.eigenvalue) > 0).sum())
@@ -266,16 +266,16 @@ def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
 
 
 def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
-    """Compute the load of an excitation; refuse one that turns against the beam: its matrix would vary."""
+    """Compute the load of an excitation; refuse a direction fixed in space: the input matrix would vary."""
     drives = model.drives(excitation)
-    bound = "as the beam turns, it acts at its frequency plus and minus the speed, not by a constant matrix"
+    bound = "on the rotating beam it acts at its frequency plus and minus the speed: no constant matrix"
     remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response has it'
     refuse(list(drives) != [0], "speed", model.speed, "rad/s", f"{excitation.label}: {bound}", remedy)
     return drives[0]
 
 
 def _name_coordinates(model: ModelAtSpeed) -> Iterator[str]:
-    """Name each coordinate with its unit: a mode, a nodal value, or the coefficient of a function."""
+    """Name each coordinate with its unit: a mode, a nodal value, or the coefficient of a trial function."""
     for name, place in model.equations.blocks.items():
         size = place.stop - place.start
         if name == BLOCK:
@@ -290,7 +290,7 @@ def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator
     """Name the coordinates of a field: deflections and slopes at nodes, or else coefficients."""
     deflection = model.equations.deflections.get(field_name)
     nodes = getattr(model.discretization.spaces(model.scene.modelled_beam), "nodes", None)
-    # Other discretizations may use "nodes" for something else.
+    # A discretization other than finite elements may use "nodes" for something else.
     nodes = nodes if isinstance(nodes, np.ndarray) else None
     nodal: list[np.ndarray] = []
     if nodes is not None and deflection is not None:
@@ -305,5 +305,5 @@ def _name_functions(model: ModelAtSpeed, field_name: str, size: int) -> Iterator
 
 
 def _is_nodal(values: np.ndarray) -> bool:
-    """Whether a function is 1 at one node and 0 at all others."""
+    """Return whether a trial function is 1 at one node and 0 at all others."""
     return abs(values.max() - 1) < _NODAL and np.sum(np.abs(values) > _NODAL) == 1

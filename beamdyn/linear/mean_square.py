@@ -26,7 +26,7 @@ without xi
 
 with the one-sided density G of xi at twice the natural frequency (stochastic averaging: Roberts and Spanos
 (1986), International Journal of Non-Linear Mechanics 21, 111-134).  At x = 1 the mean square grows without
-limit.  Of a narrow band, and of xi that depends on w, this tells the order of magnitude.
+limit.  For a narrow band, or if xi depends on w, the result is an order of magnitude.
 """
 
 from __future__ import annotations
@@ -74,19 +74,19 @@ class PartialFractions:
 
     @property
     def of_square(self) -> np.ndarray:
-        """Coefficients (m,) of the poles in the partial fractions of the transfer function's squared size."""
+        """Coefficients (m,) of the poles in the partial fractions of the squared magnitude |H|^2."""
         between = -self.poles[:, None] - np.conj(self.poles)
         return self.residues * (np.conj(self.direct) + (np.conj(self.residues) / between).sum(axis=1))
 
     def through_filter(self, delay: float) -> PartialFractions:
-        """Return the partial fractions of the function divided by the filter 1 + s delay."""
+        """Return the partial fractions of the transfer function divided by 1 + s delay, with a delay [s]."""
         pole = -1 / delay
         passed = self.residues / (1 + self.poles * delay)
         residue = complex(self(np.array(pole)) / delay)
         return PartialFractions(0.0, np.append(passed, residue), np.append(self.poles, pole))
 
     def mean_square(self, spectrum: PowerSpectrum, shift: float = 0.0) -> float:
-        """Integrate a one-sided density at f times |H|^2 at f plus a shift [Hz], H the transfer function."""
+        """Integrate a one-sided density S(f) times |H(f + shift)|^2 over f [Hz]; H: transfer function."""
         integrals = pole_integrals(spectrum, self.poles / (2j * np.pi) - shift)
         of_poles = (self.of_square / (2j * np.pi)) @ integrals.by_pole
         return abs(self.direct) ** 2 * integrals.whole + 2 * float(np.real(of_poles))
@@ -102,12 +102,12 @@ class PartialFractions:
 
 @dataclass(frozen=True)
 class PoleIntegrals:
-    """Integrals over frequency f of a density S times a weight g, alone and over each f - mu_k.
+    """Integrals over frequency f of a density S times a weight g, undivided and divided by each f - mu_k.
 
     Parameters
     ----------
     whole : float
-        Integral of g S.
+        Integral of g S over the spectrum.
     by_pole : ndarray of complex, shape (m,)
         Integrals of g S / (f - mu_k).
     """
@@ -119,7 +119,7 @@ class PoleIntegrals:
 def pole_integrals(
     spectrum: PowerSpectrum, mu: np.ndarray, shift: float = 0.0, order: int = 0
 ) -> PoleIntegrals:
-    """Integrate a density times the weight (2 pi (f + shift))^order, alone and over each f - mu_k.
+    """Integrate a density times the weight (2 pi (f + shift))^order, undivided and divided by each f - mu_k.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ def pole_integrals(
 
 
 def check_damped(scene: Scene) -> None:
-    """Refuse a scene without any damping, as its mean square grows without limit."""
+    """Refuse a scene without damping, because the mean square of its response grows without limit."""
     if not scene.is_damped:
         raise _undamped(scene)
 
@@ -176,7 +176,7 @@ def damped_motion(model: ModelAtSpeed) -> FreeMotion:
 
 
 def residues(free: FreeMotion, load: np.ndarray) -> np.ndarray:
-    """Compute the residues (n, m) of the response to a load (n,) at the finite poles."""
+    """Compute the residues (n, m) of the coordinates' response to a load (n,) at the m finite poles."""
     poles = free.finite_poles
     finite = slice(0, len(poles))
     return -poles * free.shapes[:, finite] * free.shares(load[:, None])[finite, 0]
@@ -185,7 +185,7 @@ def residues(free: FreeMotion, load: np.ndarray) -> np.ndarray:
 def partial_fractions(
     model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation
 ) -> PartialFractions:
-    """Expand the transfer function of one drive in partial fractions.
+    """Expand the transfer function from one load to one output in partial fractions.
 
     The contribution of modes left out to an acceleration, s^2 times their static deflection, is not included.
 
@@ -208,7 +208,7 @@ def partial_fractions(
 # Size of the parametric term that linear models leave out -----------------------------------------
 
 
-_LARGE = 0.01  # relative change of the response by a neglected variation, above which a warning is given
+_LARGE = 0.01  # relative change of the response by a neglected effect, above which a warning is given
 
 
 @dataclass(frozen=True)
@@ -242,7 +242,7 @@ class ParametricTerm:
     rms_change: float
 
     def warnings(self) -> Iterator[str]:
-        """Yield a warning for each variation that is not small."""
+        """Yield a warning for each neglected variation of stiffness that is not small."""
         if self.rms_change > _LARGE:
             size = "without limit" if math.isinf(self.rms_change) else f"by some {self.rms_change:.0%}"
             yield f"the parametric term that is left out would raise the root mean square {size}"
@@ -294,7 +294,7 @@ def parametric_term(
 
 
 def _excess(model: ModelAtSpeed, squared: float, shape: np.ndarray, density: float) -> float:
-    """Compute x of the lowest mode, whose variance grows by 1/(1 - x): 0 where nothing varies."""
+    """Compute x of the lowest mode: varying stiffness multiplies the mode's variance by 1/(1 - x)."""
     if not density:
         return 0.0
     omega = math.sqrt(squared)

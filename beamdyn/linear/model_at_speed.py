@@ -1,7 +1,8 @@
 """The linear equations of a scene at one steady speed, in modes at that speed and their residual flexibility.
 
 The coordinates are those of the lowest modes at the speed, without damping and gyroscopic coupling, or of all
-functions of the discretization.  What modes leave out follows a slow excitation without delay: its static
+trial functions of the discretization.  What modes leave out follows a slow excitation without delay: its
+static
 deflection is that of all functions minus that of the modes, the residual flexibility (Craig and Kurdila,
 Fundamentals of Structural Dynamics (2006), section 11.4).
 """
@@ -47,7 +48,7 @@ _LAYERS = Words(Named("Harvester.on puts them on", "a table [harvester] puts the
 
 @dataclass(frozen=True)
 class HarmonicDrive:
-    """Load of an excitation at one harmonic of the rotation, with its feedthrough, per unit of the input.
+    """Load of an excitation at one harmonic of the rotation, and its direct effects, per unit of the input.
 
     Parameters
     ----------
@@ -144,13 +145,13 @@ class ModelAtSpeed(FieldsOnly):
 
     @cached_property
     def shapes(self) -> np.ndarray:
-        """Basis of the kept coordinates in those of all functions, shape (N, n)."""
+        """Matrix (N, n) that gives the coordinates of all trial functions from the kept coordinates."""
         full, kept = self.model.equations, self.equations
         shapes = np.zeros((full.size, kept.size))
         for name, shape in kept.shapes.items():
             shapes[full.blocks[name], kept.blocks[shape.block]] = shape.matrix
         if kept.voltage is not None and (circuit := self._mechanical.circuit) is not None:
-            for name, bent in circuit.bent.items():  # the modes left out follow the voltage
+            for name, bent in circuit.bent.items():  # voltage also bends the beam in the modes left out
                 shapes[full.blocks[name]] += np.outer(bent, kept.voltage.row)
         return shapes
 
@@ -169,7 +170,7 @@ class ModelAtSpeed(FieldsOnly):
 
     @property
     def mechanical(self) -> slice:
-        """Slice of the coordinates with mass: all but the charge of a circuit, which is the last."""
+        """Slice of the coordinates of the beam: all but the last one if that is the charge of a circuit."""
         return slice(0, self._mechanical.size)
 
     # Inputs -----------------------------------------------------------------------------------------
@@ -195,7 +196,7 @@ class ModelAtSpeed(FieldsOnly):
         return HarmonicDrive(self.shapes.T @ load, self._residual(load), accelerations, force)
 
     def _residual(self, load: np.ndarray) -> np.ndarray:
-        """Compute the static deflection of all functions under a load, minus that of the kept coordinates."""
+        """Compute the static deflection under a load with all functions, minus that with kept coordinates."""
         if self.modes is None:
             return np.zeros_like(load)
         of_all = np.linalg.solve(self._full_stiffness, load)
@@ -229,7 +230,7 @@ class ModelAtSpeed(FieldsOnly):
         return Row(factor * position, factor * velocity, zero)
 
     def residual(self, observation: Observation, drive: HarmonicDrive) -> np.ndarray:
-        """Compute an output by static deflection beyond the kept coordinates: shape (3,).
+        """Compute the output due to the static deflection of modes left out: shape (3,).
 
         The values are per unit of the input, and of its first and second time derivative.
         """
@@ -251,7 +252,7 @@ class ModelAtSpeed(FieldsOnly):
         return np.array([self._per_moment(observation) * (total - by_kept), 0.0, 0.0])
 
     def _of_layers(self, observation: OfLayers) -> tuple[np.ndarray, int, np.ndarray]:
-        """Express an output of layers in all functions (N,), with its order in time, and in kept ones (n,).
+        """Express an output of layers in all functions (N,), with order in time, and in kept ones (n,).
 
         Where the circuit has a coordinate, the first row has only deflections beyond the kept coordinates.
         """
@@ -285,7 +286,7 @@ class ModelAtSpeed(FieldsOnly):
         return Row(position, sum((t * w for t, w in zip(turn, each, strict=False)), zero), each[direction])
 
     def _carried(self, direction: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the acceleration in a direction by unit deflections (2,) and velocities (2,) in each.
+        """Compute the acceleration in one direction by unit deflections (2,) and velocities (2,) in both.
 
         Rotation adds -omega^2 (d_i d_j + S^2 n_i n_j) of the deflection, and 2 omega S of the velocity in the
         other direction, with S the sine of the precone, and d and n the components of the two directions in
@@ -305,7 +306,7 @@ class ModelAtSpeed(FieldsOnly):
         return observation.per_moment(self.scene) if isinstance(observation, StrainAtRoot) else 1.0
 
     def _at_speed(self, by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray) -> np.ndarray:
-        """Sum rows for the quantities of the root's motion, each times its value at the speed."""
+        """Sum the rows of all quantities of the root's motion, each row times the quantity at the speed."""
         root, total = self._root, zero
         for quantity, row in by_quantity.items():
             total = total + float(getattr(root, quantity)) * row
@@ -320,8 +321,8 @@ class ModelAtSpeed(FieldsOnly):
 
 
 _UNRESOLVED = 0.01  # relative error of a pole beyond which it may be paired with the pole of another mode
-# Relative distance of the coarser poles below which they converge, and least ratio of two distances that is
-# used: several fields, segments or elements do not converge as steadily as one.
+# Relative distance between poles of two coarser models at which poles converge, and least used ratio of two
+# distances: several fields, segments or elements do not converge as steadily as one.
 _STEADY, _LEAST_RATIO = 0.01, 0.2
 _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the matrices
 
@@ -357,7 +358,7 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
 
 
 def _distance(poles: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Find a partner among others for each pole: distance (inf where others are too few), and partner."""
+    """Pair each pole with another model's pole; return relative distances (inf if unpaired) and partners."""
     apart = np.abs(poles[:, None] - others)
     scale = np.maximum(np.abs(poles), _ROUNDING * np.abs(poles).max(initial=0.0))[:, None]
     rows, partners = linear_sum_assignment(apart / np.where(scale == 0, 1.0, scale))

@@ -32,10 +32,10 @@ from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
 _TURN = 2 * np.pi
-_POINTS = 500  # number of frequencies of the result by white noise, in addition to those about resonances
-_DECADES = 3  # decades below the highest frequency at which the frequencies begin
-# Number of functions up to which a response has all of them, in place of some modes: 0, that is never, as
-# poles over so wide a range lose digits.
+_POINTS = 500  # number of frequencies of a response to white noise, besides those near resonances
+_DECADES = 3  # number of decades from the lowest to the highest of these frequencies
+# Number of trial functions up to which all are kept instead of modes: 0, that is never, because poles over so
+# wide a range lose digits.
 _DIRECT = 0
 _SEVERAL = 3.0  # number of standard deviations that a deflection rarely exceeds
 
@@ -47,8 +47,8 @@ class RandomResponse(JudgedByRepeating):
     Where the excitation has a fixed direction, the statistics vary within a turn, and the values are means
     over a turn: the density of the input appears shifted by the speed, upwards and downwards.
 
-    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in
-    `rms`.
+    `model_error` and `left_out`, computed on first use, are the changes of `rms` by physical effects that the
+    model leaves out.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class RandomResponse(JudgedByRepeating):
     parametric : ParametricTerm
         Size of the parametric term, which is left out: accelerations along the beam vary its stiffness.
     input, output : str
-        The excitation and what is observed, with units.
+        The excitation and the observed quantity, with units.
     unit : str
         Unit of the output.
     warnings : tuple of str
@@ -109,7 +109,7 @@ class RandomResponse(JudgedByRepeating):
     judged_value = "the root mean square"
 
     def judged(self, found: RandomResponse) -> np.ndarray:
-        """Select the root mean square, whose model error is stated: shape ()."""
+        """Return the root mean square, for which the model error is stated: shape ()."""
         return np.array(found.rms)
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -254,7 +254,7 @@ def root_mean_squares(
     finite = (inputs_outputs.DeflectionAt, inputs_outputs.HarvestedVoltage)
     for seen in outputs:
         if not isinstance(spectrum, spectra.PowerSpectrum) and type(seen) not in finite:
-            bound = "by white noise its mean square is not finite, or takes all modes"
+            bound = "with white noise its mean square is not finite, or needs all modes"
             raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
     top = _TURN * spectra.highest_frequency(spectrum) + abs(speed)
 
@@ -269,7 +269,7 @@ def root_mean_squares(
 def _frequencies(
     spectrum: spectra.PowerSpectrum | float, model: ModelAtSpeed, drive: inputs_outputs.Excitation
 ) -> np.ndarray:
-    """Choose frequencies of the response [Hz] so that lines between its densities enclose its mean square.
+    """Choose frequencies [Hz] so that straight lines between the densities enclose the mean square as area.
 
     For white noise they end at ten times the lowest resonance.
     """
@@ -278,7 +278,7 @@ def _frequencies(
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return spectra.frequencies_of_response(spectrum, poles, shifts)
     resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
-    # Without resonances all modes are overdamped.
+    # Without a resonance, because all modes are overdamped.
     lowest = resonances if len(resonances) else np.abs(poles) / _TURN
     top = 10 * float(lowest.min())
     bottom, about = top / 10**_DECADES, spectra.about_resonances(poles)
@@ -296,7 +296,7 @@ def _expand(
 def _mean_square(
     transfers: dict[int, mean_square.PartialFractions], spectrum: spectra.PowerSpectrum | float, speed: float
 ) -> float:
-    """Compute the mean square over time and a turn: the sum over harmonics, which are uncorrelated."""
+    """Compute the mean square, averaged over a turn: the sum over harmonics, which are uncorrelated."""
     if isinstance(spectrum, spectra.PowerSpectrum):
         return sum(H.mean_square(spectrum, h * speed / _TURN) for h, H in transfers.items())
     return sum(H.mean_square_of_white(spectrum) for H in transfers.values())
@@ -308,7 +308,7 @@ def _density(
     speed: float,
     f: np.ndarray,
 ) -> np.ndarray:
-    """Compute the one-sided density of the response at f [Hz], from the input at f - h n of either sign."""
+    """Compute the one-sided density of the response at f [Hz] from the input's at +-f - h n, h a harmonic."""
     total = np.zeros(len(f))
     for h, H in transfers.items():
         size = np.abs(H(2j * np.pi * f)) ** 2

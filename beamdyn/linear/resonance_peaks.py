@@ -25,14 +25,14 @@ _TURN = 2 * np.pi
 _DENSE = 0.1  # step of samples over the distance to the nearest pole
 _HALVINGS = 60  # number of halvings of an interval, which reach rounding
 _UNDAMPED = 1e-10  # largest damping ratio that is 0 within rounding
-_ROUNDING = 1e-9  # relative accuracy to which the numbers of a peak are found
-_SHARE = 0.1  # fraction of the tolerance to which the numbers of a peak are found
-# Height of a peak above the minima beside it, over its magnitude, below which it counts as rounding.
+_ROUNDING = 1e-9  # relative accuracy of frequency, magnitude and bandwidth of a peak
+_SHARE = 0.1  # accuracy of a peak's values, as a fraction of the tolerance
+# Height of a peak above the neighbouring minima, over its magnitude, below which it counts as rounding.
 _LEVEL = 1e-10
 # Relative difference between the sum over modes and the solution of the equations, above which the response
 # is only rounding error.
 _NOISE = 0.5
-_STEP = 1e-6  # relative distance from an undamped natural frequency at which its pole is sought
+_STEP = 1e-6  # relative distance from an undamped natural frequency within which its pole is sought
 
 
 class Peak(NamedTuple):
@@ -108,7 +108,7 @@ def find_peaks(
         Target of the error, relative to the magnitude and to the width of a peak; rounding if not given.
     """
     share = max(_SHARE * tolerance, _ROUNDING)
-    top = 2 * band[1] + abs(model.speed) / _TURN  # flanks reach out of the band
+    top = 2 * band[1] + abs(model.speed) / _TURN  # flanks of peaks reach beyond the band
     found = sorted(
         peak for peak in _peaks(model, drive, seen, top, share) if band[0] < peak.frequency < band[1]
     )
@@ -128,7 +128,7 @@ def _error(peak: Peak, compared: list[tuple[float, list[Peak]]], share: float) -
     """Estimate errors (3,) of frequency, magnitude and bandwidth from the nearest peaks of other models."""
     own = np.array(peak[:3])
     with np.errstate(invalid="ignore"):  # a magnitude may be inf
-        # Rounding of the frequency is relative to the bandwidth, or to the frequency where none is known.
+        # The frequency's rounding error is relative to the bandwidth, or to the frequency if that is unknown.
         width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)
         sizes = np.array([width, peak.size, peak.bandwidth])
         error = _ROUNDING * own + (peak.rounding + np.array([share, share**2, share])) * sizes
@@ -142,7 +142,7 @@ def _error(peak: Peak, compared: list[tuple[float, list[Peak]]], share: float) -
 def _peaks(
     model: ModelAtSpeed, drive: Excitation, seen: Observation, top: float, share: float
 ) -> Iterator[Peak]:
-    """Yield all peaks from 0 to a highest excitation frequency [Hz], to a fraction of their width."""
+    """Yield all peaks from 0 to a highest excitation frequency [Hz], accurate to a fraction of the width."""
     drives = model.drives(drive)
     for h, total in modal_sums(model, drives, seen).items():
         magnitude = HarmonicMagnitude(model, drives[h], seen, total, h)
@@ -189,12 +189,12 @@ class HarmonicMagnitude:
 
     @cached_property
     def places(self) -> np.ndarray:
-        """Excitation frequencies at the poles [Hz]."""
+        """Excitation frequencies [Hz] at which the response frequency is that of a pole."""
         return np.imag(self.poles) / _TURN - self.shift
 
     @cached_property
     def undamped(self) -> np.ndarray:
-        """Whether each of the poles has no damping within rounding."""
+        """Whether each of the poles is undamped within rounding."""
         return -np.real(self.poles) <= _UNDAMPED * np.abs(self.poles)
 
     def size(self, f: np.ndarray) -> np.ndarray:
@@ -202,22 +202,22 @@ class HarmonicMagnitude:
         return np.abs(self.total(self._s(f))[0])
 
     def rises(self, f: np.ndarray) -> np.ndarray:
-        """Whether the magnitude increases with frequency at f (F,) [Hz]."""
+        """Return whether the magnitude increases with frequency at excitation frequencies f (F,) [Hz]."""
         value, slope = self.total(self._s(f))
         return np.real(np.conj(value) * 1j * slope) > 0
 
     def solved(self, f: np.ndarray) -> np.ndarray:
-        """Compute the complex response at f (F,) [Hz] from the equations, not from the sum over poles."""
+        """Compute the complex response at excitation frequencies f (F,) [Hz] from the equations of motion."""
         return respond(self.model, self.drive, self.seen, self._s(f))
 
     def rounding(self, f: np.ndarray) -> np.ndarray:
-        """Compute the relative distance of the sum over poles from the equations' solution at f (F,)."""
+        """Compute the relative difference of the sum over poles from the equations' solution at f [Hz]."""
         value = self.solved(f)
         distance = np.abs(self.total(self._s(f))[0] - value)
         return np.divide(distance, np.abs(value), out=np.full(len(f), np.inf), where=value != 0)
 
     def samples(self, top: float) -> np.ndarray:
-        """Sample frequencies from 0 to `top` [Hz], in steps proportional to the nearest pole's distance."""
+        """Return frequencies from 0 to `top` [Hz], in steps proportional to the nearest pole's distance."""
         order = np.argsort(self.places)
         places = self.places[order]
         halves = np.maximum(-np.real(self.poles), _UNDAMPED * np.abs(self.poles))[order] / _TURN
@@ -250,7 +250,7 @@ def _damped_peaks(magnitude: HarmonicMagnitude, top: float, share: float) -> Ite
     tops, sides = at[k], np.array([limits[k], limits[k + 2]])
     size, beside = magnitude.size(tops), magnitude.size(sides.ravel()).reshape(2, -1)
     rounding = magnitude.rounding(tops)
-    # Half-power widths [Hz] (p,); nan where a minimum beside a peak is not low enough.
+    # Half-power widths [Hz] (p,); nan where a neighbouring minimum is above half power.
     level = np.tile(size / np.sqrt(2), 2)
     twice = np.tile(tops, 2)
     ends = _bisect(lambda f: magnitude.size(f) > level, twice, sides.ravel(), twice, share).reshape(2, -1)
@@ -267,7 +267,7 @@ def _bisect(
     origin: np.ndarray,
     share: float,
 ) -> np.ndarray:
-    """Bisect intervals (p,) for the end of a condition that holds at their start, to a relative accuracy."""
+    """Bisect p intervals for the end of a condition that holds at their start, to a relative accuracy."""
     for _ in range(_HALVINGS):
         if (np.abs(end - start) <= share * np.abs(end - origin)).all():
             break

@@ -35,7 +35,7 @@ from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 from beamdyn.scene.scene import Scene
 
 BetweenPoints = Literal["linear", "log"]
-# Largest ratio of the ends of a piece of a power law on which the power law is nearly a polynomial.
+# Largest ratio of end to start frequency of an interval on which a power law is nearly a polynomial.
 _WIDEST = 1.5
 
 REFERENCE = 0.1  # spatial frequency n0 of ISO 8608 [1/m]
@@ -45,12 +45,12 @@ ISO_CLASSES = {name: 16e-6 * 4.0**k for k, name in enumerate("ABCDEFGH")}
 
 @dataclass(frozen=True)
 class SpectrumPiece:
-    """Part of a spectrum on which the density is one analytic function of frequency.
+    """Interval of a spectrum on which the density is one analytic function of frequency.
 
     Parameters
     ----------
     start, end : float
-        Ends of the part [Hz].
+        Ends of the interval [Hz].
     constant, slope : float
         Coefficients of a straight line, `constant` + `slope` f; the slope is 0 for a power law.
     power : float
@@ -70,7 +70,7 @@ class SpectrumPiece:
         return self.constant + self.slope * f
 
     def divided(self) -> Iterator[SpectrumPiece]:
-        """Yield smaller parts on which a power law is nearly a polynomial."""
+        """Yield smaller intervals, on each of which a power law is nearly a polynomial."""
         if not self.power:
             yield self
             return
@@ -90,7 +90,7 @@ class PowerSpectrum:
     values : sequence of float
         Density at the frequencies [unit of the input squared per Hz], 0 or more.
     interpolation : "log" or "linear"
-        Straight lines between points on logarithmic axes, as standards draw them, or on linear ones.
+        Straight lines between points on logarithmic axes, as in standards, or on linear axes.
 
     Raises
     ------
@@ -130,7 +130,7 @@ class PowerSpectrum:
         set_fields(self, frequencies=tuple(f.tolist()), values=tuple(S.tolist()))
 
     def pieces(self) -> Iterator[SpectrumPiece]:
-        """Yield the parts of the spectrum between its points."""
+        """Yield the intervals of the spectrum between its points."""
         f, S = self.frequencies, self.values
         for a, b, low, high in zip(f[:-1], f[1:], S[:-1], S[1:], strict=True):
             if self.interpolation == "log":
@@ -214,7 +214,7 @@ class RoadRoughness:
 
     @property
     def words(self) -> str:
-        """The road in words: its class or density, and where it ends."""
+        """Describe the road in words: class or density, and range of spatial frequencies."""
         name = f"class {self.roughness}" if isinstance(self.roughness, str) else f"{self.roughness:g} m3"
         return f"{name}, up to {self.highest:g} 1/m"
 
@@ -223,7 +223,7 @@ class RoadRoughness:
 
         At the frequency f = n v, with the velocity v [m/s], the density is (2 pi f)^4 G(n) / v.
         """
-        v = positive("velocity", abs(velocity), "m/s", "at rest a road does not shake")
+        v = positive("velocity", abs(velocity), "m/s", "at rest a road excites nothing")
         n = np.array([self.lowest, self.highest])
         height = self.density * (n / REFERENCE) ** -self.waviness / v
         return PowerSpectrum((n * v).tolist(), ((2 * np.pi * n * v) ** 4 * height).tolist())
@@ -238,7 +238,7 @@ _TURN = 2 * np.pi
 def random_input(
     scene: Scene, speed: float, psd: PowerSpectrum | RoadRoughness | float, given: Excitation | str | None
 ) -> tuple[Excitation, PowerSpectrum | float]:
-    """Return the excitation and its spectral density; a road becomes the wheel's vertical acceleration.
+    """Return the excitation and its spectral density; a road is converted to the wheel's acceleration.
 
     Raises
     ------
@@ -252,7 +252,7 @@ def random_input(
         if not isinstance(wheel, RollingWheel):
             bound, remedy = "a road needs the rolling radius of a wheel", Words("give ", ROLLING_WHEEL)
             raise InvalidValue("scene.motion", wheel and type(wheel).__name__, bound, remedy)
-        refuse(speed == 0, "speed", speed, "rad/s", "at rest a road does not shake", "give a speed")
+        refuse(speed == 0, "speed", speed, "rad/s", "at rest a road excites nothing", "give a speed")
         return BaseMotion("n2"), psd.acceleration(wheel.rolling_radius * speed)
     excitation = as_excitation("input", "bending" if given is None else given)
     if isinstance(psd, PowerSpectrum):
@@ -270,7 +270,7 @@ def highest_frequency(spectrum: PowerSpectrum | float) -> float:
 def warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: ModelAtSpeed) -> Iterator[str]:
     """Yield a warning if the input lacks a frequency that excites the first resonance.
 
-    An input of fixed direction excites the beam at its own frequency plus and minus that of rotation.
+    An input of fixed direction excites the beam at the input's frequency plus and minus that of rotation.
     """
     resonances = np.abs(np.imag(model.free_motion.finite_poles)) / _TURN
     if not isinstance(spectrum, PowerSpectrum) or not resonances.any():
@@ -294,13 +294,13 @@ def warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: Mode
 _STEP = 0.02  # relative step between listed frequencies of the input
 # Largest logarithm of the ratio of the input's densities at two neighbouring listed frequencies.
 _STEEPEST = 0.1
-_DECADES = 3  # number of decades listed downwards of a piece that begins at 0
-_CLOSE = 0.2  # step near a resonance, over the distance from it or over its bandwidth
+_DECADES = 3  # number of decades in which frequencies are listed for an interval that begins at 0
+_CLOSE = 0.2  # step near a resonance, relative to the distance from it or to its bandwidth
 # Range about a resonance in which listed frequencies are dense, in half bandwidths, in addition to its
 # frequency.
 _REACH = 30.0
-# Relative distance from the end of an input's range to a listed frequency outside it, where the density falls
-# to 0.
+# Relative distance between the end of an input's range and a listed frequency just outside it, at which the
+# density is 0.
 _BESIDE = 1e-6
 _SAME = 1e-13  # relative distance below which two frequencies are the same
 
@@ -332,7 +332,7 @@ def frequencies_of_response(
 
 
 def _frequencies_of(piece: SpectrumPiece) -> np.ndarray:
-    """List frequencies of one part of the input [Hz], at equal ratios."""
+    """List frequencies [Hz] of one interval of the input's spectrum, in a geometric sequence."""
     start = piece.start or piece.end / 10**_DECADES
     steps = math.log(piece.end / start) * max(1 / _STEP, abs(piece.power) / _STEEPEST)
     between = np.geomspace(start, piece.end, math.ceil(steps) + 1)[1:-1]
@@ -340,25 +340,25 @@ def _frequencies_of(piece: SpectrumPiece) -> np.ndarray:
 
 
 def _shifted(f: np.ndarray, shifts: Sequence[float]) -> np.ndarray:
-    """Compute response frequencies from input frequencies [Hz] of either sign by shifts [Hz]."""
+    """Compute response frequencies [Hz] from input frequencies f [Hz] as +-f plus each shift [Hz]."""
     return np.concatenate([np.abs(shift + each) for shift in shifts for each in (f, -f)])
 
 
 def about_resonances(poles: np.ndarray) -> np.ndarray:
-    """List frequencies dense about the resonances of poles, from 0 on [Hz], in no order."""
+    """List non-negative frequencies [Hz], unsorted, that are dense near the resonances of poles."""
     each = [_about(float(pole.imag), -float(pole.real)) for pole in poles / _TURN if pole.imag >= 0]
     f = np.concatenate([*each, np.empty(0)])
     return f[f >= 0]
 
 
 def _about(centre: float, half_width: float) -> np.ndarray:
-    """List frequencies about a centre in steps proportional to the distance from it."""
+    """List frequencies [Hz] near a centre in steps proportional to the distance from it."""
     reach = np.arcsinh(_REACH + centre / half_width)
     side = half_width * np.sinh(np.linspace(0.0, reach, math.ceil(reach / _CLOSE) + 1))
     return np.concatenate([centre - side[:0:-1], centre + side])
 
 
 def one_of_each(f: np.ndarray) -> np.ndarray:
-    """Sort the frequencies, and leave out those that differ from others by rounding."""
+    """Sort frequencies, and remove duplicates within rounding."""
     f = np.unique(f)
     return f[np.diff(f, prepend=-1.0) > _SAME * f]

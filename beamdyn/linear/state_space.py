@@ -21,11 +21,11 @@ from beamdyn.modes.repeated import left_out_of_frequencies
 from beamdyn.scene.scene import Scene
 
 _MODES = 6  # number of modes by default
-_MASSLESS = 1e-12  # smallest nonzero eigenvalue of the mass, relative to the largest
+_MASSLESS = 1e-12  # smallest nonzero eigenvalue of the mass matrix, relative to the largest
 
 
 class StateSpaceWithErrors(StateSpace, lti):  # pyright: ignore[reportIncompatibleMethodOverride]
-    """A `scipy.signal.StateSpace` that states its errors; systems that scipy derives from it do not.
+    """A `scipy.signal.StateSpace` with error estimates; systems that scipy derives from it have none.
 
     Attributes
     ----------
@@ -144,22 +144,22 @@ def state_space(
 
 
 def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> None:
-    """Refuse the strain of a material with damping: its delay behind the moment needs a further state."""
+    """Refuse strain as output of a damped material: its delay behind the moment needs a further state."""
     factor = scene.damping.stiffness_factor
     if factor and any(isinstance(each, StrainAtRoot) for each in observed):
         bound = "the strain of a material that damps is not a function of the moment alone"
-        raise InvalidValue("damping.stiffness_factor", factor, bound, "ask frequency_response for it", "s")
+        raise InvalidValue("damping.stiffness_factor", factor, bound, "use frequency_response for it", "s")
 
 
 class _Rates(NamedTuple):
-    """Rates of the coordinates, and accelerations of those with mass, each in terms of states and inputs."""
+    """Velocities of all coordinates, and accelerations of those with mass, in terms of states and inputs."""
 
     velocity: tuple[np.ndarray, np.ndarray]
     acceleration: tuple[np.ndarray, np.ndarray]
 
 
 def _rates(model: ModelAtSpeed, loads: np.ndarray) -> _Rates:
-    """Compute rates under loads (n, k) per unit input; a circuit's charge, the last, has only a rate."""
+    """Compute velocities and accelerations under loads (n, k) per unit input; a charge has only a rate."""
     n = model.equations.size
     m = model.mechanical.stop
     M = _with_mass(model, model.M[:m, :m])
@@ -172,9 +172,9 @@ def _rates(model: ModelAtSpeed, loads: np.ndarray) -> _Rates:
 
 
 def _with_mass(model: ModelAtSpeed, M: np.ndarray) -> np.ndarray:
-    """Return the mass matrix, or refuse coordinates without mass, as shear without rotary inertia has."""
+    """Return the mass matrix; refuse coordinates without mass, such as shear without rotary inertia."""
     values = np.linalg.eigvalsh(M)
     if values[0] < _MASSLESS * values[-1]:
-        bound = "some functions have no mass of their own, and no rates as states"
+        bound = "some coordinates have no mass, so that their rates are no states"
         raise InvalidValue("modes", model.modes, bound, "give a number of modes")
     return M

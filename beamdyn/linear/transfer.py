@@ -18,7 +18,7 @@ from beamdyn.common.inputs.checks import BeyondModel
 from beamdyn.linear.inputs_outputs import Excitation, Observation, StrainAtRoot
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 
-_TERMS_AT_ONCE = 1_000_000  # number of terms that are held at once
+_TERMS_AT_ONCE = 1_000_000  # number of terms of the sum that are kept in memory at once
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class ModalSum:
         return 1 / self.inverse_poles[self.inverse_poles != 0]
 
     def __call__(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Evaluate the function and its derivative by s at complex frequencies s [1/s] (F,): (F,) each."""
+        """Evaluate the transfer function and its derivative at complex frequencies s [1/s], shapes (F,)."""
         step = max(1, _TERMS_AT_ONCE // len(self.inverse_poles))
         values, slopes = [], []
         for part in np.split(s, range(step, len(s), step)):
@@ -79,11 +79,11 @@ def modal_sums(
 # Solution by the equations, and stability ----------------------------------------------------------
 
 
-_GROWING = 1e-6  # ratio of growth rate to the size of a pole that exceeds rounding
+_GROWING = 1e-6  # ratio of growth rate to magnitude of a pole above which the growth exceeds rounding
 # Ratio of a pole to an elastic mode's, below which the pole counts as 0: its square is 0 within rounding.
 _STILL = 1e-6
-_PLANES = 2  # number of planes in which the beam may turn freely, with two poles at 0 each
-_AT_ONCE = 2_000_000  # number of matrix entries that are solved at once
+_PLANES = 2  # number of planes in which the beam may rotate freely about its root, with two poles at 0 each
+_AT_ONCE = 2_000_000  # number of matrix entries in memory when equations are solved at many frequencies
 
 
 def transfer(
@@ -107,7 +107,7 @@ def transfer(
 
 
 def respond(model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation, s: np.ndarray) -> np.ndarray:
-    """Compute the transfer function of one drive at complex frequencies s [1/s] (F,): shape (F,)."""
+    """Compute the response to one harmonic drive at complex frequencies s [1/s]: shape (F,)."""
     row, extra = model.row(observation), model.residual(observation, drive)
     size = model.equations.size
     step = max(1, _AT_ONCE // size**2)
@@ -120,7 +120,7 @@ def respond(model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation,
 
 
 def _solve(model: ModelAtSpeed, load: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Solve for coordinates (F, n) per unit of the input; inf where the equations are singular."""
+    """Solve the equations of motion for coordinates (F, n) per unit of the input; inf where singular."""
     A = s[:, None, None] ** 2 * model.M + s[:, None, None] * model.C + model.K
     try:
         return np.linalg.solve(A, np.broadcast_to(load, (len(s), len(load)))[..., None])[..., 0]
@@ -131,7 +131,7 @@ def _solve(model: ModelAtSpeed, load: np.ndarray, s: np.ndarray) -> np.ndarray:
 
 
 def check_stable(model: ModelAtSpeed) -> None:
-    """Refuse a speed at which free motion grows, or the beam turns freely about its root.
+    """Refuse a speed at which free motion grows, or the beam rotates freely about its root.
 
     Raises
     ------

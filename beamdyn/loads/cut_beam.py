@@ -6,7 +6,7 @@ rotation about the cut.  These displacements stand here beside the trial functio
 that the fields (`beamdyn.equations.fields`) write all their terms for them, too: no physics is written twice.
 
 A rotation about the cut is a kink.  Its curvature, a delta function at the cut, is kept in all terms but the
-product of two curvatures: the work of the bending moment there is what is sought.
+product of two curvatures: the work of the bending moment there gives the moment that is to be computed.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ from beamdyn.equations.discretization import Cells, RootConditions, SampledSpace
 from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.profile import Profile
 
-_TOUCHING = 1e-12  # distance over the length below which a mass is at a station
+_TOUCHING = 1e-12  # distance of mass and station, over the length, that counts as 0
 
 
 @dataclass(frozen=True)
 class CutQuadrature:
-    """Gauss rule on cells between element ends, breakpoints and stations, followed by the stations.
+    """Gauss quadrature on cells between element ends, breakpoints and stations, with the stations appended.
 
     Parameters
     ----------
@@ -41,12 +41,12 @@ class CutQuadrature:
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points of the rule on [0, 1], followed by the stations, shape (k + S,)."""
+        """Quadrature points x/L, followed by the stations: shape (k + S,)."""
         return np.concatenate([gauss_points_on(self._ends, self.cells.points).ravel(), self.stations.xi])
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Weights of the rule, then 1 for each station, where only delta functions are not 0."""
+        """Quadrature weights, followed by 1 for each station, where only delta functions are not 0."""
         _, w = gauss_rule(self.cells.points)
         inside = (np.diff(self._ends)[:, None] / 2 * w).ravel()
         return np.concatenate([inside, np.ones(len(self.stations.xi))])
@@ -59,12 +59,12 @@ class CutQuadrature:
 
 @dataclass(frozen=True)
 class CutSpace(SampledSpace):
-    """Trial functions of a space, followed by rotations (if it has slopes) and translations at each cut.
+    """Trial functions, followed by rotations (if functions have slopes) and translations at each cut.
 
     Parameters
     ----------
     space : Space or None
-        The space; None if there are no trial functions.
+        The function space of the trial functions; None if there are none.
     derivatives : int
         Highest order of derivatives: with 2, the displacements include rotations.
     quadrature : CutQuadrature
@@ -85,22 +85,22 @@ class CutSpace(SampledSpace):
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points x/L of the rule, followed by the stations."""
+        """Quadrature points x/L, followed by the stations."""
         return self.quadrature.points
 
     @cached_property
     def rule(self) -> np.ndarray:
-        """Weights of the rule, followed by 1 for each station."""
+        """Quadrature weights, followed by 1 for each station."""
         return self.quadrature.weights
 
     @property
     def coarse(self) -> None:
-        """Indices of functions of a coarser discretization: None, because nothing is solved in this space."""
+        """Indices of a coarser discretization's functions: None, because nothing is solved here."""
         return None
 
     @cached_property
     def samples(self) -> list[np.ndarray]:
-        """Values and derivatives of all functions at the points; at stations, only delta functions count."""
+        """Values and derivatives of all functions at the points; at stations, of delta functions only."""
         count, values = len(self.quadrature.stations.xi), []
         for order in range(self.derivatives + 1):
             sampled = self.evaluate(self.points, order)
@@ -150,7 +150,7 @@ class CutSpaces:
     length : float
         Length of the beam [m].
     without : str
-        Stiffness against which the model has no trial functions: "axial_stiffness" without stretch.
+        Stiffness of a deformation without trial functions: "axial_stiffness" if stretch is not modelled.
     """
 
     spaces: Spaces
@@ -175,7 +175,7 @@ class CutSpaces:
 
     @property
     def across(self) -> int:
-        """Number of functions across the width of a plate, without the constant one."""
+        """Number of trial functions across the width of a plate, without the constant function."""
         return self.spaces.across
 
     @property
@@ -184,6 +184,6 @@ class CutSpaces:
         return self.spaces.fewer_across
 
     def shares_functions(self, other: CutSpaces) -> bool:
-        """Whether other spaces have the same functions of the beam, and the same cuts."""
+        """Return whether other spaces have the same trial functions and the same cuts."""
         same = np.array_equal(self.quadrature.points, other.quadrature.points)
         return same and self.spaces.shares_functions(other.spaces)

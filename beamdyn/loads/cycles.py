@@ -22,15 +22,15 @@ from beamdyn.modes.model_error.left_out_changes import SolvedValues
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene
 
-TURNING_POINTS = 1e-6  # error of values at turning points, over the largest range
+TURNING_POINTS = 1e-6  # error of values at turning points, relative to the largest range
 
 
 @dataclass(frozen=True)
 class LoadCycles(JudgedByRepeating):
     """Load cycles of a quantity at one station, by rainflow counting.
 
-    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
-    largest range.
+    `model_error` and `left_out`, computed on first use, are the changes of the largest range by physical
+    effects that the model leaves out.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class LoadCycles(JudgedByRepeating):
     means : ndarray, shape (n,)
         Means of the cycles [unit of the quantity].
     counts : ndarray, shape (n,)
-        Numbers of cycles: 1 for a whole one, 0.5 for half a one.
+        Numbers of cycles: 1 for a full cycle, 0.5 for a half cycle.
     start, end : float
         The time window [s].
     warnings : tuple of str
@@ -77,10 +77,10 @@ class LoadCycles(JudgedByRepeating):
     scene: Scene = field(repr=False)
     error: float = field(default=math.nan, metadata=ADDED_LATER)
 
-    loads: ClassVar[TransientLoads | None] = None  # loads of a result that was not loaded from a file
+    loads: ClassVar[TransientLoads | None] = None  # the counted loads; None after loading from a file
 
     def headline(self) -> Iterator[str]:
-        """Yield number of cycles, their place and largest range for a one-line summary.
+        """Yield number of cycles, position and largest range for a one-line summary.
 
         See `Result.headline`.
         """
@@ -92,22 +92,22 @@ class LoadCycles(JudgedByRepeating):
     judged_value = "the largest range"
 
     def judged(self, found: LoadCycles) -> np.ndarray:
-        """Select the largest range, whose model error is stated: shape ()."""
+        """Return the largest range, for which the model error is stated: shape ()."""
         return np.array(found.ranges.max(initial=0.0))
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Find the largest range with an effect: from another run, or from the change of deflection."""
+        """Find the largest range with an effect added: by another simulation, or from the deflection."""
         known = None if self.loads is None else self.loads.as_deflection(self.judged(self), name)
         return known or super().solve(scene, name)
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate the largest range with large deflection, from the change of the run's deflection."""
+        """Estimate the largest range with large deflection, from the change of the tip deflection."""
         assert self.loads is not None, "the result was made by count_cycles"
         return self.loads.bent_values(straight, reason)
 
     @property
     def bending_speed(self) -> float:
-        """Largest speed of the run [rad/s], at which large deflection is judged."""
+        """Largest speed of the transient [rad/s], at which large deflection is estimated."""
         return 0.0 if self.loads is None else self.loads.bending_speed
 
     def equivalent_range(self, exponent: float, cycles: float = 1.0) -> float:
@@ -145,7 +145,7 @@ class LoadCycles(JudgedByRepeating):
         return tuple(found)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the number of cycles that exceed each range."""
+        """Plot the number of cycles that exceed each range."""
         unit = UNITS[self.quantity] or "-"
         return plot_exceedance(self.ranges, self.counts, f"range of {self.quantity} [{unit}]", ax)
 
@@ -161,8 +161,8 @@ def count_cycles(
 ) -> LoadCycles:
     """Count the cycles of a quantity at one station from `start` to `end` [s], by rainflow counting.
 
-    The turning points are sought at 32 times in each step of the run and refined between these, by its
-    interpolation: to 1e-6 of the largest range.
+    Turning points are found at 32 times in each time step and then refined by the interpolation of the
+    transient, to 1e-6 of the largest range.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def count_cycles(
     ValueError
         If an argument is out of its range.
     ImportError
-        If the package that counts is missing: the extra `fatigue` installs it.
+        If the package `rainflow` is missing: the extra `fatigue` installs it.
 
     References
     ----------

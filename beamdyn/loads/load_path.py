@@ -1,4 +1,4 @@
-"""Loads at stations along the path of a transient: at any time, their largest magnitudes, and errors."""
+"""Loads at stations during a transient: values at any time, largest magnitudes, and errors."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import TimeError, estimate_time_error, vibration_frequencies
 from beamdyn.transient.trajectory import Trajectory
 
-_COMPARED = 4000  # number of times at which two runs are compared; at most twice as many are used
+_COMPARED = 4000  # number of times at which two simulations are compared; at most twice as many are used
 _BATCH = 500  # number of times evaluated at once
-_REFINEMENTS, _FINE = 3, 17  # number of refinements of a maximum, and points of the grid of each
+_REFINEMENTS, _FINE = 3, 17  # number of refinements of a maximum, and of grid points in each
 _OF_TURNING_POINTS = 2  # number of refinements of a turning point: values within 1e-6 of the largest range
 _BETWEEN_SAMPLES = 4  # times per sample of the run at which turning points are sought
-# Distance before the end of a segment, over its length, at which loads are evaluated: they may jump there.
+# Distance before a segment's end, over its duration, at which loads are evaluated: they may jump at the end.
 _BEFORE_JUMP = 1e-9
 
 
@@ -64,7 +64,7 @@ class LoadPath(FieldsOnly):
 
     @property
     def _system(self) -> ModalSystem:
-        """Equations of motion of the run."""
+        """Equations of motion of the transient."""
         assert isinstance(self.run.system, ModalSystem)
         return self.run.system
 
@@ -79,7 +79,7 @@ class LoadPath(FieldsOnly):
     # Turning points and largest magnitudes --------------------------------------------------------
 
     def turning_values(self, station: int, output: int, start: float, end: float) -> np.ndarray:
-        """Find one output's values at its turning points from start to end [s], and at both ends."""
+        """Find one output's values at its local extremes from start to end [s], and at both times."""
         single = self.rows.chosen(np.array([station]), np.array([output]))
         samples, parts = self.run.path.samples[0], np.linspace(0, 1, _BETWEEN_SAMPLES, endpoint=False)
         between = (samples[:-1, None] + np.diff(samples)[:, None] * parts).ravel()
@@ -91,7 +91,7 @@ class LoadPath(FieldsOnly):
         signs = np.sign(np.diff(values))
         rising = np.flatnonzero(signs)  # on a plateau, only the first sample is the turning point
         turns = 1 + rising[:-1][signs[rising[:-1]] != signs[rising[1:]]]
-        # The second value is added because counters need more than two values.
+        # A second value is added because rainflow counting needs more than two values.
         found = [values[:2], values[-1:]]
         for k in _batches(turns):
             sign = signs[k - 1, None]
@@ -127,7 +127,7 @@ class LoadPath(FieldsOnly):
         last: np.ndarray,
         refinements: int,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Refine the largest values from `first` to `last` about times t [s]: values, and times, (O, 1)."""
+        """Refine O largest values near times t [s], within `first` to `last`: values and times, (O, 1)."""
         found, half_width = np.empty(0), np.maximum(last - t, t - first)
         for _ in range(refinements):
             near = np.clip(t + half_width * np.linspace(-1, 1, 2 * _FINE + 1), first, last)
@@ -138,7 +138,7 @@ class LoadPath(FieldsOnly):
         return found, t
 
     def _each_at(self, single: LoadRows, t: np.ndarray) -> np.ndarray:
-        """Evaluate O single outputs, output i at the times t[i] of t (O, T): shape (O, T)."""
+        """Evaluate O single outputs, output i at the times t[i] [s]: shape (O, T)."""
         root = self._system.root(t)
         states = (each.reshape(*t.shape, -1) for each in self.run.path.at(t.ravel()))
         total = np.zeros(t.shape)
@@ -153,7 +153,7 @@ class LoadPath(FieldsOnly):
 
     @cached_property
     def error(self) -> np.ndarray:
-        """Estimated errors (S, K) over the whole run, by the modes left out and by time integration."""
+        """Estimated errors (S, K) over the whole transient, due to modes left out and time integration."""
         run, refined = self.run, self.run.refined
         if refined is None:
             return np.full(self.rows.shape, np.inf)
@@ -185,7 +185,7 @@ class LoadPath(FieldsOnly):
             error = estimate_time_error(system, path.segments, np.diag(largest))
             contributions = np.empty(system.size)
             contributions[rank] = error.modes
-            # Bounds by each coordinate at each station, relative to those at the station with the largest.
+            # Bounds at each station by each coordinate, relative to the station with the largest bound.
             shares = sizes[:, k] / np.where(largest > 0, largest, 1.0)
             totals = shares @ contributions + shares.max(axis=1) * error.interpolation
             errors[:, k] = [TimeError(np.array([total]), 0.0, error.unresolved).total for total in totals]
@@ -195,11 +195,11 @@ class LoadPath(FieldsOnly):
 def largest_per_coordinate(
     rows: LoadRows, system: ModalSystem, path: Trajectory, frequencies: np.ndarray
 ) -> np.ndarray:
-    """Bound each load (stations S, outputs K) over the run per unit amplitude of each of n coordinates.
+    """Compute bounds of loads (S stations, K outputs) over the run, per unit amplitude of n coordinates.
 
     Each coordinate vibrates at its frequency [rad/s]; the bounds (S, K, n) sum the largest contributions.
     """
-    # There are several samples in each step, and steps are short where a shock acts.
+    # There are several samples in each time step, and time steps are short during a shock.
     root = system.root(path.samples[0])
     total = np.zeros((*rows.shape, system.size))
     for by_quantity, factor in ((rows.position, 1.0), (rows.velocity, frequencies)):

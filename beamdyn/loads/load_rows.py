@@ -44,7 +44,7 @@ _OF_TAPERED = (
 ByQuantity: TypeAlias = "dict[Quantity, np.ndarray]"
 
 _FIELD_OF_DIRECTION = "bending", "second bending"
-# Fields that do not move mass centres on the axis along or across the beam.
+# Fields whose motion does not displace the centres of mass, if these lie on the beam's axis.
 _WITHOUT_RESULTANT = "torsion", "camber"
 _DAMPING = {field.damping_name for field in FIELDS}
 
@@ -85,7 +85,7 @@ class LoadRows:
         return total
 
     def each(self, change: Callable[[np.ndarray], np.ndarray]) -> LoadRows:
-        """Apply a function to every array of the rows."""
+        """Apply a function to all arrays of the rows, and return the resulting rows."""
 
         def changed(part: ByQuantity) -> ByQuantity:
             return {name: change(row) for name, row in part.items()}
@@ -94,15 +94,15 @@ class LoadRows:
 
     @property
     def parts(self) -> tuple[ByQuantity, ByQuantity, ByQuantity, ByQuantity]:
-        """Loads by the root's motion alone, by position, by velocity and by acceleration."""
+        """Four mappings of loads: by the root's motion alone, by position, velocity and acceleration."""
         return self.load, self.position, self.velocity, self.acceleration
 
     def chosen(self, station: np.ndarray, component: np.ndarray) -> LoadRows:
-        """Select O single loads, as rows of O stations with one component each."""
+        """Select O single loads, returned as rows of O stations with one component each."""
         return self.each(lambda row: row[station, component][:, None])
 
     def through(self, matrix: np.ndarray) -> LoadRows:
-        """Convert the loads of each station linearly to P other quantities by a matrix (S, P, K)."""
+        """Multiply the K loads of each station by a matrix (S, P, K) to get P other quantities."""
         return self.each(lambda row: np.einsum("spk,sk...->sp...", matrix, row))
 
     def in_motion(self, equations: Equations) -> LoadRows:
@@ -123,7 +123,7 @@ class LoadRows:
 
 
 def per_force(mass: np.ndarray, by_acceleration: np.ndarray) -> np.ndarray:
-    """Convert rows (S, K, n) by accelerations to rows by the forces on the coordinates.
+    """Convert rows (S, K, n) per unit acceleration to rows per unit force on each coordinate.
 
     The charge of a circuit has no mass, and its rows are 0.
     """
@@ -136,7 +136,7 @@ def per_force(mass: np.ndarray, by_acceleration: np.ndarray) -> np.ndarray:
 
 
 def _subtract(first: ByQuantity, second: ByQuantity) -> ByQuantity:
-    """Subtract rows by quantity; missing rows count as 0."""
+    """Subtract the rows of each quantity of the root's motion; missing rows count as 0."""
     names: dict[Quantity, None] = dict.fromkeys([*first, *second])
     return {name: np.asarray(first.get(name, 0.0) - second.get(name, 0.0)) for name in names}
 
@@ -174,7 +174,7 @@ def span_rows(
     quadrature = CutQuadrature(stations, Cells(cells.ends, cells.points + weight_degree(beam) // 2 + 1))
     without = "" if scene.physics.stretch else "axial_stiffness"
     spaces = CutSpaces(discretization.spaces(beam), quadrature, beam.length, without)
-    stretched = Stretch().complete(scene.undamped)  # the equation of the stretch gives the axial force
+    stretched = Stretch().complete(scene.undamped)  # the equation of axial stretch gives the axial force
     unmoved = () if beam.has_offsets else _WITHOUT_RESULTANT
     modelled = (f for f in FIELDS if f.is_modelled(stretched) and f.name not in unmoved)
     assembled = {f.name: f.assemble(stretched, spaces) for f in modelled}
@@ -194,7 +194,7 @@ def span_rows(
 
 
 def _camber(scene: Scene, equations: Equations, stations: SpanStations) -> LoadRows:
-    """Build rows of the moment [N m] at S stations by which sections that camber bend the beam.
+    """Build rows of the moment [N m] at S stations due to camber, the curvature across the width.
 
     It is nu E I/(1 - nu^2) times the curvature across, with Poisson's ratio nu.
     """
@@ -208,7 +208,7 @@ def _camber(scene: Scene, equations: Equations, stations: SpanStations) -> LoadR
 def _rows_of(
     assembled: Mapping[str, FieldEquations], equations: Equations, field: str, moved: slice
 ) -> LoadRows:
-    """Build rows of the work of all loads and terms on one field's displacements at S stations."""
+    """Build rows of the virtual work of all loads on one field's virtual displacements at S stations."""
     count = moved.stop - moved.start
     load: ByQuantity = {}
     by_order: tuple[ByQuantity, ...] = ({}, {}, {})
@@ -224,7 +224,7 @@ def _rows_of(
 
 
 def _stack(parts: Sequence[ByQuantity]) -> ByQuantity:
-    """Stack rows by quantity along a new second axis of K components; missing ones are 0."""
+    """Stack K rows of each quantity of the root's motion along a new second axis; missing rows are 0."""
     like: ByQuantity = {name: row for part in parts for name, row in part.items()}
     return {
         name: np.stack([part.get(name, np.zeros_like(row)) for part in parts], axis=1)
@@ -250,19 +250,19 @@ def _across_deflected_axis(
 
 
 def barred_of_loads(scene: Scene) -> dict[str, str]:
-    """Return the names of effects with which loads along the span are not known, and why."""
+    """Return the names of effects with which loads along the span cannot be computed, with the reasons."""
     uncovered = {CAMBER.name: _OF_TAPERED} if _lacks_camber(scene) else {}
     return {LARGE_DEFLECTION.name: STRAIGHT} | uncovered
 
 
 def _lacks_camber(scene: Scene) -> bool:
-    """Whether loads are not known with camber: of a tapered width, or of a section with layers."""
+    """Return whether loads with camber cannot be computed: for a tapered width, or a layered section."""
     section = scene.beam.section
     return scene.beam.electrodes is not None or bool(section is not None and section.width.degree)
 
 
 def refuse_uncovered_camber(scene: Scene) -> None:
-    """Refuse camber with which loads along the span are not known."""
+    """Refuse camber if loads along the span cannot be computed with it."""
     if scene.physics.camber and _lacks_camber(scene):
         instead = 'it was chosen by "auto": give the physics without it'
         remedy = _LEAVE_OUT if scene.physics_choice is None else instead
@@ -270,7 +270,7 @@ def refuse_uncovered_camber(scene: Scene) -> None:
 
 
 def _refuse_uncovered(scene: Scene) -> None:
-    """Refuse springs along the span and damping that is not modal, whose forces are not in the rows."""
+    """Refuse springs along the span and damping that is not modal: the rows do not contain their forces."""
     bound = "loads along the span are known without it"
     if scene.beam.point_springs:
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, _LEAVE_OUT)

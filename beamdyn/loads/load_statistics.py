@@ -45,10 +45,10 @@ from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene
 
 _TURN = 2 * np.pi
-_EPSILON = 2.0**-48  # rounding error of a term, some units of the last digit
-_FIRST_MODES = 4  # number of modes of a model that only tells the sizes of the outputs
-# Ratio of the tolerance of rates of change to that of other statistics: peak factors depend on their
-# logarithm.
+_EPSILON = 2.0**-48  # relative rounding error of a term
+_FIRST_MODES = 4  # number of modes of a first model, which only gives the magnitudes of the outputs
+# Ratio of the tolerance of time derivatives to that of other statistics: peak factors depend only on the
+# logarithm of time derivatives.
 _OF_RATES = 1e3
 _LEAST = math.e  # smallest number of crossings for which the peak factor is evaluated
 
@@ -79,17 +79,17 @@ class LoadFractions:
         return self.direct[..., None] + self.residues @ (1 / (s - self.poles[:, None]))
 
     def mean_square(self, spectrum: PowerSpectrum, order: int = 0) -> np.ndarray:
-        """Compute the mean square (S, K) of the outputs, or of their rates (order 2)."""
+        """Compute the mean square (S, K) of the outputs (order 0) or their time derivatives (order 2)."""
         by_pole, constant = self._parts(spectrum, order)
         return constant + 2 * np.real(by_pole).sum(axis=-1)
 
     def rounding(self, spectrum: PowerSpectrum, order: int = 0) -> np.ndarray:
-        """Compute the rounding error of `mean_square` (S, K), whose parts may cancel."""
+        """Compute the rounding error (S, K) of `mean_square`, whose terms may cancel."""
         by_pole, constant = self._parts(spectrum, order)
         return _EPSILON * (constant + 2 * np.abs(by_pole).sum(axis=-1))
 
     def _parts(self, spectrum: PowerSpectrum, order: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the mean square's terms by pole (S, K, m), whose real parts count twice, and a constant."""
+        """Compute the terms of the mean square: by pole (S, K, m), of which 2 Re is summed, and constant."""
         between = 1 / (-self.poles - np.conj(self.poles)[:, None])
         conjugate = np.conj(self.direct)[..., None] + np.conj(self.residues) @ between
         integrals = pole_integrals(spectrum, self._mu, self.shift, order)
@@ -161,19 +161,19 @@ class LinearLoads:
         (at, direction), planes = drive.force, self.model.equations.planes
         xi, inboard = self.stations.xi, self.stations.inboard
         outboard = (xi < at) | (inboard & (xi == at))
-        # Loads by a unit force on the outboard parts.
+        # Loads due to a unit force on the part outboard of each station.
         loads = np.zeros((len(xi), self.outputs.matrix.shape[2]))
         loads[:, 1 + direction] = outboard
         loads[:, 1 + planes + direction] = outboard * (at - xi) * self.model.scene.beam.length
         return total + by_force @ drive.load + np.einsum("spk,sk->sp", self.outputs.matrix, loads)
 
     def steady(self) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the outputs of steady rotation, and amplitudes of their variation by gravity in a turn.
+        """Compute the outputs in steady rotation, and the amplitudes of their variation due to gravity.
 
         Returns
         -------
         constant, amplitude : ndarray, shape (S, K)
-            Outputs (S, K); at rest, gravity is in the constant ones, as at the angle of rotation 0.
+            Outputs (S, K); at rest, gravity is included in the constant outputs, at the angle of rotation 0.
         """
         (rows, _), model, vectors = self._rows, self.model, self.model.equations.vectors
         position, velocity = self._at_speed
@@ -211,7 +211,7 @@ class LinearLoads:
         return position, velocity
 
     def _values(self, by_quantity: Mapping[Quantity, np.ndarray]) -> dict[Quantity, np.ndarray]:
-        """Evaluate the given quantities of the root's motion in steady rotation."""
+        """Evaluate quantities of the root's motion in steady rotation."""
         root = root_motion(self.model.scene.mount, MotionSample.steady(self.model.speed))
         return {name: getattr(root, name) for name in by_quantity}
 
@@ -219,7 +219,7 @@ class LinearLoads:
 def _sum(
     values: Mapping[Quantity, Any], by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray
 ) -> np.ndarray:
-    """Sum arrays times the values of the quantities of the root's motion."""
+    """Sum the arrays of all quantities of the root's motion, each times the quantity's value."""
     return sum((value * by_quantity[name] for name, value in values.items() if name in by_quantity), zero)
 
 
@@ -278,13 +278,13 @@ class RandomStatistics:
         return np.where(moving, self.rate_rms, 0.0) / (_TURN * np.where(moving, self.rms, 1.0))
 
     def largest(self, factor: Callable[[np.ndarray], np.ndarray], duration: float) -> np.ndarray:
-        """Compute the largest magnitude (S, K) with a peak factor, a function of the number of crossings."""
+        """Compute the largest magnitude (S, K) in a duration [s]; `factor(crossings)` is the peak factor."""
         count = np.maximum(2 * self.crossings * duration, _LEAST)
         return np.abs(self.mean) + self.gravity + factor(count) * self.rms_in_turn
 
 
 def expected_factor(count: np.ndarray) -> np.ndarray:
-    """Compute the mean largest value in a number of zero crossings, over the root mean square."""
+    """Compute the mean of the largest value in a number of zero crossings, over the root mean square."""
     root = np.sqrt(2 * np.log(count))
     return root + np.euler_gamma / root
 
@@ -314,7 +314,7 @@ class InputAndOutputs:
         mean, gravity = LinearLoads(model, self.stations, self.outputs).steady()
         squares = [sum(each.mean_square(spectrum, order) for each in fractions) for order in (0, 2)]
         most = largest_in_turn(fractions, spectrum)
-        # Squares may be negative by rounding.
+        # Mean squares may be negative due to rounding.
         rms, rate, in_turn = (np.sqrt(np.maximum(square, 0.0)) for square in (*squares, most))
         return np.stack([mean, gravity, rms, in_turn, rate])
 
@@ -326,7 +326,7 @@ class InputAndOutputs:
         tolerance: float,
         discretization: DiscretizationChoice,
     ) -> Refined:
-        """Compute `statistics` and errors (nan if unknown) with as many modes as they need."""
+        """Compute `statistics` and errors (nan if unknown), with as many modes as the tolerance needs."""
         few = self.statistics(model_of_few_modes(loaded, speed, _FIRST_MODES, discretization))
         # Largest value along the span, shape (5, 1, K).
         size = np.nan_to_num(np.abs(few)).max(axis=1, keepdims=True)

@@ -38,9 +38,9 @@ from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
 _TURN = 2 * np.pi
 _HOUR = 3600.0
-_FEW = 10.0  # number of crossings in the duration below which statistics do not describe the largest
-_DIGITS = 3  # number of digits of the expected largest, as statistics have no more
-_UNSURE = 0.05  # error over the largest above which no digit of the largest may be certain
+_FEW = 10.0  # number of zero crossings below which the statistics of the largest value do not hold
+_DIGITS = 3  # number of significant digits of the expected largest value
+_UNSURE = 0.05  # relative error of the largest value above which none of its digits may be certain
 _SEVERAL = 3.0  # number of standard deviations that a deflection rarely exceeds
 
 
@@ -108,7 +108,7 @@ class RandomLoads(SpanLoads):
         return self._of(quantity, self.statistics_error.rms)
 
     def rms_in_turn(self, quantity: str = "strain") -> np.ndarray:
-        """Return a quantity's root mean square at the angle at which it is largest, shape (S, k)."""
+        """Return a quantity's largest root mean square over the angle of rotation: shape (S, k)."""
         return self._of(quantity, self.statistics.rms_in_turn)
 
     def mean(self, quantity: str = "strain") -> np.ndarray:
@@ -176,12 +176,12 @@ class RandomLoads(SpanLoads):
         return total
 
     def plot(self, ax: Axes | None = None, quantity: str = "strain") -> Axes:
-        """Draw the largest expected magnitude of a quantity along the span."""
+        """Plot the largest expected magnitude of a quantity along the span."""
         label = f"largest {with_unit(quantity)} expected in {self.duration:g} s"
         return self.draw(ax, quantity, self.values, label)
 
     def _of(self, quantity: str, values: np.ndarray) -> np.ndarray:
-        """Select the components (S, k) of a quantity from values of all."""
+        """Select the components (S, k) of one quantity from the values of all quantities."""
         self.check_component(quantity, None)
         return values[:, self.outputs.places[quantity]]
 
@@ -217,13 +217,13 @@ def random_loads(
     input : BaseMotion, PointForce or str, optional
         As for `random_response`.
     duration : float
-        Duration within which the largest are expected [s]; by default an hour.
+        Duration for which the largest values are expected [s]; by default an hour.
     at, points, youngs_modulus
         As for `static_loads`.
     modes
         As for `random_response`.
     tolerance : float
-        Target of the error for "auto", relative to the largest of each component along the span.
+        Target of the error for "auto", relative to each component's largest value along the span.
     discretization
         As for `random_response`.
 
@@ -290,7 +290,7 @@ def random_loads(
 
 
 def _tip_deflection(model: ModelAtSpeed, drive: Excitation, spectrum: PowerSpectrum) -> np.ndarray:
-    """Compute the tip deflection in each modelled direction that is rarely exceeded [m], shape (d,)."""
+    """Compute the tip deflection [m] that is rarely exceeded, in each modelled direction: shape (d,)."""
     seen = [DeflectionAt(), DeflectionAt(direction=ACROSS)][: model.equations.planes]
     squares = [
         sum(
@@ -306,7 +306,7 @@ def _warn_of_few(found: RandomStatistics, duration: float) -> Iterator[str]:
     """Yield a warning if the duration is too short for statistics of the largest value."""
     crossings = found.crossings[found.rms > 0]
     if len(crossings) and duration * crossings.min() < _FEW:
-        yield f"in {duration:g} s there are few vibrations: the largest expected are a rough guess"
+        yield f"in {duration:g} s there are few vibrations: the expected largest values are rough estimates"
 
 
 def _warn_of_few_modes(moment: np.ndarray, error: np.ndarray, model: ModelAtSpeed) -> Iterator[str]:

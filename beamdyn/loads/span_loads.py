@@ -40,7 +40,7 @@ _JUDGED = "strain", "moment", "force"
 
 
 class LoadCase(NamedTuple):
-    """First axis of the arrays of a result: its name, its unit, and the field that has its values."""
+    """First axis of a result's arrays (time or speed): name, unit, and field with the values."""
 
     name: str
     unit: str
@@ -52,7 +52,7 @@ SPEEDS = LoadCase("speed", "rad/s", "speeds")
 
 @dataclass(frozen=True)
 class LargestLoad:
-    """Largest magnitude of a quantity along the span, with its place.
+    """Largest magnitude of a quantity along the span, with its position.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class LargestLoad:
     x : float
         Position along the beam [m].
     inboard : bool
-        Whether the place is just inboard of the position, if the quantity jumps there.
+        Whether the value occurs just inboard of the position, if the quantity jumps there.
     component : int
         Index of the direction, of the force component, or of the point of the section.
     case : float
@@ -96,14 +96,14 @@ class SpanLoads(JudgedByRepeating):
     of points of the section.  Loads are those of the part outboard of a station on the part inboard,
     about its deflected axis; they follow from external forces and inertia outboard, not from a curvature.
 
-    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
-    largest value of the `judged_quantity`.
+    `model_error` and `left_out`, computed on first use, are the changes of the `judged_quantity`'s largest
+    value by physical effects that the model leaves out.
 
     Parameters
     ----------
     x : ndarray, shape (S,)
-        Stations [m].  A repeated station has two sides, the inboard one first: a section jumps there, or a
-        mass is there.
+        Stations [m].  Where the section jumps or a mass is attached, the station is repeated, the inboard
+        side first.
     inboard : ndarray of bool, shape (S,)
         Whether the station is just inboard of its position.
     points : ndarray, shape (S, P, 2)
@@ -115,13 +115,13 @@ class SpanLoads(JudgedByRepeating):
     moment : ndarray, shape (C, S, d)
         Bending moment in each of these directions [N m], positive if it bends towards positive deflection.
     curvature : ndarray, shape (C, S, d)
-        Curvature in each direction of the section, which the twist turns [1/m].
+        Curvature in each direction of the section, which turns with the twist of the beam [1/m].
     strain : ndarray, shape (C, S, P)
         Axial strain at the points.
     stress : ndarray, shape (C, S, P)
         Axial stress at the points [Pa]; nan if Young's modulus is not known.
     force_error, moment_error, curvature_error, strain_error, stress_error : ndarray
-        Estimated errors; of a transient one for the whole run, without the first axis.
+        Estimated errors; for a transient one error for the whole run, without the first axis.
     warnings : tuple of str
         Limits of the answer.
     provenance : Provenance
@@ -166,28 +166,28 @@ class SpanLoads(JudgedByRepeating):
 
     @property
     def judged_quantity(self) -> str:
-        """Quantity of which the model error is stated: the first that is neither 0 nor unknown."""
+        """Quantity for which the model error is stated: the first that is neither 0 nor unknown."""
         sizes = {name: np.nan_to_num(np.abs(self.values(name))).max(initial=0.0) for name in _JUDGED}
         return next((name for name, size in sizes.items() if size), _JUDGED[-1])
 
     @property
     def drawn_quantity(self) -> str:
-        """Quantity that a picture shows where none is chosen: the moment, unless nothing bends the beam."""
+        """Quantity that a plot shows by default: the moment, unless nothing bends the beam."""
         return "moment" if np.nan_to_num(self.moment).any() else self.judged_quantity
 
     @property
     def judged_value(self) -> str:  # pyright: ignore[reportIncompatibleVariableOverride]
-        """Words for the value whose model error is stated, such as "the largest strain"."""
+        """Name of the value for which the model error is stated, such as "the largest strain"."""
         return f"the largest {self.judged_quantity}"
 
     def judged(self, found: SpanLoads) -> np.ndarray:
-        """Select the largest value of the `judged_quantity`, nan where none is known: shape ()."""
+        """Return the largest value of the `judged_quantity`, or nan if unknown: shape ()."""
         known = np.isfinite(found.values(self.judged_quantity)).any()
         return np.array(abs(found.largest(self.judged_quantity).value) if known else np.nan)
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """Arguments that limit a repeated analysis to the station of the largest value, with both sides."""
+        """Arguments that limit a repeated analysis to both sides of the station of the largest value."""
         return {"at": [self.largest(self.judged_quantity).x] * 2}
 
     @property
@@ -272,11 +272,11 @@ class SpanLoads(JudgedByRepeating):
         return LargestLoad(quantity, value, error, *at, component, case)
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
-        """Draw a quantity along the span: each of few cases, or else the range of all."""
+        """Plot a quantity along the span: each case if there are few, else the range over all cases."""
         return self.draw(ax, quantity, self.values, with_unit(quantity))
 
     def draw(self, ax: Axes | None, quantity: str, values: Callable[[str], np.ndarray], label: str) -> Axes:
-        """Draw values (C, S, k) of a quantity along the span, if the result has the quantity."""
+        """Plot values (C, S, k) of a quantity along the span, if the result has the quantity."""
         self.check_known(quantity)
         named = self.components(quantity)
         scale, _ = SHOWN[quantity]
@@ -284,7 +284,7 @@ class SpanLoads(JudgedByRepeating):
 
 
 def with_unit(quantity: str) -> str:
-    """Label an axis by a quantity and its unit."""
+    """Return the label of an axis: a quantity and its unit."""
     one_of("quantity", quantity, (*UNITS,))
     return f"{quantity} [{SHOWN[quantity][1]}]"
 
@@ -294,7 +294,7 @@ def with_unit(quantity: str) -> str:
 
 @dataclass(frozen=True)
 class AskedLoads:
-    """Request of loads along the span: stations and outputs, from which results of all kinds are made.
+    """Request for loads along the span: stations and outputs, common to all kinds of results.
 
     Parameters
     ----------
@@ -309,7 +309,7 @@ class AskedLoads:
     notes : tuple of str
         Contributions that the strain does not include.
     start : float
-        Time of the request [s].
+        Clock time of the request [s].
     """
 
     scene: Scene

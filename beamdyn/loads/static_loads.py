@@ -30,13 +30,13 @@ from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection, warn_of_strain
 
-_MODES = 3  # number of modes for which the model is accurate: loads in equilibrium need no more
-_SINGULAR = 1e-13  # smallest nonzero eigenvalue of the scaled stiffness
+_MODES = 3  # number of modes that the model resolves: loads in equilibrium need no more
+_SINGULAR = 1e-13  # eigenvalue of the scaled stiffness below which it counts as 0
 # Moments at the root fall by 0.26 to 0.42 times the squared ratio of deflection and length, up to 0.5: by
 # `equilibrium`, at four setting angles.
 _BENT, _BY_DEFLECTION = 0.4, "roughly, by the squared ratio of deflection and length"
-# The difference of two models at a station counts as at least this fraction of the largest one along the
-# span, since it may be small by chance.
+# The difference of two models at a station may be small by chance: it counts as at least this fraction of the
+# largest difference along the span.
 _ALONG = 0.25
 _ROUNDING = 1e-12  # rounding error relative to the largest value along the span
 
@@ -71,7 +71,7 @@ class StaticLoads(span_loads.SpanLoads):
     case: ClassVar[span_loads.LoadCase] = span_loads.SPEEDS
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate values with large deflection from the straight beam's tip deflection."""
+        """Estimate load values with large deflection from the straight beam's tip deflection."""
         ratio = float(np.linalg.norm(self.tip, axis=1).max()) / self.scene.beam.length
         return SolvedValues(straight / (1 + _BENT * ratio**2), "", _BY_DEFLECTION if ratio else "")
 
@@ -99,7 +99,7 @@ def static_loads(
         Speeds [rad/s], ascending.
     at : sequence of float, optional
         Stations [m]; by default 21 evenly along the beam, and both sides of each jump.  A position that is
-        given twice stands for both of its sides, a single one for the outboard side.
+        given twice stands for both of its sides, a single position for the outboard side.
     points : sequence of (float, float), optional
         Points of the section at which strain and stress are wanted [m], along its first direction and along
         the second; by default the outer fibres, or the corners of a rectangle that bends in two planes.
@@ -150,7 +150,7 @@ def static_loads(
     def solved(model: Model) -> _Solved:
         (found, tip), (coarse, _) = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
         rounding = _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
-        distance = np.abs(found - coarse)  # at some stations the distance may be small by chance
+        distance = np.abs(found - coarse)  # at some stations the difference may be small by chance
         distance = np.maximum(distance, _ALONG * distance.max(axis=1, keepdims=True))
         error = BASES_OF_STATIC_LOADS.factor * distance + rounding
         return _Solved(model, found, error, tip)
@@ -174,7 +174,7 @@ def static_loads(
 
 
 class _Solved(NamedTuple):
-    """K outputs and errors by a model at C speeds and S stations, (C, S, K), and tip deflections (C, d).
+    """K outputs and errors by a model at C speeds and S stations, (C, S, K); tip deflections (C, d).
 
     The tip bends in d directions.
     """
@@ -185,7 +185,7 @@ class _Solved(NamedTuple):
     tip: np.ndarray
 
     def relative_error(self, outputs: StationOutputs) -> float:
-        """Compute the largest ratio of error to largest value over all quantities."""
+        """Compute each quantity's ratio of error to largest value along the span, and return the largest."""
         values, errors = (outputs.split(np.nan_to_num(np.abs(each))) for each in (self.value, self.error))
         sizes = {name: each.max(initial=0.0) for name, each in values.items()}
         return max((errors[name].max() / size for name, size in sizes.items() if size), default=0.0)
@@ -214,7 +214,7 @@ def _solve(
 def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarray:
     """Solve equilibrium coordinates (C, n); refuse stiffnesses (C, n, n) that are not positive definite."""
     size = np.sqrt(np.einsum("cii->ci", np.abs(K)))
-    size[size == 0] = 1.0  # functions without stiffness are not scaled
+    size[size == 0] = 1.0  # trial functions without stiffness are not scaled
     scaled = K / (size[:, :, None] * size[:, None, :])
     least = np.linalg.eigvalsh((scaled + scaled.swapaxes(1, 2)) / 2)[:, 0]
     if (lost := least <= _SINGULAR).any():

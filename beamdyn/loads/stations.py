@@ -23,16 +23,16 @@ from beamdyn.scene.scene import Scene
 Positions: TypeAlias = "float | Sequence[float] | np.ndarray"
 SectionPoints: TypeAlias = "Sequence[Sequence[float]] | np.ndarray"
 
-UNITS = {"force": "N", "moment": "N m", "curvature": "1/m", "strain": "", "stress": "Pa"}  # units of loads
-# Units in which tables and pictures show loads, and how many of each are one in SI.
+UNITS = {"force": "N", "moment": "N m", "curvature": "1/m", "strain": "", "stress": "Pa"}  # SI units
+# Units in which tables and plots show loads, and factors from SI to these units.
 _OF_SECTIONS = {"strain": (1e6, "1e-6"), "stress": (1e-6, "MPa")}
 SHOWN = {name: (1.0, unit) for name, unit in UNITS.items()} | _OF_SECTIONS
 
 _EVENLY = 21  # number of stations by default, in addition to both sides of each jump
 _MOST, _MOST_POINTS = 1001, 100
-_SAME = 1e-12  # distance over the length at which a position counts as a breakpoint, as breakpoints merge
-_BESIDE = 2e-12  # distance over the length at which the properties beside a jump are read
-_ROUNDING = 1e-9  # relative tolerance within which a point on the edge is inside
+_SAME = 1e-12  # distance over the beam's length below which a position counts as at a breakpoint
+_BESIDE = 2e-12  # distance from a jump, over the beam's length, at which section properties are evaluated
+_ROUNDING = 1e-9  # relative tolerance within which a point on the section's edge counts as inside
 # Largest difference of two models, over the largest load along the span, that still bounds the error.
 _LIMIT = 0.3
 _ROUNDING_OF_LOADS = 1e-12  # rounding error relative to the largest load along the span
@@ -47,7 +47,7 @@ class SpanStations:
     Parameters
     ----------
     xi : ndarray, shape (S,)
-        Positions x/L, ascending; a repeated one stands for the two sides of a jump.
+        Positions x/L, ascending; a repeated position stands for the two sides of a jump.
     inboard : ndarray of bool, shape (S,)
         Whether the cut is just inboard of the position, so that a mass there belongs to the part
         outboard; else it is just outboard.
@@ -58,15 +58,15 @@ class SpanStations:
 
     @property
     def beside(self) -> np.ndarray:
-        """Positions x/L (S,) at which section properties are read, on the side of the cut."""
+        """Positions x/L (S,) at which section properties are evaluated, on the side of the cut."""
         return np.clip(self.xi + np.where(self.inboard, -_BESIDE, _BESIDE), 0.0, 1.0)
 
 
 def stations_at(beam: Beam, at: Positions | None) -> SpanStations:
     """Build stations at positions [m], or by default evenly along the beam and on both sides of jumps.
 
-    A repeated position stands for both sides, the inboard one first; a single one stands for the
-    outboard side, at the tip for the inboard one.
+    A repeated position stands for both sides, the inboard side first; a single position stands for the
+    outboard side, or at the tip for the inboard side.
     """
     ends = np.array(beam.breakpoints)
     if at is None:
@@ -121,7 +121,7 @@ class StationOutputs:
 
     @property
     def places(self) -> dict[str, slice]:
-        """Slices of the components of each quantity, by name."""
+        """Slice of each quantity's components among all outputs, by the quantity's name."""
         ends = np.cumsum(self.sizes).tolist()
         return {name: slice(b - n, b) for name, n, b in zip(UNITS, self.sizes, ends, strict=True)}
 
@@ -131,7 +131,7 @@ class StationOutputs:
 
 
 class Sections(NamedTuple):
-    """Outputs of the sections at stations, points (S, P, 2) [m], and contributions missing in the strain."""
+    """Outputs at stations, points of the sections (S, P, 2) [m], and effects that the strain leaves out."""
 
     outputs: StationOutputs
     points: np.ndarray
@@ -196,7 +196,7 @@ def sections_at(
     axial = np.zeros((len(xi), 1, loads))
     if beam.axial_stiffness is not None:
         axial[:, 0, 0] = 1 / beam.axial_stiffness(xi)
-    # Stress is in balance with the moment, even where the clamp hinders the strain.
+    # The stress is in equilibrium with the moment, even where the clamp hinders the strain across the width.
     strain, strain_by_stress = (
         axial - np.einsum("spi,sik->spk", at_stations[..., :planes], each) for each in (curvature, of_free)
     )
@@ -223,7 +223,7 @@ def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
     if not np.isfinite(array).all():
         raise InvalidValue("points", points, "give finite numbers", unit="m")
     for side, name in enumerate(("first", "second")):
-        limit = half[:, side].min()  # nan stands for no limit
+        limit = half[:, side].min()  # nan: the section's edge is not known
         bad = np.abs(array[:, side]) > limit * (1 + _ROUNDING)
         bound = f"it lies outside the section: along its {name} direction the thinnest reaches {{limit}}"
         remedy = "leave {field} out: the outermost of each"
@@ -232,7 +232,7 @@ def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
 
 
 def _curvature(beam: Beam, xi: np.ndarray, planes: int) -> np.ndarray:
-    """Compute the curvature in each direction of the section per load, shape (S, d, 1 + 2 d)."""
+    """Compute the curvature in each direction of the section per unit load: shape (S, d, 1 + 2 d)."""
     turned = np.zeros(len(xi)) if beam.twist is None else beam.twist(xi)
     cos, sin = np.cos(turned), np.sin(turned)
     matrix = np.zeros((len(xi), planes, 1 + 2 * planes))
@@ -245,7 +245,7 @@ def _curvature(beam: Beam, xi: np.ndarray, planes: int) -> np.ndarray:
 
 
 def _with_camber(curvature: np.ndarray, section: Rectangle, length: float, xi: np.ndarray) -> np.ndarray:
-    """Compute the mean curvature by the loads and by the moment of camber, shape (S, d, 2 + 2 d).
+    """Compute the mean curvature per unit load and unit moment of camber: shape (S, d, 2 + 2 d).
 
     The bending moment is E I/(1 - nu^2) times the curvature, plus the moment of camber.
     """
@@ -309,7 +309,7 @@ def mode_error(
     of_moments = loads - 1 - planes  # moments, including that of camber, if there is one
     factors = MODES_OF_MOMENTS.factor, MODES_OF_FORCES.factor, MODES_OF_MOMENTS.factor
     margins = np.repeat(factors, [1, planes, of_moments])
-    # The largest force, over the whole length.
+    # The rounding error of moments is relative also to the largest force times the length of the beam.
     force = along_span[..., : 1 + planes].max(axis=-1, keepdims=True)
     moment = np.maximum(along_span[..., 1 + planes :].max(axis=-1, keepdims=True), length * force)
     both = [np.repeat(force, 1 + planes, axis=-1), np.repeat(moment, of_moments, axis=-1)]
@@ -321,5 +321,5 @@ def mode_error(
 def through(outputs: StationOutputs, errors: np.ndarray) -> np.ndarray:
     """Convert errors of loads (..., S, 1 + 2 d) to errors of outputs (..., S, K); errors add up."""
     weights = np.abs(outputs.matrix)
-    with np.errstate(invalid="ignore"):  # infinite errors do not matter where they have no weight
+    with np.errstate(invalid="ignore"):  # an infinite error times 0 counts as 0
         return np.where(weights != 0, weights * errors[..., None, :], 0.0).sum(axis=-1)

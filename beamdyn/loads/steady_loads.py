@@ -30,8 +30,8 @@ from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.response import SteadyResponse
 from beamdyn.steady.vibration import combine_pairs, vibration_of
 
-_BATCH = 2000  # number of sums of lines whose largest values are sought at once
-_NEGLIGIBLE = 1e-12  # size of a line of the tip, relative to the sum of all, below which it is left out
+_BATCH = 2000  # number of sums of spectral lines whose largest values are computed at once
+_NEGLIGIBLE = 1e-12  # amplitude of a line of the tip, over the sum of all, below which it is left out
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class SteadyLoads(span_loads.SpanLoads):
     harmonics : ndarray of int, shape (l, 2)
         Multiples j of the rotation and k of the road of each line.
     lines : tuple of Line, length l
-        Lines (frequencies) of the loads, named by what excites them; the static line is the mean.
+        Spectral lines of the loads, named by their excitation; the static line is the mean.
 
     Examples
     --------
@@ -69,7 +69,7 @@ class SteadyLoads(span_loads.SpanLoads):
     case: ClassVar[span_loads.LoadCase] = span_loads.SPEEDS
 
     def line_amplitude(self, quantity: str) -> np.ndarray:
-        """Return complex amplitudes a of each line of a quantity: shape (C, S, k, l).
+        """Return complex amplitudes a of each spectral line of a quantity: shape (C, S, k, l).
 
         The quantity is the sum of Re(a exp(i (j theta + k chi))), as in `SteadyResponse`.
         """
@@ -90,7 +90,7 @@ class SteadyLoads(span_loads.SpanLoads):
         return np.real(np.tensordot(self.line_amplitude(quantity), np.exp(1j * phase), axes=1))
 
     def plot(self, ax: Axes | None = None, quantity: str = "moment") -> Axes:
-        """Draw the largest magnitude of a quantity over all speeds along the span."""
+        """Plot the largest magnitude of a quantity over all speeds along the span."""
 
         def largest(name: str) -> np.ndarray:
             return np.nanmax(self.values(name), axis=0, keepdims=True)
@@ -172,7 +172,7 @@ def steady_loads(
 
 @dataclass(frozen=True)
 class LoadLines:
-    """Outputs at stations as sums of lines Re(a exp(i (j theta + k chi))).
+    """Outputs at stations as sums of spectral lines Re(a exp(i (j theta + k chi))).
 
     The phases are theta of the rotation and chi of the road.
 
@@ -200,7 +200,7 @@ class LoadLines:
         return found.reshape(self.amplitude.shape[:-1])
 
     def distance_from(self, other: LoadLines) -> np.ndarray:
-        """Sum the distances of all lines' amplitudes from another solution: shape (C, S, K).
+        """Sum the differences of all lines' amplitudes from those of another solution: shape (C, S, K).
 
         The sum is inf where only one of the two has a steady response.
         """
@@ -210,7 +210,7 @@ class LoadLines:
         return np.where(known[0] ^ known[1], np.inf, difference)
 
     def _over(self, names: list[tuple[int, ...]]) -> np.ndarray:
-        """Select the amplitudes of named lines; missing lines are 0."""
+        """Return the amplitudes of lines given by name; missing lines are 0."""
         found = np.zeros((*self.amplitude.shape[:-1], len(names)), dtype=complex)
         found[..., [names.index(tuple(h)) for h in self.harmonics]] = self.amplitude
         return found
@@ -243,7 +243,7 @@ def lines_of_response(
     rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
     used = dict.fromkeys([*rows.load, *rows.position, *rows.velocity])
     spectra = periodic_system.expand_quantities(equations, used, motion, speeds)
-    reached = set(pairs) | {(0, 0)}  # harmonics of coordinates and root, followed by those of their products
+    reached = set(pairs) | {(0, 0)}  # harmonics of coordinates and root motion, then of their products
     for quantity in rows.load:
         reached |= periodic_system.list_harmonics(spectra[quantity])
     for quantity in (*rows.position, *rows.velocity):
@@ -259,7 +259,7 @@ def lines_of_response(
 def _solve(
     response: SteadyResponse, equations: Equations
 ) -> tuple[list[periodic_system.Pair], np.ndarray, np.ndarray]:
-    """Solve for the coordinates with the harmonics of one more coupling by the periodic coefficients.
+    """Solve for the coordinates with further harmonics, to which periodic coefficients couple the given ones.
 
     Lines of the tip that are within rounding error at all speeds are left out.
 
@@ -295,7 +295,7 @@ def _expand(
     rates: np.ndarray,
     q: np.ndarray,
 ) -> np.ndarray:
-    """Compute complex harmonics (C, S, K, U) of outputs; the U harmonics include the coordinates'."""
+    """Compute complex amplitudes (C, S, K, U) of the outputs at U harmonics."""
     everywhere = np.zeros((len(rates), len(union), q.shape[-1]), dtype=complex)
     everywhere[:, [union.index(h) for h in pairs]] = q
     velocity = 1j * (rates @ np.array(union).T)[..., None] * everywhere

@@ -24,12 +24,12 @@ from beamdyn.scene.scene import Scene
 from beamdyn.transient.simulate import Transient
 
 _BY_DEFLECTION = "as of the largest deflection"
-_MOST_TIMES = 2000  # largest number of times of the result by default
+_MOST_TIMES = 2000  # largest default number of times in the result
 
 
 @dataclass(frozen=True)
 class EquivalentRange:
-    """Range of equal cycles that do the same damage as the counted ones at one station (Miner's rule).
+    """Range of equal cycles with the same damage as the counted cycles at one station (Miner's rule).
 
     Parameters
     ----------
@@ -103,27 +103,27 @@ class TransientLoads(span_loads.SpanLoads):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the largest value by effects left out; unknown if the run began at given coordinates."""
+        """Changes of the largest value by effects left out; unknown if initial coordinates were given."""
         from_rest = isinstance(self.run.request.initial, str)
         return super().left_out_effects if from_rest else nothing_known(self.scene)
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Find the largest value with an effect, from another run or from the change of deflection."""
+        """Find the largest value with an effect added, by another simulation or from the deflection."""
         return self.as_deflection(self.judged(self), name) or super().solve(scene, name)
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate values with large deflection from the change of the run's largest deflection."""
+        """Estimate load values with large deflection from the change of the largest deflection."""
         return self.as_deflection(straight, LARGE_DEFLECTION.name) or SolvedValues(straight, reason)
 
     @property
     def bending_speed(self) -> float:
-        """Largest speed of the run [rad/s], at which large deflection is judged."""
+        """Largest speed of the transient [rad/s], at which large deflection is estimated."""
         return find_speed_range(self.run.request.motion, self.run.path.end)[-1]
 
     def as_deflection(self, value: np.ndarray, name: str) -> SolvedValues | None:
-        """Estimate a value with an effect by the change of the tip deflection; None if not applicable.
+        """Estimate a load with an effect from the change of the tip deflection; None if not applicable.
 
-        It applies to large deflection, and to effects judged by the frequency alone.
+        The estimate applies to large deflection, and to effects estimated from the frequency alone.
         """
         of_run = self.run.left_out_effects
         if name != LARGE_DEFLECTION.name and of_run.assumed.get(name) != BY_FREQUENCY:
@@ -132,7 +132,7 @@ class TransientLoads(span_loads.SpanLoads):
         return SolvedValues(value * (1 + of_run.changes[name]), reason, _BY_DEFLECTION)
 
     def with_equivalent_ranges(self, found: tuple[EquivalentRange, ...]) -> TransientLoads:
-        """Copy the loads with ranges of equal cycles, whose model error can then be stated."""
+        """Return a copy of the loads with equivalent ranges, so that their model error can be stated."""
         copy = replace(self, equivalent_ranges=found)
         vars(copy)["again"] = self.again
         return copy
@@ -145,7 +145,7 @@ class TransientLoads(span_loads.SpanLoads):
     def peaks(
         self, quantity: str = "strain", start: float | None = None, end: float | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Find values of largest magnitude from `start` to `end` [s], also between the result's times.
+        """Find values of largest magnitude from `start` to `end` [s], also between times of the result.
 
         Returns
         -------
@@ -164,7 +164,7 @@ class TransientLoads(span_loads.SpanLoads):
         start: float | None = None,
         end: float | None = None,
     ) -> span_loads.LargestLoad:
-        """Find the largest magnitude of a quantity from `start` to `end` [s], also between the times.
+        """Find the largest magnitude of a quantity from `start` to `end` [s], also between listed times.
 
         Parameters
         ----------
@@ -191,7 +191,7 @@ class TransientLoads(span_loads.SpanLoads):
         start: float | None = None,
         end: float | None = None,
     ) -> Axes:
-        """Draw the range of a quantity along the span from `start` to `end` [s], or over the whole run."""
+        """Plot the range of a quantity along the span from `start` to `end` [s], or over the whole run."""
 
         def within(name: str) -> np.ndarray:
             first, last = window_in(self.run, start, end)
@@ -200,7 +200,7 @@ class TransientLoads(span_loads.SpanLoads):
         return self.draw(ax, quantity, within, span_loads.with_unit(quantity))
 
     def plot_over_time(self, station: int = 0, quantity: str = "moment", ax: Axes | None = None) -> Axes:
-        """Draw a quantity over time at a station given by its index, such as the root's bending moment."""
+        """Plot a quantity over time at a station given by its index, such as the root's bending moment."""
         values, labels = self.values(quantity)[:, station], self.components(quantity)
         scale, unit = SHOWN[quantity]
         label = f"{quantity} at {self.say_length(self.x[station])} [{unit}]"
@@ -264,7 +264,7 @@ def transient_loads(
 
 
 def _times_in(run: Transient, t: np.ndarray | Sequence[float] | float) -> np.ndarray:
-    """Check that times (T,) [s] are within the run."""
+    """Check that times (T,) [s] are within the simulated time; the default is at most 2000 of its times."""
     times = ascending("t", t)
     if not (times.min() >= run.path.start and times.max() <= run.path.end * (1 + 1e-12)):
         bound = f"times must lie in the run, from {run.path.start:g} to {run.path.end:g} s"

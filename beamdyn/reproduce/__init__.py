@@ -1,4 +1,4 @@
-"""Reproduction of published numbers: each is printed beside ours, with its deviation and a verdict."""
+"""Reproduction of published numbers: each is printed beside our result, with deviation and verdict."""
 
 from __future__ import annotations
 

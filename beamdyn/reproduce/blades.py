@@ -24,7 +24,7 @@ def stations(name: str) -> dict[str, Any]:
 
 
 def blade_scene(name: str, physics: bd.Physics | None = None, twisted: bool = True) -> bd.Scene:
-    """Build the scene of a blade on its hub: outward, with flap out of plane where the twist is 0."""
+    """Build the scene of a blade on its hub: outward, with flap out of the plane of rotation at twist 0."""
     data = stations(name)
 
     def along(values: np.ndarray) -> bd.Table:
@@ -43,7 +43,7 @@ def blade_scene(name: str, physics: bd.Physics | None = None, twisted: bool = Tr
 
 
 def whole_blade_scene(name: str, by_elements: bool = False) -> bd.Scene:
-    """Build the blade with torsion and section offsets, as BModes reads it, or by BModes' elements.
+    """Build the blade with torsion and section offsets, by the stations or by the elements of BModes.
 
     Each element of BModes has the section at its middle, but the twist varies along it.
     """
@@ -71,7 +71,7 @@ def whole_blade_scene(name: str, by_elements: bool = False) -> bd.Scene:
 
 
 def _compare_blades(key: str, discretization: str = "ritz") -> Iterator[tuple[str, PrintedValue]]:
-    """Compare published frequencies [Hz], under a key of the data, with ours, each with the blade's name."""
+    """Compare published frequencies [Hz], under a key of the data, with ours; yield blade and comparison."""
     for row in load("blades")["blade"]:
         if printed := row.get(key):
             whole = key == "frequency_printed_by_bmodes"
@@ -83,14 +83,14 @@ def _compare_blades(key: str, discretization: str = "ritz") -> Iterator[tuple[st
 
 
 def entries_of_blades(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
-    """Compare the frequencies [Hz] of all blades, each with the name of its blade."""
+    """Compare published frequencies [Hz] of all blades with ours; yield the blade's name and comparison."""
     for key in ("frequency", "frequency_without_twist"):
         for name, entry in _compare_blades(key, discretization):
             yield stations(name)["title"], entry
 
 
 def printed_by_bmodes() -> Iterator[Comparison]:
-    """Compare with the frequencies [Hz] that BModes prints for its own blade, from its elements' sections."""
+    """Compare our frequencies [Hz] of BModes' test blade with those that BModes prints."""
     for _, entry in _compare_blades("frequency_printed_by_bmodes"):
         what, decimals = f"{entry.where}, mode {entry.mode}", len(entry.printed.partition(".")[2])
         numbers = float(entry.printed), entry.ours, entry.error, decimals
@@ -98,7 +98,7 @@ def printed_by_bmodes() -> Iterator[Comparison]:
 
 
 def notes() -> Iterator[str]:
-    """Yield the notes on the table of BModes."""
+    """Yield the notes on the table of BModes, a program for blades."""
     yield (
         "(10) With torsion and offsets, by the sections in the middle of the 12 elements of BModes' own "
         "input file, as it takes them.  Those of its stations have frequencies 1.6 to 4.7 % higher: so much "

@@ -24,7 +24,7 @@ class PrintedValue:
     ours, error : float
         Our value and its estimated absolute error.
     exact : str
-        For a misprint, the value by a method that shares nothing with ours; else empty.
+        For a misprint, the value by a method independent of ours; else empty.
     bounds : tuple of float, optional
         For a misprint, guaranteed lower and upper bounds, where the theorem covers the scene.
     """
@@ -44,17 +44,17 @@ class PrintedValue:
 
     @property
     def in_print(self) -> bool:
-        """Whether our value rounds to the printed digits, whatever its error."""
+        """Whether our value rounds to the printed digits, regardless of our error."""
         return abs(self.ours - float(self.printed)) <= self.rounding
 
     @property
     def agrees(self) -> bool:
-        """Whether our value differs from the print by no more than rounding and our error."""
+        """Whether our value differs from the printed value by at most rounding plus our error."""
         return abs(self.ours - float(self.printed)) <= self.rounding + self.error
 
     @property
     def is_erratum(self) -> bool:
-        """Whether a misprint is proven: ours equals the third value, and bounds exclude the print."""
+        """Whether a misprint is proven: our value equals `exact`, and bounds exclude the printed value."""
         if not self.exact:
             return False
         printed, exact, slack = float(self.printed), float(self.exact), half_unit(self.exact)
@@ -66,17 +66,17 @@ class PrintedValue:
 
     @property
     def off_by(self) -> float:
-        """Deviation of the print from `exact`, or else from our value, in units of its last digit."""
+        """Deviation of the printed value from `exact`, or else from ours, in units of the last digit."""
         return (float(self.printed) - float(self.exact or self.ours)) / (2 * self.rounding)
 
     @property
     def as_expected(self) -> bool:
-        """Whether print and our value agree, or the misprint is proven where one is claimed."""
+        """Whether the printed value and ours agree, or a claimed misprint is proven."""
         return self.is_erratum if self.exact else self.agrees
 
     @property
     def relative_deviation(self) -> float:
-        """Deviation of our value from the print, relative to the print."""
+        """Deviation of our value from the printed value, relative to the latter."""
         return abs(self.ours / float(self.printed) - 1)
 
     def cells(self) -> list[str]:
@@ -98,7 +98,7 @@ def half_unit(text: str) -> float:
 def compare_modes(
     where: str, printed: Iterable[object], ours: Iterable[float], errors: Iterable[float]
 ) -> list[PrintedValue]:
-    """Compare the printed values of a row's modes with ours, whose errors are relative."""
+    """Compare a row's printed values, one for each mode, with ours, given relative errors of ours."""
     rows = enumerate(zip(map(str, printed), map(float, ours), map(float, errors), strict=False), 1)
     return [PrintedValue(where, mode, text, value, error * abs(value)) for mode, (text, value, error) in rows]
 
@@ -139,7 +139,7 @@ class Summary:
 
     @property
     def as_expected(self) -> bool:
-        """Whether all values agree, or are proven errata."""
+        """Whether all printed values agree with ours, or are proven misprints."""
         return not self.outside
 
     @property

@@ -1,4 +1,4 @@
-"""The inward beam of Lee and Yoo (2019): every number of the paper beside ours, with notes on differences.
+"""The inward beam of Lee and Yoo (2019): all numbers of the paper beside ours, with notes on differences.
 
 The paper's equations are linear about the straight beam. Its numbers stand beside those of the linear model
 and of an inextensible beam that bends by any angle.
@@ -32,14 +32,14 @@ MM = 1e3  # millimetres in a metre
 
 # Names of the sources of values; numbers in parentheses refer to notes.
 _PAPER, _ANSYS, _RECURDYN, _OWN = "paper", "ANSYS (4)", "RecurDyn (4)", "independent (5)"
-_BENDS = "large deflection (9)"  # reason why a beam with large deflection differs from the paper's
+_BENDS = "large deflection (9)"  # reason why large deflection changes the paper's value
 _METHODS = (("Ritz", "ritz"), ("FE", "fem"))
 _MODELS = (("Ritz", "ritz", "bending"), ("FE", "fem", "bending"), ("with stretch", "ritz", "stretch"))
-_MODES = 5  # number of modes of the published run
+_MODES = 5  # number of modes of the published simulation
 _FIGURE_6 = np.linspace(0, TOP, 151)  # speeds of Fig. 6 [rad/s]
-_DAMPING = 0.01  # damping ratio with which the ring-down decays before 20 s
-_ROUNDING = 1e-12  # relative error of a value that a basis of given size defines exactly
-_JUDGED = (100.0, 400.0)  # speeds at which Fig. 8 and 9 are judged [rad/s]: that of Table 2, and a higher one
+_DAMPING = 0.01  # damping ratio with which free vibration decays before 20 s
+_ROUNDING = 1e-12  # relative error of a value that is exact for a given number of functions
+_JUDGED = (100.0, 400.0)  # speeds at which Fig. 8 and 9 are checked [rad/s]: one of Table 2, and a higher one
 
 
 def inward_scene(setting_angle: float = 0.0, **physics: Any) -> bd.Scene:
@@ -60,7 +60,7 @@ def rolling_scene(**physics: Any) -> bd.Scene:
 
 
 def _compare(what: str, ours: Iterable[Any], *known: tuple) -> Iterator[Comparison]:
-    """Compare our value and error with known values, given as source, value, and maybe decimals and reason.
+    """Compare our value and error with known values: source, value, and optionally decimals and a reason.
 
     By default the decimals are those with which Python prints the value.
     """
@@ -120,7 +120,7 @@ def limits_of_setting_angle() -> Iterator[Comparison]:
 
 
 def buckling_speed() -> Iterator[Comparison]:
-    """Compare the speed at which the inward beam buckles with our own reference: the paper prints none."""
+    """Compare the inward beam's buckling speed with our own reference, as the paper prints none."""
     for name, method in _METHODS:
         point = bd.critical_point(inward_scene(), method)
         ours = point.speed, point.error * point.speed
@@ -132,7 +132,7 @@ def buckling_speed() -> Iterator[Comparison]:
 
 @cache
 def run(modes: int = _MODES, discretization: str = "ritz", *, large_deflection: bool = False) -> bd.Transient:
-    """Simulate the run of Table 3; with large deflection, which takes far longer, less accurately."""
+    """Simulate the spin-up of Table 3; with large deflection less accurately, as it takes far longer."""
     scene, tolerance = rolling_scene(large_deflection=large_deflection), 1e-5 if large_deflection else 1e-6
     return bd.simulate(scene, VALUES["scene"]["t_end"], modes, tolerance, discretization=discretization)
 
@@ -184,13 +184,13 @@ def steady_amplitudes() -> Iterator[Comparison]:
 
 
 def crossings(discretization: str = "ritz", gravity: float = 0.0) -> bd.Crossings:
-    """Find the speeds at which an excited frequency equals the first natural one: Fig. 7."""
+    """Find the speeds [rad/s] at which an excitation frequency equals the first natural one (Fig. 7)."""
     scene = replace(rolling_scene(), gravity=gravity)
     return bd.resonance_speeds(scene, TOP, 1, discretization=discretization)
 
 
 def resonances() -> Iterator[Comparison]:
-    """Compare with Fig. 7: speeds [rad/s] at which an excited frequency equals the first natural one."""
+    """Compare the speeds [rad/s] of `crossings` with those in Fig. 7 of the paper."""
     further, forced = KNOWN["further_resonance_speeds"], KNOWN["resonance_speeds"]
     for name, method in _METHODS:
         yield from _by_kind(crossings(method), "forced", forced, name)
@@ -200,7 +200,7 @@ def resonances() -> Iterator[Comparison]:
 
 
 def _by_kind(found: bd.Crossings, kind: str, known: list[float], name: str) -> Iterator[Comparison]:
-    """Compare the crossings of a kind with known ones [rad/s]."""
+    """Compare the crossings of one kind of excitation with known ones [rad/s]."""
     for c, value in zip([c for c in found if c.kind == kind], known, strict=True):
         yield from _compare(f"{kind} {c.line.name}, {name}", (c.speed, c.error * c.speed), (_OWN, value))
 
@@ -222,11 +222,11 @@ def sweep_peak_comparisons(result: bd.Sweep) -> Iterator[Comparison]:
         yield from _compare(f"speed of peak {i}", (result.speeds[index], half), (_OWN, value, 4))
 
 
-# A beam that bends by any angle ---------------------------------------------------------------------------
+# Large deflection: a beam that bends by any angle ---------------------------------------------------------
 
 
 def first_frequencies_of_bent_beam() -> Iterator[Comparison]:
-    """Compare the first frequency [Hz] with that of linear equations at the angles of Fig. 8 and 9."""
+    """Compare first frequencies [Hz] with large deflection and linear ones, at the angles of Fig. 8 and 9."""
     rows: list[tuple[float, float, Any]] = [
         (figure["setting_angle"][1], speed, None)
         for figure in (PAPER["figures"]["fig_8"], PAPER["figures"]["fig_9"])
@@ -250,13 +250,13 @@ def limits_of_bent_beam() -> Iterator[Comparison]:
 
 @cache
 def _bent_limit(speed: float) -> tuple[float, float]:
-    """Find the angle [deg] at which the first frequency's slope at a speed changes sign, and its error.
+    """Find the setting angle [deg], with error, at which the first frequency's slope over speed changes sign.
 
-    The slope is taken over a small step of speed, and extrapolated to step 0.
+    The slope is a difference over a small step of speed, extrapolated to step 0.
     """
 
     def change(angle: float, step: float) -> float:
-        # The solver is accurate to 1e-13.
+        # The frequencies are accurate to 1e-13.
         solver = Model(inward_scene(angle, large_deflection=True), bd.Ritz(16)).solver
         around = np.array([speed - step, speed + step]) if speed else np.array([0.0, step])
         before, after = np.abs(solver.eigenvalues(around, 1)[:, 0]) ** 2

@@ -30,7 +30,7 @@ def pictures(fig_6_sweep: bd.Sweep) -> dict[str, Callable[[], Axes | Figure]]:
 
 
 def _axes(title: str) -> Axes:
-    """Make the axes of a figure with a single picture."""
+    """Make the axes of a figure with a single plot."""
     ax = Figure(figsize=(7.5, 4.8), layout="constrained").subplots()
     ax.set_title(title)
     return ax
@@ -40,7 +40,7 @@ def _fig_4() -> Axes:
     """Draw the first frequency over speed, with the values of ANSYS."""
     ax, scene = _axes("Fig. 4: first natural frequency, setting angle 0"), inward_beam.inward_scene()
     critical = bd.critical_point(scene).speed
-    # Speeds are dense where the frequency falls to 0.
+    # Speeds are closely spaced where the frequency falls to 0.
     speeds = critical * np.sin(np.linspace(0, np.pi / 2 - 1e-3, 301))
     ax.set_xlim(-4, 204)
     plot_locus(speeds, bd.frequency_locus(scene, speeds, 1).frequency, ax, ["ours (Ritz)"], critical)
@@ -108,7 +108,7 @@ def _fig_9() -> Figure:
 
 
 def _three_panels(angles: Sequence[float], top: float, name: str, limit: str) -> tuple[Figure, Axes, Axes]:
-    """Make Fig. 8 or 9 with its third panel (a beam that bends) drawn; return the other two axes, too."""
+    """Make Fig. 8 or 9 with the third panel (large deflection) drawn; return also the other two axes."""
     figure = Figure(figsize=(16, 4.8), layout="constrained")
     left, right, bent = figure.subplots(1, 3)
     figure.suptitle(f"{name}: first natural frequency on either side of {limit} {_OUTSIDE}")

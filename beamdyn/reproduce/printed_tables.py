@@ -28,7 +28,7 @@ _STRETCHED: dict[str, tuple[Discretization, Discretization]] = {
     "ritz": (bd.Ritz(16), bd.Ritz(24)),
     "fem": (bd.Fem(40), bd.Fem(80)),
 }
-_ROUNDING = 1e-13  # relative error of a converged stretch
+_ROUNDING = 1e-13  # relative error of the converged axial stretch
 
 Entries = Mapping[str, Sequence[PrintedValue]]  # printed values, by their source
 Errata = Sequence[tuple[str, PrintedValue]]
@@ -42,7 +42,7 @@ def _by_source(entries: Iterable[tuple[str, PrintedValue]]) -> Entries:
 
 
 def summarize(entries_by: Callable[[str], Entries]) -> list[Summary]:
-    """Summarize entries for each source and discretization; `entries_by` makes those of a discretization."""
+    """Summarize printed values by source and discretization; `entries_by(discretization)` compares them."""
     found = {name: entries_by(discretization) for name, discretization in _DISCRETIZATIONS.items()}
     sources = next(iter(found.values()))
     return [summarize_entries(source, name, found[name][source]) for source in sources for name in found]
@@ -52,7 +52,7 @@ def summarize(entries_by: Callable[[str], Entries]) -> list[Summary]:
 
 
 def compare_papers() -> tuple[list[Summary], Errata]:
-    """Compare all values: return summaries by source and discretization, and errata with their sources."""
+    """Compare all printed values: return summaries by source and discretization, and errata with sources."""
     found = all_entries(next(iter(_DISCRETIZATIONS.values())))
     errata = [(source, entry) for source, entries in found.items() for entry in entries if entry.exact]
     return summarize(all_entries), errata
@@ -127,9 +127,9 @@ def _cable(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
 
 
 def _stretch(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
-    """Compare the centrifugal stretch of a beam at its tip [m] with its closed form."""
+    """Compare the centrifugal stretch of a beam at its tip [m] with the closed form."""
     given = values_alone(load("code_aster")["stretch"])
-    area = 1e-4  # any area [m2], as the stretch does not depend on it
+    area = 1e-4  # arbitrary area [m2]: the stretch does not depend on it
     mass, stiffness = given["density"] * area, given["youngs_modulus"] * area
     beam = bd.Beam.from_stiffness(given["length"], mass, 1.0, axial_stiffness=stiffness)
     coarse, fine = (tip_stretch(beam, given["speed"], d) for d in _STRETCHED[discretization])

@@ -20,7 +20,7 @@ from beamdyn.scene.profile import Profile, Property, as_profile, check_positive,
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.section_matrices import SectionMatrices
 
-_STRAIGHT = 1e-9  # twist [rad] below which a beam is not twisted: it changes nothing by more than 1e-18
+_STRAIGHT = 1e-9  # twist [rad] below which a beam counts as untwisted: its effects are below 1e-18
 
 
 @dataclass(frozen=True)
@@ -132,8 +132,8 @@ class Beam(FieldsOnly, OneLine):
             kind("section", self.section, Rectangle, "Beam.rectangular makes one")
             made = self.section.properties.items()
             if not all(input_checks.alike(getattr(self, name), profile) for name, profile in made):
-                set_fields(self, section=None)  # replacing a property detaches the beam from its section
-        if self.has_offsets:  # offsets exclude a rectangle, whose centres coincide
+                set_fields(self, section=None)  # the section no longer determines a replaced property
+        if self.has_offsets:  # offsets exclude a rectangular section, whose centres coincide
             set_fields(self, section=None)
         along = (name for name in (*_REQUIRED, *OPTIONAL_PROPERTIES) if name != "outer_fibre")
         input_checks.check_matrices(self, [name for name in along if name in PROPERTY_UNITS])
@@ -148,7 +148,7 @@ class Beam(FieldsOnly, OneLine):
 
     @property
     def strip(self) -> Rectangle | None:
-        """The rectangle, with its layers if it has some, whose deflections may vary across the width."""
+        """The rectangular section, with its layers if any, for deflections that vary across the width."""
         return self.section if self.electrodes is None else self.electrodes.laminate
 
     def with_section(self, section: Rectangle) -> Beam:
@@ -317,7 +317,7 @@ class Beam(FieldsOnly, OneLine):
             the section's radius of gyration would exceed the outer fibre or the length; or if the twist seems
             to be in degrees: beyond one turn, or half a turn with at most two decimals.
         """
-        given = {**locals()}  # arguments of this method, by name
+        given = {**locals()}  # all arguments of this method, by name
         if second_shear_stiffness is None:
             given["second_shear_stiffness"] = shear_stiffness
         length, made = size("length", length, "m"), _along(given)
@@ -383,7 +383,7 @@ class Beam(FieldsOnly, OneLine):
         return cls(tip=tip, point_masses=point_masses, point_springs=point_springs, **made)
 
     def headline(self) -> Iterator[str]:
-        """Yield length, mass per length and bending stiffness from root to tip, and the bodies, as text."""
+        """Yield length, mass per length and bending stiffness from root to tip, and bodies, as text."""
         yield number(self.length, "m")
         for name, unit, letters in (("mass_per_length", "kg/m", ""), ("bending_stiffness", "N m2", "EI ")):
             yield letters + spanned(getattr(self, name)(np.linspace(0, 1, 11)), unit)
@@ -397,7 +397,7 @@ class Beam(FieldsOnly, OneLine):
         return self._hash
 
     @cached_property
-    def _hash(self) -> int:  # hashed once: it has many properties, and caches ask often
+    def _hash(self) -> int:  # the hash is cached: a beam has many properties, and caches need its hash often
         return hash(tuple(getattr(self, f.name) for f in fields(self) if f.compare))
 
     @cached_property
@@ -455,7 +455,7 @@ class Beam(FieldsOnly, OneLine):
         return 0.0 if self.tension_offset is None else float(self.tension_offset.end_values()[1][-1])
 
 
-PROPERTY_UNITS = {  # units of all properties that vary along a beam, but for its angles
+PROPERTY_UNITS = {  # units of all properties that vary along a beam, except angles
     "mass_per_length": "kg/m",
     "bending_stiffness": "N m2",
     "second_bending_stiffness": "N m2",
@@ -482,7 +482,7 @@ OPTIONAL_PROPERTIES = tuple(
 
 
 def _along(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Convert the given arguments of a beam that vary along it to profiles, with its breakpoints."""
+    """Convert the given arguments that vary along a beam to profiles with the beam's breakpoints."""
     return {
         name: (to_profile if name in OF_ANY_SIGN else as_profile)(name, given[name], given["breakpoints"])
         for name in (*_REQUIRED, *OPTIONAL_PROPERTIES)

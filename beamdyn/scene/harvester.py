@@ -44,7 +44,7 @@ from beamdyn.scene.rectangle import Coupled, Laminate, Material, Rectangle, comp
 Connection = Literal["series", "parallel", "unimorph"]
 _STRAINED, _STRESSED = ("e31", "c11e", "eps33s"), ("d31", "s11e", "eps33t")
 _SETS = _STRAINED, _STRESSED
-_EVEN = 1e-9  # relative change of a side under the layers that is rounding only
+_EVEN = 1e-9  # relative change of width or thickness under the layers below which it is rounding
 _SHORT: Any = {"least": 0, "infinite": "open circuit", "remedy": "0 is a short circuit, inf an open one"}
 
 
@@ -140,7 +140,7 @@ class Harvester(FieldsOnly):
         refuse(bad, "harvester.start", self.start, "m", bound, "are the two swapped?", limit=self.end)
 
     def _check_material(self) -> None:
-        """Refuse material constants that are not one complete set of three, or that no material can have."""
+        """Refuse material constants that are not one complete set of three, or physically impossible."""
         strained, stressed = ([n for n in names if getattr(self, n) is not None] for names in _SETS)
         if (strained, stressed) not in (([*_STRAINED], []), ([], [*_STRESSED])):
             missing = [n for n in (_STRAINED if strained else _STRESSED) if getattr(self, n) is None]
@@ -201,7 +201,7 @@ class Harvester(FieldsOnly):
     def _as_plate(
         self, bare: Rectangle, span: tuple[float, float], sides: tuple[float, float], stiffness: float
     ) -> tuple[Laminate, Coupled | None]:
-        """Return the strip with layers as a plate, and what its electrodes do where it is held flat.
+        """Return the strip with layers as a plate, and the electrodes' constants of sections held flat.
 
         If Poisson's ratio of the strip or of the layers is not known, the plate has none, and None stands for
         the electrodes.  The stiffness per width is that of the beam [N m].
@@ -254,7 +254,7 @@ class Harvester(FieldsOnly):
 
 @dataclass(frozen=True)
 class Electrodes(FieldsOnly):
-    """Electrodes of layers on a beam, with the constants that the equations of motion use.
+    """Electrodes of piezoelectric layers on a beam, with constants of the equations of motion.
 
     Parameters
     ----------
@@ -291,17 +291,17 @@ class Electrodes(FieldsOnly):
 
     @property
     def moment(self) -> float:
-        """Bending moment per voltage [N m/V] in the model of the scene."""
+        """Bending moment per voltage [N m/V], of free or of flat sections, as the scene models them."""
         return self.flat.moment if self.across and self.flat is not None else self.coupling
 
     @property
     def held_flat(self) -> Electrodes:
-        """The electrodes with the constants of sections that are held flat, over their whole length."""
+        """The electrodes with the constants of sections that are held flat over the electrodes' length."""
         assert self.flat is not None, "both Poisson's ratios are given"
         return replace(self, coupling=self.flat.moment, capacitance_per_length=self.flat.capacitance)
 
     def with_ratio(self, ratio: float) -> Electrodes:
-        """Return the electrodes with a Poisson's ratio of strip and layers where none is given."""
+        """Return the electrodes with a Poisson's ratio for strip and layers where none is given."""
         section, layers = self.bare.section, self.harvester
         of_strip = ratio if section.poissons_ratio is None else section.poissons_ratio
         of_layers = ratio if layers.poissons_ratio is None else layers.poissons_ratio
@@ -319,7 +319,7 @@ class Electrodes(FieldsOnly):
         return 0 < self.resistance < math.inf
 
     def inside(self, fraction: np.ndarray | float) -> Any:
-        """Convert fractions of the layers' length to positions x/L, kept inside the layers' ends."""
+        """Convert fractions of the layers' length to positions x/L, limited to the layers' ends."""
         first, last = self.span
         return first + (last - first) * (_EVEN + (1 - 2 * _EVEN) * fraction)
 

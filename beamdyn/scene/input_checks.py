@@ -1,4 +1,4 @@
-"""Checks of a beam and its mount: what must be given together, and what looks like a mistake of units.
+"""Checks of a beam and its mount: inputs that belong together, and probable mistakes of units.
 
 Mistakes are refused, and warned of where the input may be meant.  What makes an answer doubtful is checked in
 `beamdyn.scene.validity`, and reported in the results.
@@ -20,7 +20,7 @@ from beamdyn.scene.profile import Profile
 from beamdyn.scene.section_matrices import SectionMatrices
 
 Beam = Any  # `beamdyn.scene.beam.Beam`, whose module imports this one
-# Positions that differ by less, over the length, differ by rounding only: breakpoints merge.
+# Difference of two positions over the length, below which it is rounding: the breakpoints are merged.
 _ROUNDING = 1e-12
 _TURNS_BACK = np.pi / 2  # kink [rad] of the axis at which the axis runs back on itself
 _GIVE_RADIANS = "is it in degrees? give math.radians(...)"
@@ -95,14 +95,14 @@ def check_points(beam: Beam, name: str, wanted: type) -> None:
 
 
 def alike(given: Profile | None, made: Profile | None) -> bool:
-    """Whether a property equals the one derived from a section, perhaps on more segments."""
+    """Return whether a given property equals the one derived from a section, on any segments."""
     return given == made or (
         given is not None and made is not None and given == made.split(given.breakpoints)
     )
 
 
 def first_place(profile: Profile) -> float | None:
-    """Find the first x/L among ends and middles of segments at which a property is not 0; None if none."""
+    """Find the first x/L, among segment ends and middles, at which a property is not 0; None if none."""
     ends = np.array(profile.breakpoints)
     left, right = profile.end_values()
     at = np.column_stack([ends[:-1], (ends[:-1] + ends[1:]) / 2, ends[1:]]).ravel()
@@ -110,9 +110,9 @@ def first_place(profile: Profile) -> float | None:
     return float(at[np.flatnonzero(values)[0]]) if values.any() else None
 
 
-# Input that looks like a mistake of units ------------------------------------------------------------
+# Probable mistakes of units --------------------------------------------------------------------------
 
-SLOWEST, FASTEST = 100.0, 20e3  # speeds of waves along a bar [m/s]: hard rubber has 200, diamond 18e3
+SLOWEST, FASTEST = 100.0, 20e3  # speeds of sound in a bar [m/s]: hard rubber has 200, diamond 18e3
 _THICKEST = 1 / math.sqrt(12)  # radius of gyration over length, of a rectangle as thick as the beam is long
 _ROUNDING_OF_LENGTHS = 1e-9  # relative rounding error of lengths
 
@@ -120,7 +120,7 @@ _ROUNDING_OF_LENGTHS = 1e-9  # relative rounding error of lengths
 def warn_of_degrees(name: str, angle: float) -> None:
     """Warn of an angle [rad] beyond half a turn with at most two decimals, which suggests degrees."""
     if abs(angle) > math.pi and round(angle, 2) == angle:
-        # The warning points at the user's call of the class.
+        # With this stack level the warning shows the user's line that calls the class.
         warnings.warn(f"{name} = {_say_degrees(angle)}", stacklevel=4)
 
 
@@ -136,7 +136,7 @@ def warn_of_twist(twist: Profile | None) -> None:
 
 
 def _say_degrees(angle: float) -> str:
-    """Write the warning that an angle [rad] may be in degrees, with how degrees are given."""
+    """Return a warning that an angle [rad] may be in degrees, and how to give degrees."""
     return (
         f"{angle:g} rad: angles are in radians, and this is {math.degrees(angle):.4g} degrees; "
         f"if {angle:g} degrees were meant, give math.radians({angle:g})"
@@ -160,11 +160,11 @@ def warn_of_stiffness(
 ) -> None:
     """Warn of inconsistent stiffnesses [N m2, N], mass per length [kg/m], length and outer fibre [m].
 
-    Small stiffnesses are not suspected: dimensionless beams have them.
+    Small stiffnesses cause no warning: dimensionless beams have them.
     """
     xi = np.linspace(0, 1, 33)
     EI, m = bending(xi), mass(xi)
-    # The section is at most as thick as the beam is long, which bounds the speed of waves from below.
+    # The speed of sound has a lower bound, because the section is at most as thick as the beam is long.
     if axial is None:
         speed = np.sqrt(EI) / np.sqrt(m) / (_THICKEST * length)
         words = f"bending_stiffness = {EI[0]:g} N m2 with length = {length:g} m"

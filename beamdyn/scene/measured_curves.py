@@ -38,7 +38,7 @@ class MeasuredCurves(ReadOnlyArrays):
 
     @property
     def allowance(self) -> np.ndarray:
-        """Allowance of each value: half a unit of its last digit plus twice its uncertainty, shape (n, C)."""
+        """Tolerance of each value: half a unit of the last digit plus twice the uncertainty: (n, C)."""
         spread = np.asarray(getattr(self, "uncertainty"))  # noqa: B009  (of subclasses)
         return self.half_digits + 2 * np.nan_to_num(spread).reshape(self.columns.shape)
 
@@ -181,7 +181,7 @@ class MeasuredLoads(MeasuredCurves):
     Parameters
     ----------
     position : array-like, shape (n,)
-        Distances from the root [m], ascending; one that is given twice stands for both sides of a jump.
+        Distances from the root [m], ascending; a repeated distance stands for both sides of a jump.
     value : array-like, shape (n,) or (n, C)
         The loads [N m or N], one column for each name, with the signs of `SpanLoads`.
     names : sequence of str, shape (C,)
@@ -248,7 +248,7 @@ class MeasuredResponse(MeasuredCurves):
     phase : array-like, shape (n,), optional
         Phase by which the output leads the input [rad]; without it magnitudes alone are compared.
     output, input : str
-        What was observed and what drove the beam, in the words of `frequency_response`.
+        Observed quantity and excitation of the beam, in the words of `frequency_response`.
     speed : float, optional
         Speed [rad/s]; if not given, the final speed of the scene's motion, or at rest without one.
     uncertainty : float or array-like, broadcast to (n,)

@@ -89,18 +89,18 @@ class MeasuredFrequencies(ReadOnlyArrays):
             raise InvalidValue("shapes", self.shapes, "they need positions", "give positions and shapes")
         positions, shapes = real_array("positions", self.positions), table_of("shapes", self.shapes)
         if shapes.shape != (self.frequency.shape[1], len(positions)) or not np.isfinite(shapes).all():
-            bound = f"they are to be {self.frequency.shape[1]} modes at {len(positions)} positions"
+            bound = f"they must be {self.frequency.shape[1]} modes at {len(positions)} positions"
             raise InvalidValue("shapes", shapes, bound, "give each mode a finite number at each position")
         set_fields(self, positions=positions, shapes=shapes)
 
     @property
     def count(self) -> int:
-        """Number of measured frequencies, those that are nan not counted."""
+        """Number of measured frequencies, without those that are nan."""
         return int(np.isfinite(self.frequency).sum())
 
     @property
     def allowance(self) -> np.ndarray:
-        """Allowance of each value [Hz], half a last digit's unit plus twice its uncertainty: (S, m)."""
+        """Tolerance of each value [Hz]: half a unit of the last digit plus twice the uncertainty: (S, m)."""
         return self.rounding + 2 * np.nan_to_num(self.uncertainty)
 
 
@@ -108,7 +108,7 @@ def table_of(name: str, values: Any) -> np.ndarray:
     """Convert rows of numbers, some of which may be nan, to an array of floats."""
     array = as_floats(values)
     if array is None or array.ndim > 2 or not array.size or np.isinf(array).any():
-        raise InvalidValue(name, values, "it is to be a table of numbers", "give rows of equal lengths")
+        raise InvalidValue(name, values, "it must be a table of numbers", "give rows of equal lengths")
     return np.atleast_2d(array).astype(float)
 
 

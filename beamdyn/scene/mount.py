@@ -26,7 +26,7 @@ _RATIO: Any = {"least": 0, "below": 1, "remedy": "1 % is 0.01"}
 
 @dataclass(frozen=True)
 class Damping:
-    """Damping of the beam: ratios mode by mode, Rayleigh's factors, and a damper at the tip; they add up.
+    """Damping of the beam: ratios of modes, Rayleigh's factors and a damper at the tip, which add up.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class Damping:
 
     @property
     def damps(self) -> bool:
-        """Whether any damping is given."""
+        """Whether there is any damping."""
         return any(self.ratios) or bool(self.mass_factor or self.stiffness_factor or self.tip_damper)
 
     def ratios_of(self, modes: int) -> list[float]:
@@ -94,7 +94,7 @@ NO_DAMPING = Damping()
 
 
 def check_one_kind_of_ratios(ratio: float, damping: Damping) -> None:
-    """Refuse a damping ratio for all modes that is given together with one for each."""
+    """Refuse a damping ratio of all modes together with damping ratios of each mode."""
     if ratio and damping.ratios:
         bound = "damping.ratios gives one for each mode, too"
         raise InvalidValue("damping_ratio", ratio, bound, "leave one of the two out")
@@ -102,7 +102,7 @@ def check_one_kind_of_ratios(ratio: float, damping: Damping) -> None:
 
 _SPRING: Any = {"least": 0, "infinite": "clamped", "remedy": "0 is a hinge; left out, the root is clamped"}
 _PRECONE: Any = {"above": -math.pi / 2, "below": math.pi / 2, "remedy": "0 is in the plane of rotation"}
-ROUNDED_ANGLE = 2e-16  # largest cosine of a rounded right angle
+ROUNDED_ANGLE = 2e-16  # largest magnitude of the cosine of a right angle due to rounding
 RIGHT_ANGLE = 1e-8  # distance from a multiple of a right angle [rad] that is neglected
 _ONE_TURN: Any = {"least": -2 * math.pi, "most": 2 * math.pi, "remedy": "that is one turn either way"}
 
@@ -123,7 +123,7 @@ class Mount(OneLine):
         0 in the plane (chordwise, lead-lag), pi/2 out of it (flapwise).
     root_stiffness : float
         Stiffness of the root against rotation by bending in the direction of the bending angle [N m/rad]:
-        inf is clamped, 0 a hinge; a scene takes finite ones up to 1e16 times EI/L of the beam.
+        inf is clamped, 0 a hinge; a scene accepts finite values up to 1e16 times EI/L of the beam.
     second_root_stiffness : float
         Stiffness of the root against rotation by bending across [N m/rad], where a second plane is modelled.
     precone : float
@@ -247,7 +247,7 @@ def exact_cos_sin(angle: float, least: float = ROUNDED_ANGLE) -> tuple[float, fl
 def aligned_cos_sin(angle: float) -> tuple[float, float]:
     """Compute cosine and sine of an angle [rad], 0 within `RIGHT_ANGLE` of a multiple of a quarter turn.
 
-    Used for bending angles, whose square affects frequencies, and for verdicts: no beam is mounted more
-    exactly, and whether directions are coupled, or loaded across, must not depend on a last digit.
+    Used for bending angles, whose square affects frequencies, and for decisions: no beam is mounted more
+    accurately, and whether directions are coupled, or loaded across, must not depend on a last digit.
     """
     return exact_cos_sin(angle, RIGHT_ANGLE)

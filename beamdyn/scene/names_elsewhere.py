@@ -1,4 +1,4 @@
-"""Names in error messages of arguments that files and commands call differently than Python does."""
+"""Names of arguments in error messages, where files and commands use other names than Python."""
 
 from __future__ import annotations
 

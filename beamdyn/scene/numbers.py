@@ -1,6 +1,6 @@
 """Numbers of a scene by their paths in scene files, such as "mount.radius" or "beam.point_mass[0].mass".
 
-Studies, spreads, sensitivities, commands and screens get, set, list and describe them here.
+Studies, spreads, sensitivities, commands and screens get, set, list and describe numbers by this module.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from beamdyn.scene.profile import Profile, as_profile, to_profile
 from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
 from beamdyn.scene.scene import Scene
 
-SPEED = "speed"  # key of the speed at which the scene is analysed, which is not a number of the scene itself
-# Prefix of properties of the beam that are multiplied by a factor, however they vary along it.
+SPEED = "speed"  # key of the speed at which the scene is analysed; it is not part of the scene
+# Prefix of factors that multiply a property of the beam, which may vary along the beam.
 SCALE = "beam.scale."
 _HARVESTER = "harvester."  # prefix of the numbers of piezoelectric layers
-# Prefixes of numbers of the beam that stay those of the beam with layers; others are of the bare beam.
+# Prefixes of numbers that belong to the beam with layers; other numbers belong to the beam without layers.
 _ON_ANY_BEAM = "beam.tip.", "beam.point_mass[", "beam.point_spring["
 _POINTS = {"point_mass": PointMass, "point_spring": PointSpring}
-# Exponents with which the sides of a section enter its properties, whatever its form.
+# Exponents of a section's sides in the section's properties, for any shape of the section.
 _LINEAR = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
-# The exponent of torsion is that of flat sections.
+# The exponent of torsional stiffness is that of thin sections.
 _OF_FIRST = ("bending_stiffness", "rotary_inertia", "torsion_stiffness")
 _OF_SECOND = ("second_bending_stiffness", "second_rotary_inertia")
 _SIDE_POWERS = {
@@ -47,12 +47,12 @@ _SIDE_POWERS = {
 }
 
 
-# Which numbers there are --------------------------------------------------------------------------
+# List of all numbers ------------------------------------------------------------------------------
 
 
 @cache
 def units() -> dict[str, str]:
-    """List the SI units of all numbers that scenes may have, by path; members of lists have no index."""
+    """Return the SI units of all numbers of scenes, by path; paths of list members have no index."""
     of_beam = {"length": "m"} | SECTION_UNITS | PROPERTY_UNITS | ANGLE_UNITS
     found = {f"beam.{name}": unit for name, unit in of_beam.items()}
     found |= {SCALE + name: "" for name in (*SIDES, *PROPERTY_UNITS)} | dict(_numbers(TipMass, "beam.tip"))
@@ -73,22 +73,22 @@ def unit_of(path: str) -> str | None:
 
 
 def is_of_motion(path: str) -> bool:
-    """Whether a path names a number of the motion."""
+    """Return whether a path names a number of the motion."""
     return path.startswith("motion.")
 
 
 def is_speed(path: str) -> bool:
-    """Whether a path names the speed, or a speed of the motion, which analyses use in its place."""
+    """Return whether a path names the speed, or a speed of the motion that replaces it in analyses."""
     return path == SPEED or (is_of_motion(path) and path.endswith(f".{SPEED}"))
 
 
 def _is_of_a_part(path: str) -> bool:
-    """Whether a path names a number of an optional part of a scene: its motion or a harvester."""
+    """Return whether a path names a number of the optional motion or harvester of a scene."""
     return is_of_motion(path) or path.startswith(_HARVESTER)
 
 
 def paths_of(scene: Scene) -> list[str]:
-    """List the paths of numbers that a scene has or could have; of lists and motion, existing ones only."""
+    """List the paths of all numbers that a scene can have; of lists and of the motion, only existing ones."""
     return [path for each in units() for path in _in_lists_of(scene, each) if _is_there(scene, path)]
 
 
@@ -118,7 +118,7 @@ def _numbers(made: type, path: str) -> Iterator[tuple[str, str]]:
 
 
 def _parts(hint: Any) -> Iterator[type]:
-    """Yield the classes, with numbers of their own, of objects that a field with this type hint may hold."""
+    """Yield the classes in a field's type hint whose fields are numbers of a scene."""
     for kind in kinds_of(hint):
         if isinstance(kind, type) and issubclass(kind, Motion):
             yield from (each for each in KINDS.values() if issubclass(each, kind))
@@ -167,7 +167,7 @@ def number_at(scene: Scene, path: str) -> float | None:
 
 
 def _holder(scene: Scene, path: str) -> tuple[Any, str]:
-    """Find the scene, layers or bare beam that holds the number of a path, and the attribute path there."""
+    """Find the object (scene, layers or bare beam) that has a number, and the number's attribute path."""
     electrodes = scene.beam.electrodes
     if path.startswith(_HARVESTER):
         return electrodes and electrodes.harvester, path.removeprefix(_HARVESTER)
@@ -223,7 +223,7 @@ def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
 
 @contextmanager
 def _naming_paths(values: Mapping[str, float]) -> Iterator[None]:
-    """Name the path, not the constructor's argument, in refusals raised within this context."""
+    """Within this context, error messages name the number's path, not the constructor's argument."""
     try:
         yield
     except InvalidValue as error:

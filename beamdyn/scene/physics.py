@@ -110,7 +110,7 @@ class Physics:
             raise replace(refusal, bound=bound, remedy="leave it out") from None
 
     def _check_combination(self) -> None:
-        """Refuse camber with large deflection, which assumes sections of unchanging shape."""
+        """Refuse camber with large deflection, which assumes sections of constant shape."""
         if self.camber:
             bound = "it cannot be combined with large_deflection"
             raise InvalidValue("physics.camber", True, bound, "leave one of the two out")
@@ -118,7 +118,7 @@ class Physics:
 
 @dataclass(frozen=True, repr=False)
 class AutomaticPhysics(Physics):
-    """Physics that each analysis chooses; code that does not choose reads it as the plain beam."""
+    """Physics "auto", which each analysis chooses; elsewhere it counts as the slender beam in one plane."""
 
     def __repr__(self) -> str:
         return repr(AUTO_NAME)
@@ -217,18 +217,18 @@ class PhysicsChoice:
 
     @property
     def not_known(self) -> dict[str, str]:
-        """Effects that are left out although their size is not known, and why it is not."""
+        """Effects left out although their size is unknown, and the reasons why it is unknown."""
         left_out = (effect for effect in self.effects if not effect.included)
         return {effect.name: effect.reason for effect in left_out if math.isnan(effect.size)}
 
     @property
     def is_met(self) -> bool:
-        """Whether the effects left out, and those of no model here, are within the tolerance, where known."""
+        """Whether the known effects that are left out or cannot be modelled are within the tolerance."""
         return self.model_error + self.beyond_models <= self.tolerance
 
     @property
     def _plain(self) -> str:
-        """Name the beam without the included effects: straight, or curved (then it twists in any case)."""
+        """Name of the beam without the included effects: straight, or curved, which always twists."""
         is_curved = self.physics.large_deflection and "large deflection" not in self.included
         return "the curved beam in space" if is_curved else "the plain beam"
 
@@ -294,18 +294,18 @@ class OfChosenPhysics(Result):
         return super().to_dict() | ({} if choice is None else {"physics_choice": plain(choice)})
 
 
-# What a load at the tip and springs need of the physics ----------------------------------------------
+# Physics that tip loads and springs require ------------------------------------------------------------
 
 ROOT_SPRINGS = "root_stiffness", "second_root_stiffness"
 _ALONG = 1e-12  # component out of the plane of bending, over the load, that counts as rounding
-# Spring at the root over EI/L of the beam: a stiffer one turns by less than rounding of the beam's bending.
+# Largest spring stiffness at the root over EI/L: a stiffer spring's rotation is within rounding of a clamp.
 _STIFFEST = 1e16
-# Spring along the beam over EI/L^3: beyond, rounding hides the deflection that the spring allows.
+# Largest spring stiffness along the beam over EI/L^3: above, rounding hides the spring's deflection.
 _STIFFEST_POINT = 1e9
 
 
 def check_tip_load(load: TipLoad, mount: Mount, physics: Physics | AutomaticPhysics) -> None:
-    """Refuse a load at the tip of a straight beam, and one in a direction in which the beam is rigid."""
+    """Refuse a tip load without large deflection, and one in a direction in which the beam is rigid."""
     if not load.acts:
         return
     if not physics.large_deflection:
@@ -323,19 +323,19 @@ def check_tip_load(load: TipLoad, mount: Mount, physics: Physics | AutomaticPhys
 
 
 def check_root_springs(mount: Mount, beam: Beam) -> None:
-    """Refuse modelled root springs that are so stiff that rounding hides the beam's own stiffness."""
+    """Refuse root springs so stiff that rounding hides the stiffness of the beam."""
     bending = [EI for EI in (beam.bending_stiffness, beam.second_bending_stiffness) if EI is not None]
     for name, spring in zip(ROOT_SPRINGS, mount.root_stiffnesses, strict=True):
         modelled = name == "root_stiffness" or beam.second_bending_stiffness is not None
         if modelled and spring < math.inf and spring > 0:
             stiffest = _STIFFEST * max(map(mean, bending)) / beam.length
-            bound = "it must be at most {limit}, 1e16 EI/L of the beam: rounding hides the turn beyond"
+            bound = "it must be at most {limit}, 1e16 EI/L of the beam: above, rounding hides the rotation"
             remedy = "leave it out: the root is clamped"
             refuse(spring > stiffest, f"mount.{name}", spring, "N m/rad", bound, remedy, limit=stiffest)
 
 
 def check_point_springs(beam: Beam, physics: Physics | AutomaticPhysics) -> None:
-    """Refuse point springs that rounding does not tell from supports, and springs in a rigid direction."""
+    """Refuse point springs whose deflection is within rounding, and springs in a rigid direction."""
     for k, spring in enumerate(beam.point_springs):
         stiffest = _STIFFEST_POINT * mean(beam.bending_stiffness) / beam.length**3
         bound = "it must be at most {limit}, 1e9 EI/L^3 of the beam"

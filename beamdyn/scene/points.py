@@ -1,4 +1,4 @@
-"""What acts on the beam at a point: a body and a load at the tip, point masses, point springs."""
+"""Objects at a point of the beam: a body and a load at the tip, point masses, point springs."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ class TipMass:
         return self.inertia if self.transverse_inertia is None else self.transverse_inertia
 
     def about(self, across: float) -> TipMass:
-        """Return the body with moments of inertia about a line at a distance across from the axis [m]."""
+        """Return the body with moments of inertia about a parallel line at a distance across [m]."""
         if self.offset_across == across:
             return self
         more = self.mass * (self.offset_across - across) ** 2
@@ -157,7 +157,7 @@ class PointMass:
     mass: Annotated[float, Described("kg", "m_k", "mass", least=0)]
 
     def __post_init__(self) -> None:
-        remedy = "it is the distance from the root, where a mass would not move"
+        remedy = "it is the distance from the root, where a mass cannot move"
         position = positive("point_mass.position", self.position, "m", remedy)
         set_fields(self, position=position, mass=amount("point_mass.mass", self.mass, "kg"))
 
@@ -199,7 +199,7 @@ class PointSpring:
 
     def __post_init__(self) -> None:
         one_of("point_spring.direction", self.direction, get_args(Direction))
-        remedy = "it is the distance from the root, which is held anyway"
+        remedy = "it is the distance from the root, which cannot move"
         position = positive("point_spring.position", self.position, "m", remedy)
         stiffness = amount("point_spring.stiffness", self.stiffness, "N/m")
         set_fields(self, position=position, stiffness=stiffness)
@@ -258,7 +258,7 @@ class TipLoad:
 
     @property
     def acts(self) -> bool:
-        """Whether there is a load."""
+        """Whether the load is not zero."""
         return any((*self.force, *self.moment))
 
 

@@ -21,12 +21,12 @@ from beamdyn.common.inputs.checks import MOST, InvalidValue, real, real_array, r
 from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.words import Named, Words
 
-_FIT_NODES = (8, 16, 32, 64, 128)  # Gauss points tried in turn; 32 resolve a smooth engineering taper
-_SHORTEST_SEGMENT = 1e-12  # length in x/L below which breakpoints differ by rounding only
+_FIT_NODES = (8, 16, 32, 64, 128)  # numbers of Gauss points tried in turn; 32 resolve a usual smooth taper
+_SHORTEST_SEGMENT = 1e-12  # difference of x/L below which two breakpoints differ only by rounding
 _FIT_TOLERANCE = 1e-13  # rounding error of the user's function, relative to its largest value
 _ZERO = 5e-13  # a property counts as 0 below this fraction of its largest value on a segment
 _NOISE = 8 * float(np.finfo(float).eps)  # noise of the coefficients of a fit, relative to the largest
-_SPACING = 2.5e-5  # distance in x/L of the samples of a user's function: no wider feature is missed
+_SPACING = 2.5e-5  # distance in x/L of samples of a user's function: features wider than this are found
 _FEW = 513  # number of samples, denser towards the ends of a segment, at which a fit is compared first
 _AT_ONCE = 4096  # number of samples compared at once, which fit into the processor's cache
 
@@ -82,7 +82,7 @@ class Profile(FieldsOnly):
         return self._hash
 
     @cached_property
-    def _hash(self) -> int:  # hashed once, as profiles may have many segments and caches ask often
+    def _hash(self) -> int:  # the hash is cached: profiles may have many segments, and caches need it often
         return hash((self.breakpoints, self.coefficients))
 
     def __call__(self, xi: np.ndarray) -> np.ndarray:
@@ -173,7 +173,7 @@ class Profile(FieldsOnly):
 def _of_series(ends: tuple[float, ...], series: np.ndarray) -> Profile:
     """Build the piecewise polynomial of Legendre coefficients that are given in a column for each segment."""
     profile = Profile(ends, tuple(map(tuple, series.T.tolist())))
-    profile.__dict__["series"] = series  # caches the series, which is known already
+    profile.__dict__["series"] = series  # stores the known series as the cached property
     return profile
 
 
@@ -288,7 +288,7 @@ def to_profile(name: str, value: Property, breakpoints: Sequence[float] = ()) ->
     return profile.split(ends)
 
 
-_OR_LENGTHS = Named("", ", or lengths with their unit")  # files may give lengths in place of fractions
+_OR_LENGTHS = Named("", ", or lengths with their unit")  # files may give lengths instead of fractions x/L
 _SIZES = f"give sizes from {1 / MOST:g} to {{limit}} in SI units"
 
 
@@ -323,7 +323,7 @@ def _from_table(name: str, table: Table) -> Profile:
 
 
 def _without_rounding(x: np.ndarray) -> np.ndarray:
-    """Merge stations x/L that differ by rounding, and set the first and last to the ends 0 and 1."""
+    """Merge stations x/L that differ by rounding, and set the first to 0 and the last to 1."""
     x = x.copy()
     for k in np.flatnonzero(np.abs(np.diff(x)) < _SHORTEST_SEGMENT):
         x[k + 1] = x[k]
@@ -350,12 +350,14 @@ def _check_stations(name: str, x: np.ndarray, values: int) -> None:
         refuse_station(len(x) - 1, Words("the last station must be ", tip))
     if x[1] == 0 or x[-2] == 1 or np.any(x[2:] == x[:-2]):
         bound = "a station given twice is a jump and stands between others"
-        raise InvalidValue(name, x.tolist(), bound, "give none three times, nor the first or last twice")
+        raise InvalidValue(
+            name, x.tolist(), bound, "give no station three times, nor the first or last twice"
+        )
 
 
 def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]:
     """Fit a Legendre series to a user's function on [a, b], with as few nodes as are exact to rounding."""
-    # Points between a and b: first a few that are denser towards the ends, then so many that none is missed.
+    # Points between a and b: first a few, denser towards the ends, then so many that no feature is missed.
     s = np.linspace(0, np.pi, _FEW + 2)[1:-1]
     uniform = np.linspace(a, b, max(8, int(np.ceil((b - a) / _SPACING))) + 1)[1:-1]
     xi = np.concatenate([a + (b - a) * (1 - np.cos(s)) / 2, uniform])
@@ -365,12 +367,12 @@ def _fit(name: str, function: Callable, a: float, b: float) -> tuple[float, ...]
     for nodes in _FIT_NODES:
         t, _ = legendre.leggauss(nodes)
         values = _sample(name, function, (a + b) / 2 + (b - a) / 2 * t)
-        # Solving is more accurate than a weighted sum, which loses digits.
+        # Solving equations for the coefficients is more accurate than quadrature, which loses digits.
         row = np.linalg.solve(legendre.legvander(t, nodes - 1), values)
         short = legendre.legtrim(row, 0.01 * bound)
         if all(_misfit(short, a, b, *part).max() <= bound for part in samples):
             return tuple(legendre.legtrim(row, 1e-17 * np.abs(row).max()).tolist())
-    where = xi[_FEW + 1 + np.abs(np.diff(exact[_FEW:], 2)).argmax()]  # place of the largest change of slope
+    where = xi[_FEW + 1 + np.abs(np.diff(exact[_FEW:], 2)).argmax()]  # where the slope changes most
     raise ValueError(
         f"{name}: the function is not smooth near x/L = {where:.4g}; "
         f"if it jumps or has a kink there, pass breakpoints=({where:.4g},) with the exact place; "
@@ -416,7 +418,7 @@ def check_positive(name: str, profile: Profile, power: int = 1) -> None:
     """
     ends, zero = np.array(profile.breakpoints), _ZERO ** (1 / power)
     values, where = np.stack(profile.end_values()), np.stack([ends[:-1], ends[1:]])
-    if profile.degree > 1:  # a linear property is least at an end
+    if profile.degree > 1:  # a linear property has its minimum at an end
         inner = np.linspace(ends[:-1], ends[1:], 129)[1:-1]
         where, values = np.concatenate([inner, where]), np.concatenate([profile(inner), values])
     least = zero * np.abs(profile.series).sum(axis=0)

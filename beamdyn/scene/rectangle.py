@@ -1,6 +1,6 @@
-"""The rectangular section that a beam was made from, with its layers, and the properties that follow.
+"""The rectangular section of a beam, with piezoelectric layers, and the properties that follow from it.
 
-A strip with layers is a plate: what holding it flat across changes in stiffness and coupling is found here.
+A strip with layers is a plate: its stiffness and coupling differ if sections are held flat across.
 Strip and layers are isotropic in their plane, so that the laminate is.  With the curvatures k1 and k2 along
 and across, and the voltage v, its moments and charge per area are
 
@@ -76,7 +76,7 @@ class Rectangle:
     def __post_init__(self) -> None:
         modulus = size("youngs_modulus", self.youngs_modulus, "Pa")
         set_fields(self, youngs_modulus=modulus, density=size("density", self.density, "kg/m3"))
-        for name in SIDES:  # the third power of each side enters a bending stiffness
+        for name in SIDES:  # values whose third power must not overflow: bending stiffness contains it
             set_fields(self, **{name: as_profile(name, getattr(self, name), power=3)})
 
     @cached_property
@@ -107,7 +107,7 @@ class Rectangle:
     @cached_property
     def torsion_stiffness(self) -> Profile:
         """Torsional stiffness G J [N m2] of the section (Saint-Venant); Poisson's ratio must be given."""
-        assert self.poissons_ratio is not None, "torsion of a rectangle has its Poisson's ratio"
+        assert self.poissons_ratio is not None, "torsion of a rectangle needs Poisson's ratio"
         shear_modulus, t = self.youngs_modulus / (2 * (1 + self.poissons_ratio)), self.thickness
         return (self.width * t * t * t * self.torsion_factor).scaled(shear_modulus / 3)
 
@@ -166,7 +166,7 @@ class Rectangle:
         return np.abs(left[1:] - right[:-1]) / length
 
     def sides(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return width and thickness (n,) [m] at many places along the beam, on both sides of breakpoints."""
+        """Return width and thickness (n,) [m] at n positions along the beam, on both sides of breakpoints."""
         ends = np.union1d(self.width.breakpoints, self.thickness.breakpoints)
         xi = np.union1d(np.linspace(0, 1, 257), [*(ends[:-1] + 1e-12), *(ends[1:] - 1e-12)])
         return self.width(xi), self.thickness(xi)
@@ -226,21 +226,21 @@ def shear_stiffness_of_rectangle(axial_stiffness: Profile, poissons_ratio: float
 
 
 class Material(NamedTuple):
-    """Constants of a layer strained along one direction: c11E [Pa], e31 [C/m2] and eps33S [F/m]."""
+    """Constants of a layer with strain in one direction: c11E [Pa], e31 [C/m2] and eps33S [F/m]."""
 
     stiffness: float
     coupling: float
     permittivity: float
 
     def held_across(self, ratio: float) -> Material:
-        """Return constants of each direction where both have the same strain, by Poisson's ratio."""
+        """Return constants of one direction if both have the same strain, from Poisson's ratio."""
         coupled = self.coupling**2 / self.stiffness
         permittivity = self.permittivity - coupled * (1 + ratio) / (1 - ratio)
         return Material(self.stiffness / (1 - ratio), self.coupling / (1 - ratio), permittivity)
 
 
 class Composite(NamedTuple):
-    """Integrals of a property over the thickness: its sum, centre, and second moment about that."""
+    """Integrals of a property over the thickness: sum, centroid, and second moment about the centroid."""
 
     area: float
     centre: float
@@ -289,7 +289,7 @@ class Laminate(Rectangle):
 
 
 class Coupled(NamedTuple):
-    """What electrodes do: bending moment per voltage [N m/V], and capacitance per length [F/m]."""
+    """Effects of electrodes: bending moment per voltage [N m/V], and capacitance per length [F/m]."""
 
     moment: float
     capacitance: float

@@ -19,10 +19,10 @@ from beamdyn.common.results.result import Provenance, Result
 from beamdyn.scene.scene import Scene, check_scene
 
 _STATIONS = 41  # number of positions along the beam at which its edge is drawn
-_SEEN = 0.03  # smallest visible ratio of depth to length
-_UNKNOWN = 0.03  # ratio of depth to length as drawn, where the section is not known
-_SHORT = 0.2  # ratio of length to radius below which the beam is also drawn by itself
-_SECTION = 290.0  # height of the section's view [pt]
+_SEEN = 0.03  # smallest ratio of depth to length that is visible in a drawing
+_UNKNOWN = 0.03  # drawn ratio of depth to length if the section is not known
+_SHORT = 0.2  # ratio of length to radius below which the beam is also drawn separately
+_SECTION = 290.0  # height of the drawing of the section [pt]
 _DOTTED = (1.5, 2.5)
 _DASHED = (5.0, 3.0)
 _DEGREES = 180 / np.pi
@@ -88,7 +88,7 @@ class RotorDrawing(Result):
     def drawings(self) -> list[list[Drawing]]:
         """Return views as data: along the axis of rotation, and below it the section seen from the tip.
 
-        A beam that is short relative to the radius is also drawn by itself, between the two.
+        A beam that is short relative to the radius is also drawn alone, between these two views.
         """
         apart = [[_beam_alone(self)]] if self.length < _SHORT * self.radius else []
         return [[_plan(self)], *apart, [_section_view(self)]]
@@ -161,13 +161,13 @@ def draw(scene: Scene) -> RotorDrawing:
 
 
 def _paper(rows: list[list[Drawing]]) -> Paper:
-    """Make the paper, on which the section takes less room than the rotor."""
+    """Make the figure, in which the section is smaller than the rotor."""
     made = Paper.of(rows)
     return Paper(made.width, (*made.heights[:-1], _SECTION))
 
 
 def _drawing(parts: Iterable[Part], title: str, words: str) -> Drawing:
-    """Make a drawing of shapes and labels in the order in which they are drawn and placed."""
+    """Make a drawing from parts (shapes and labels), which are drawn in the given order."""
     shapes: list[DrawnShape] = []
     labels: list[Label] = []
     for part in parts:
@@ -179,7 +179,7 @@ def _drawing(parts: Iterable[Part], title: str, words: str) -> Drawing:
 
 
 def _directions(setting_angle: float) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the beam's directions b1 and b2 (2,) on paper, where a1 points left and a2 down."""
+    """Compute the beam's directions b1 and b2 (2,) in the drawing, where a1 points left and a2 down."""
     c, s = np.cos(setting_angle), np.sin(setting_angle)
     return np.array([-c, s]), np.array([-s, -c])
 
@@ -214,7 +214,7 @@ def _rotor_parts(rotor: RotorDrawing) -> Iterator[Part]:
 
 
 def _beam_alone(rotor: RotorDrawing) -> Drawing:
-    """Draw the beam alone in the plane of rotation, to a scale of its own."""
+    """Draw the beam alone in the plane of rotation, to a separate scale."""
     title = "The beam by itself, to a larger scale"
     return _drawing(_beam_parts(rotor, 0.12 * rotor.length), title, "The beam of the rotor by itself")
 

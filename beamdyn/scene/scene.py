@@ -71,7 +71,7 @@ class Scene(OneLine):
     ------
     ValueError
         If the damping ratio is outside [0, 1), the beam lacks a property that the physics needs, or a spring
-        at the root is so stiff against the beam that rounding does not tell it from a clamp.
+        at the root is so stiff that rounding hides the difference from a clamp.
 
     Examples
     --------
@@ -95,7 +95,7 @@ class Scene(OneLine):
     units: DisplayUnits = field(default=SI_UNITS, repr=False, compare=False)
     tip_load: TipLoad = field(default=NO_LOAD, metadata=ADDED_LATER)
 
-    if TYPE_CHECKING:  # the word "auto" is accepted, but the attribute is always a Physics
+    if TYPE_CHECKING:  # "auto" is accepted as argument, but the attribute is always a Physics
 
         def __init__(
             self,
@@ -129,15 +129,15 @@ class Scene(OneLine):
         if isinstance(self.physics, str) and self.physics == AUTO_NAME:
             set_fields(self, physics=AUTO)
         elif isinstance(self.physics, AutomaticPhysics) and self.physics != AUTO:
-            # An effect was set explicitly, which ends the automatic choice.
+            # An effect that is set explicitly ends the automatic choice.
             set_fields(self, physics=Physics(**vars(self.physics)))
         remedy = 'give "auto", or such as Physics(planes=2, shear=True), both planes and shear deformation'
         kind("physics", self.physics, Physics, remedy)
         if self.physics_choice is not None and self.physics_choice.physics != self.physics:
-            set_fields(self, physics_choice=None)  # the choice was made for another physics
+            set_fields(self, physics_choice=None)  # the stored choice was made for other physics
         _check_layers(self.beam, self.physics)
         electrodes = self.beam.electrodes
-        # Whether camber is modelled decides which constants of the electrodes hold.
+        # The constants of the electrodes depend on whether camber is modelled.
         if electrodes is not None and electrodes.across != self.physics.camber:
             beam = replace(self.beam, electrodes=replace(electrodes, across=self.physics.camber))
             set_fields(self, beam=beam)
@@ -150,7 +150,7 @@ class Scene(OneLine):
         check_tip_load(self.tip_load, self.mount, self.physics)
         check_root_springs(self.mount, self.modelled_beam)
         check_point_springs(self.beam, self.physics)
-        # Refuse a damper that rounding does not tell from a support.
+        # Refuse a damper so strong that rounding hides the tip's motion, as at a support.
         beam, damper = self.beam, self.damping.tip_damper
         mass = mean(beam.mass_per_length) * beam.length + float(beam.lumps[1].sum())
         mass += 0.0 if beam.tip is None else beam.tip.mass
@@ -159,7 +159,7 @@ class Scene(OneLine):
         refuse(damper > most, "damping.tip_damper", damper, "N s/m", bound, "reduce it", limit=most)
 
     def headline(self) -> Iterator[str]:
-        """Yield label, beam, mount, motion, and all else that was given, as text."""
+        """Yield label, beam, mount, motion, and all other inputs that were given, as text."""
         unit = self.units.length_unit("mm" if self.beam.length < 1 else "m")
         yield repr(self.label) if self.label else ""
         yield f"beam of {number(self.beam.length * unit.per_si, unit.name)}"
@@ -186,7 +186,7 @@ class Scene(OneLine):
 
     @property
     def is_damped(self) -> bool:
-        """Whether anything damps the vibration, including the load of a harvester."""
+        """Whether the vibration is damped, also by the resistance of a harvester."""
         electrodes = self.beam.electrodes
         return bool(self.damping_ratio) or self.damping.damps or bool(electrodes and electrodes.is_loaded)
 
@@ -207,7 +207,7 @@ class Scene(OneLine):
 
     @property
     def bends_in_space(self) -> bool:
-        """Whether large deflection goes beyond one plane, in or out of that of rotation (elastica)."""
+        """Whether large deflection needs a beam in space, not the elastica in one plane."""
         chosen, mount = self.physics, self.mount
         is_oblique = mount.precone or min(map(abs, aligned_cos_sin(mount.bending_angle))) != 0
         others = self.beam.is_curved or chosen.planes == 2 or chosen.shear or chosen.stretch or chosen.torsion
@@ -215,7 +215,7 @@ class Scene(OneLine):
 
     @property
     def twists_in_space(self) -> bool:
-        """Whether sections twist and tilt by any angle in space, so that all their rotary inertia counts."""
+        """Whether sections rotate by any angle in space, so that all rotary inertias count."""
         return self.physics.torsion and self.bends_in_space
 
     @property
@@ -319,7 +319,7 @@ def _check_large_deflection(scene: Scene) -> None:
 
 # Damper at the tip --------------------------------------------------------------------------------
 
-# Damper over sqrt(EI m / L^3): with more, rounding errors exceed the decay rate of the tip.
+# Largest damper over sqrt(EI m / L^3): above, rounding errors exceed the decay rate of the tip.
 _MOST_DAMPING = 1e6
 
 
@@ -338,7 +338,7 @@ _REMEDIES = {
 }
 
 
-# Needed where no rectangular section determines them.
+# Properties needed unless a rectangular section determines them.
 _OF_TORSION = ("torsion_stiffness", "rotary_inertia", "second_rotary_inertia")
 
 
@@ -375,12 +375,12 @@ def _check_properties(beam: Beam, physics: Physics) -> None:
     raise InvalidValue(f"physics.{effect}", getattr(physics, effect), bound, remedy, other=first)
 
 
-# Length over local width of the parts at a clamped root in which a plate's corners are resolved.
+# Lengths, over the local width, of segments at a clamped root that resolve the stresses in a plate's corners.
 _CORNERS = 0.2, 1.2
-# End of the last part in which a plate's corners are resolved, over the length of the beam.
+# Largest x/L of the end of these segments.
 _LAST_CORNER = 0.7
-_SHARPEST = 1.0  # change of the slope of the width beyond which camber is several percent wrong
-_JUMP = 1e-9  # fraction of the width: a smaller jump is rounding
+_SHARPEST = 1.0  # change of the width's slope above which camber is wrong by several percent
+_JUMP = 1e-9  # jump of the width, relative to the width, below which it is rounding
 
 
 def _check_width(beam: Beam, physics: Physics) -> None:
@@ -418,7 +418,7 @@ def _check_width(beam: Beam, physics: Physics) -> None:
 
 
 def _with_constants(beam: Beam, physics: Physics) -> Beam:
-    """Replace a rectangle by its torsional stiffness, as large deflection with torsion models it."""
+    """Replace a rectangular section by constants such as its torsional stiffness, for large deflection."""
     section = beam.section
     if (
         section is None
@@ -434,7 +434,7 @@ def _with_corners(beam: Beam, planes: int) -> Profile:
     assert beam.strip is not None
     part = float(beam.strip.width(np.zeros(1))[0]) / beam.length
     places = tuple(part * each for each in _CORNERS)
-    if planes == 2:  # end where the clamp no longer stiffens bending in the direction of the width
+    if planes == 2:  # adds the end of the clamp's stiffening of bending along the width
         reach = beam.strip.stiffening_across(beam.length).breakpoints[1]
         places = reach / 2, reach, places[1]
     places = [each for each in places if each <= _LAST_CORNER]

@@ -20,11 +20,11 @@ from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.scene.profile import Profile, Table, merge_breakpoints, to_profile
 
 SIZE = 6
-UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # indices of the entries that are given
+UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # indices of given entries
 _FORCES = 3  # number of rows of forces; the others are of moments
-LEAST = 1e-10  # smallest eigenvalue of a positive definite matrix that is scaled to a diagonal of 1
+LEAST = 1e-10  # smallest accepted eigenvalue of a positive definite matrix scaled to a diagonal of 1
 MOST_ASYMMETRY = (
-    1e-4  # difference of two entries that should be equal, over the root of their diagonal entries
+    1e-4  # largest difference of two symmetric entries, over the root of their diagonal entries' product
 )
 MOST_STRANGENESS = 1e-4  # largest accepted difference, scaled, of a mass matrix from that of a rigid section
 # Properties of the beam that are diagonal entries of the stiffness.
@@ -150,7 +150,7 @@ class SectionMatrices(FieldsOnly):
         return found | {"mass_per_length": self.mass[0]}
 
     def _check(self, name: str) -> None:
-        """Refuse matrices that are not positive definite at segment ends, and mass no section can have."""
+        """Refuse matrices not positive definite at segment ends, and masses that no rigid section has."""
         xi, matrices = self._at_breakpoints(name)
         least = least_eigenvalues(matrices)
         if (bad := np.flatnonzero(least <= LEAST)).size:
@@ -200,7 +200,7 @@ def asymmetry(matrices: np.ndarray) -> np.ndarray:
 
 
 def split_mass(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Split mass matrices (6, 6, N): mass per length (N,), its centre (3, N), inertia about it (3, 3, N)."""
+    """Split mass matrices (6, 6, N) into mass per length (N,), its centre (3, N), and inertia (3, 3, N)."""
     m = matrices[0, 0]
     c2, c3 = -matrices[0, 5] / m, matrices[0, 4] / m
     none = np.zeros_like(m)

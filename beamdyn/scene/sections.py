@@ -17,10 +17,10 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.beam import OFFSETS, Beam, TipMass
 from beamdyn.scene.profile import Profile, combine
 
-# Orders of the derivatives of deflections whose products a property of the sections multiplies.
+# For each section property, the order of the derivatives of deflections that it multiplies in energies.
 _ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "rotary_inertia": 1}
 
-# Entries by pair of directions; those that vanish are missing.
+# Entries of a tensor by pair of directions; entries that are 0 are missing.
 Tensor: TypeAlias = "dict[tuple[int, int], Profile]"
 
 
@@ -55,7 +55,7 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
     if beam.twist is None or not any(any(row) for row in beam.twist.coefficients):
         return {(0, 0): first, (1, 1): second}
     # Turn the values in the axes of the sections by the twist; refuse a twist that is not resolved.
-    excess = first + second.scaled(-1.0)  # a series of the difference: a difference of values may lose digits
+    excess = first + second.scaled(-1.0)  # difference as a series: differences of values lose digits
     try:
         along, oblique, across = combine(_turned_values, first, second, excess, beam.twist)
     except ValueError as error:
@@ -100,16 +100,16 @@ def offset_components(beam: Beam) -> tuple[Profile | None, ...]:
 
 
 class TipInertia(NamedTuple):
-    """Inertia of a tip body [kg m2] against tilts towards the directions e1 and e2.
+    """Moments of inertia of a tip body [kg m2] against rotations towards the directions e1 and e2.
 
     Parameters
     ----------
     tilting : ndarray, shape (2, 2)
-        Inertia against tilting.
+        Moment of inertia against rotation.
     centrifugal : ndarray, shape (2, 2)
-        Inertia by which rotation resists a tilt out of plane: in the axes of the section diag(J_e - J_1,
-        J_n - J_1), as with respect to the axis of rotation, tilting towards a direction exchanges the moment
-        about that direction for the one about the beam.
+        Centrifugal stiffness against rotation out of the plane of rotation, over the squared speed; in the
+        axes of the section diag(J_e - J_1, J_n - J_1), with the moments of inertia J_1 about the beam, J_n
+        about the axis of bending, and J_e about the direction of bending.
     """
 
     tilting: np.ndarray
@@ -131,8 +131,8 @@ def tip_inertia(tip: TipMass, twist: float) -> TipInertia:
 def weight_degree(beam: Beam) -> int:
     """Find the highest polynomial degree that section properties add to integrals of deflections' products.
 
-    Each adds its degree less the order of the derivatives that it multiplies; tension is of the
-    degree of the mass and two more.
+    Each property adds its degree minus the order of the derivatives that it multiplies; the degree of
+    tension is that of the mass plus two.
     """
     degrees = [beam.mass_per_length.degree + 1]
     for name, order in _ORDERS.items():

@@ -24,9 +24,9 @@ from beamdyn.scene.scene import Scene
 
 LARGE_DEFLECTION = 0.1  # fraction of the length beyond which a linear theory has errors of several percent
 LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch matters
-# Acceleration of gravity [m/s2]: a road that accelerates a wheel by more loses contact with it.
+# Acceleration of gravity [m/s2]: a wheel that a road accelerates by more loses contact.
 STANDARD_GRAVITY = 9.81
-_NARROW = 5.0  # width over thickness below which a section is no plate
+_NARROW = 5.0  # width over thickness below which a section does not behave as a plate
 _WORTH_OF_NARROW = 0.01  # largest difference of narrow sections' frequencies from solids: benchmarks.solids
 # Relative error of frequencies over the change of the width's slope (0.037 at most, in 36 tapered strips
 # compared with strips with a rounded kink, in bending), and the error from which a warning is given.
@@ -60,7 +60,7 @@ def refuse_tip_load(scene: Scene) -> None:
 
 
 def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
-    """Yield warnings of input that is not modelled, of narrow sections, and of a physics choice's limits."""
+    """Yield warnings of unused input, of narrow sections, and of the limits of chosen physics."""
     if scene.models_width and (section := scene.beam.strip) is not None:
         yield from _warn_of_narrow_section(section)
     if scene.physics.camber and (section := scene.beam.strip) is not None:
@@ -100,7 +100,7 @@ def _warn_of_narrow_section(section: Rectangle) -> Iterator[Statement]:
 
 
 def _warn_of_kinks(section: Rectangle, length: float) -> Iterator[Statement]:
-    """Yield a warning if camber is modelled of a width with kinks, which its functions do not have."""
+    """Yield a warning if camber is modelled and the width has kinks, which trial functions cannot follow."""
     sharpest = float(section.kinks_of_width(length).max(initial=0.0))
     if (worth := _WORTH_OF_KINKS * sharpest) > _SMALL_WORTH:
         said = f"the slope of the width changes by {sharpest:.2g} at a kink, where functions of camber are "

@@ -25,7 +25,7 @@ from beamdyn.steady.harvest import ElectricLines, Harvest, electrodes_of, harves
 from beamdyn.steady.response import steady_response
 from beamdyn.steady.road_harvest import check_road, harvest_on_road
 
-_DECADES = 4.0  # decades over which resistances are tried first, on either side of 1/(omega C)
+_DECADES = 4.0  # number of decades of resistance that are tried first, on either side of 1/(omega C)
 _WIDTH, _HEIGHT = 7.5, 4.8  # width and height of the picture [inch]
 _DIGITS = 6  # largest number of digits of a resistance
 # Relative error of the resistance over that of the power: up to 1 in 16 cases with 1 to 5 modes.
@@ -34,26 +34,26 @@ _LIKE_POWER = 2.0
 
 @dataclass(frozen=True)
 class ResistanceSearch:
-    """How the best resistance is sought.
+    """Settings of the search for the best resistance.
 
     Parameters
     ----------
     tried : int
-        Number of resistances that are tried first.
+        Number of resistances that are tried before the refinement.
     tolerance : float
-        Relative accuracy to which the best one is refined.
+        Relative accuracy to which the best resistance is refined.
     """
 
     tried: int = 33
     tolerance: float = 1e-6
 
 
-FULL, ROUGH = ResistanceSearch(), ResistanceSearch(9, 1e-2)  # of an answer, and of a preliminary one
+FULL, ROUGH = ResistanceSearch(), ResistanceSearch(9, 1e-2)  # for a final and a preliminary answer
 
 
 @dataclass(frozen=True, kw_only=True)
 class BestResistance(Harvest):
-    """Harvested power at one speed with the best load resistance, which the result's scene has.
+    """Harvested power at one speed with the best load resistance; the result's scene has this resistance.
 
     Parameters
     ----------
@@ -84,27 +84,27 @@ class BestResistance(Harvest):
 
     @property
     def resistance(self) -> float:
-        """The best resistance [ohm]."""
+        """The load resistance of the largest power [ohm]."""
         return electrodes_of(self.scene).resistance
 
     @property
     def resistance_error(self) -> float:
-        """Estimated error [ohm]: relative to the resistance twice that of the power, and the search's."""
+        """Estimated error [ohm]: relatively, twice the error of the power plus the search's tolerance."""
         return (_LIKE_POWER * float(self.total_error[0]) + FULL.tolerance) * self.resistance
 
     def say_resistance(self) -> str:
-        """Return the best resistance as text, with the digits that its error leaves."""
+        """Return the best resistance as text, without digits that are uncertain due to its error."""
         return f"{supported(self.resistance, self.resistance_error, _DIGITS)} ohm"
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the power over the resistances that were tried."""
+        """Plot the power over the resistances that were tried."""
         label = f"best, {self.say_resistance()}"
         return plot_resistances(self.resistances, self.tried_power, self.resistance, label, ax)
 
     plot_panels = plot
 
     def picture_size(self, width: float | None = None) -> tuple[float, float]:
-        """Return width and height of the picture [inch], for a width if one is given."""
+        """Return width and height of the plot [inch], for a width if one is given."""
         return width or _WIDTH, _HEIGHT
 
 
@@ -165,7 +165,7 @@ def sought(
     discretization: DiscretizationChoice,
     road: RoadRoughness | None,
 ) -> BestResistance:
-    """Find the best load resistance, by a search; otherwise as `best_resistance`."""
+    """Find the best load resistance as `best_resistance` does, by a search with given settings."""
     start = perf_counter()
     check_scene(scene)
     electrodes = electrodes_of(scene)

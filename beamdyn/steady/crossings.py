@@ -23,7 +23,7 @@ from beamdyn.scene.scene import Scene
 
 KINDS = ("forced", "parametric")
 _STEP = 1e-4  # relative step of the speed for the slope of the frequencies
-_FURTHER_MODES = 2  # number of modes beyond those sought, which may change places with them
+_FURTHER_MODES = 2  # number of further modes, whose order by frequency may change with speed
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Crossing:
 
 
 def label_crossing(line: Line, kind: str, mode: int, second_mode: int | None = None) -> str:
-    """Label a crossing for tables and pictures by its modes, line and kind."""
+    """Return the label of a crossing for tables and plots: modes, line and kind."""
     modes = f"mode {mode}" if second_mode is None else f"modes {mode} and {second_mode}"
     return f"{modes}, {line.name} ({kind})"
 
@@ -94,13 +94,13 @@ class Crossings(StatesModelError, Sequence[Crossing]):
     frequency : ndarray, shape (S, m)
         Natural frequencies of m modes [Hz], in the order at rest.
     order : int
-        Highest order of the lines that were sought.
+        Highest order of the excitation lines in the search.
     unlisted : int
         Number of crossings of the next order, which are weaker and not listed; those of still higher
         order are not counted.
     may_peak : int
         Number of unlisted forced crossings: near each the steady response may have a peak.  Parametric
-        ones make no peak of their own: where damping is too weak, free motion grows there.
+        crossings cause no peak: where damping is too weak, free motion grows there.
     warnings : tuple of str
         Limitations of the result, and why there is no crossing.
     provenance : Provenance
@@ -154,7 +154,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 
     @property
     def extent(self) -> str:
-        """Sentence on the extent of the search and the crossings left out."""
+        """Sentence on the range and order of the search, and on crossings left out."""
         sought = f"Sought to order {self.order} up to ", Speeds(self.speeds[-1])
         if not self.unlisted:
             return Words(*sought, f"; there are none of order {self.order + 1}.")
@@ -170,7 +170,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
         return Words(*weaker, f": {forced} forced, where the steady response may have a peak.")
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""
+        """Plot the Campbell diagram: natural frequencies and lines over speed, with the crossings marked."""
         lines = {line.name: line.multiple for line in self.lines}
         marked = {kind: [(c.speed, c.frequency) for c in self if c.kind == kind] for kind in KINDS}
         names = tuple(f"mode {i}" for i in range(1, self.frequency.shape[1] + 1))

@@ -8,7 +8,7 @@ The equations determine which harmonics are kept: those of the load, then those 
 the periodic coefficients (interactions) add once, twice, and so on.
 
 They are solved as a series, whose terms add one interaction each.  In the modes of the mean equations,
-without damping, each harmonic h of each mode a stands by itself:
+without damping, there is one equation for each harmonic h of each mode a:
 
     (k_a - Omega_h^2 + i Omega_h c_aa) y_ha = f_ha - (what couples it with other harmonics and modes)
 
@@ -26,16 +26,16 @@ import numpy as np
 
 from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, list_harmonics, select_harmonics
 
-_MOST_ENTRIES = 10**7  # number of matrix entries that are solved at once: 80 MB
-# Largest number of terms of the series, which is given up unless each term shrinks the error to a twentieth.
+_MOST_ENTRIES = 10**7  # number of matrix entries in memory when equations are solved: 80 MB
+# Largest number of terms of the series; it ends without a result unless each term reduces the error 20 times.
 _MOST_TERMS = 12
-_SETTLED = 4 * np.finfo(float).eps  # relative change by a term at which the series has settled
-# Fraction of settled pairs of rates, below which copying the arrays without them does not pay.
+_SETTLED = 4 * np.finfo(float).eps  # relative change by one term below which the series has converged
+# Fraction of converged pairs of rates above which the arrays are copied without them, to save time.
 _WORTH_LEAVING_OUT = 0.25
 
 
 def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:
-    """Solve for given harmonics of the response: as a series of interactions, or else all at once.
+    """Solve for given harmonics of the response: by a series of interactions, or else by one matrix.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarr
     A, b = _assemble(system, harmonics, T)
     try:
         y = np.linalg.solve(A, b[..., None])[..., 0]
-    except np.linalg.LinAlgError:  # nan at those pairs of rates at which the equations are singular
+    except np.linalg.LinAlgError:  # results are nan at pairs of rates at which the equations are singular
         if len(A) == 1:
             return np.full((1, len(harmonics), system.size), np.nan, dtype=complex)
         parts = (solve_at_once(system[i : i + 1], harmonics) for i in range(len(A)))
@@ -163,8 +163,8 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
         mean = MeanModes.of_system(system)
     except np.linalg.LinAlgError:
         return response, settled
-    half = [h for h in harmonics if h >= (0, 0)]  # the harmonics of the other half are complex conjugates
-    with np.errstate(all="ignore"):  # the series may diverge, or a harmonic be in resonance
+    half = [h for h in harmonics if h >= (0, 0)]  # the harmonics with opposite sign are complex conjugates
+    with np.errstate(all="ignore"):  # the series may diverge, or a harmonic may be in resonance
         series = _Series.of_system(system, mean, half)
         y = series.load * series.compliance
         found, left = np.full_like(y, np.nan), np.arange(S)
@@ -216,7 +216,7 @@ class _Products:
     def of(
         cls, order: int, spectrum: np.ndarray, matrix: np.ndarray, mean: MeanModes, harmonics: list[Pair]
     ) -> _Products:
-        """Make the products of one spectrum and its matrices with given harmonics of the response."""
+        """Build the products of one spectrum and its matrices with given harmonics of the response."""
         index = {h: i for i, h in enumerate(harmonics)}
         for (j, k), i in tuple(index.items()):
             index.setdefault((-j, -k), len(harmonics) + i)
@@ -234,7 +234,7 @@ class _Products:
         return replace(self, matrix=self.matrix[..., chosen], factors=factors)
 
     def sum(self, both: np.ndarray, count: int) -> np.ndarray:
-        """Sum the forces (H, n, S) by harmonics of the response and their conjugates (2 H, n, S)."""
+        """Sum the forces (H, n, S) that follow from harmonics and their conjugates, `both` (2 H, n, S)."""
         product = np.zeros((count, *both.shape[1:]), dtype=complex)
         for factor, (to, source) in zip(self.factors, self.places, strict=True):
             product[to] += factor * both[source]
@@ -243,7 +243,7 @@ class _Products:
 
 @dataclass(frozen=True)
 class _Series:
-    """Quantities from which the series is summed, for H harmonics, n modes and S pairs of rates.
+    """Terms of the series of interactions, for H harmonics, n modes and S pairs of rates.
 
     Parameters
     ----------
@@ -281,7 +281,7 @@ class _Series:
             in_modes = np.einsum("snm,sn->ms", mean.shapes, vector)
             load += select_harmonics(spectrum, h).T[:, None] * in_modes
         products = tuple(_Products.of(*each, mean, harmonics) for each in system.varying)
-        if system.is_free(h).any():  # a circuit's flux lacks stiffness: its static part is taken as 0
+        if system.is_free(h).any():  # a circuit's flux has no stiffness: its static part is set to 0
             still = np.abs(mean.squared.T) <= _SETTLED * np.abs(mean.squared).max(axis=1)
             resistance = np.where(still & (rate == 0), np.inf, resistance)
         return cls(load, 1 / resistance, rate, damping, products)
@@ -293,7 +293,7 @@ class _Series:
         return _Series(load, compliance, rate, damping, products)
 
     def respond(self, y: np.ndarray) -> np.ndarray:
-        """Compute the response (H, n, S) to the load, and to the coupling by the last response y."""
+        """Compute the response (H, n, S) to the load, and to coupling terms of the last response y."""
         force, both = self.load.copy(), np.concatenate([y, y.conj()])
         for products in self.products:
             of_rate = np.concatenate([self.rate, -self.rate]) if products.order else 1.0

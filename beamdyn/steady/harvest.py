@@ -38,8 +38,8 @@ from beamdyn.steady.response import ResponseRequest, steady_response
 from beamdyn.steady.road_harvest import SEVERAL, RoadHarvest, check_road, harvest_on_road
 from beamdyn.steady.vibration import combine_pairs, solve_parts, vibration_of
 
-# Ratio of the error to the largest difference from responses with more modes, and number of these: voltages
-# of electrodes that end within the span converge irregularly, so that some agree by chance.
+# Ratio of the error to the largest difference from responses with more modes, and number of such responses:
+# voltages of electrodes that end within the span converge irregularly, so that two may agree by chance.
 _DISTANCE, _LARGER = 2.0, 3
 _RESONANT = 3  # number of modes whose resonances are listed
 _COMPARED = "with more modes, and without the harmonics of the last interaction"
@@ -53,8 +53,8 @@ class Harvest(JudgedByRepeating):
     Power and efficiency are means over time, and over the phase between road and rotation where their rates
     are commensurate; voltage, current and strain are the largest over both.
 
-    `model_error` and `left_out`, computed when asked for, are what the physics left out would change in the
-    largest power.
+    `model_error` and `left_out`, computed on first use, are the changes of the largest power by physical
+    effects that the model leaves out.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ class Harvest(JudgedByRepeating):
         Status as in `SteadyResponse`.
     resonances : ndarray, shape (r,)
         Speeds in the range at which the excitation is in resonance with a mode [rad/s], of the beam with
-        short-circuited layers or, for an open circuit, with open ones.
+        short-circuited layers or, for an open circuit, with open layers.
     warnings : tuple of str
         Limitations of the result, including speeds at which the strain exceeds its limit.
     provenance : Provenance
@@ -122,7 +122,7 @@ class Harvest(JudgedByRepeating):
 
     @property
     def best(self) -> tuple[float, float]:
-        """The speed [rad/s] of the largest mean power, and that power [W]; nan where there is no response."""
+        """Speed [rad/s] of the largest mean power, and this power [W]; nan without a response."""
         power = self.total_power
         if not np.isfinite(power).any():
             return math.nan, math.nan
@@ -131,12 +131,12 @@ class Harvest(JudgedByRepeating):
 
     @property
     def total_power(self) -> np.ndarray:
-        """Mean power into the load [W], with that by a random road: shape (S,)."""
+        """Mean power into the load [W], including the power by a random road: shape (S,)."""
         return self.power if self.road is None else self.power + self.road.power
 
     @property
     def total_error(self) -> np.ndarray:
-        """Estimated relative error of `total_power`; without power, the larger of both errors: (S,)."""
+        """Estimated relative error of `total_power`; if that is 0, the larger error of both parts: (S,)."""
         if self.road is None:
             return self.error
         errors, powers = (self.error, self.road.error), (self.power, self.road.power)
@@ -152,11 +152,11 @@ class Harvest(JudgedByRepeating):
 
     @property
     def strain_limit(self) -> float:
-        """Largest strain that the layers bear; inf where none is given."""
+        """Largest strain that the layers can bear; inf if not given."""
         return electrodes_of(self.scene).harvester.strain_limit
 
     def judged(self, found: Harvest) -> np.ndarray:
-        """Select the largest power, whose model error is stated: shape ()."""
+        """Return the largest power, for which the model error is stated: shape ()."""
         return np.array(found.best[1])
 
     @property
@@ -165,7 +165,7 @@ class Harvest(JudgedByRepeating):
         return float(np.abs(self.speeds).max())
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the power over speed, with the resonances, and the power by a random road."""
+        """Plot the power over speed, with the resonances, and the power by a random road."""
         curves = {"harvested": self.power}
         if self.road is not None:
             curves = {"by steady motion": self.power, "by a random road": self.road.power}
@@ -173,23 +173,23 @@ class Harvest(JudgedByRepeating):
         return plot_harvest(self.speeds, panel, self.resonances, self._radius, self.display_units, ax)
 
     def plot_panels(self, ax: Axes | None = None) -> Axes:
-        """Draw power, voltage and strain over speed, a panel each."""
+        """Plot power, voltage and strain over speed, each in a panel."""
         given = self.speeds, self._panels, self.resonances, self._radius, self.display_units
         return plot_harvest_panels(*given, ax)
 
     def picture_size(self, width: float | None = None) -> tuple[float, float]:
-        """Return width and height of the picture of all panels [inch], for a width if one is given."""
+        """Return width and height of the plot of all panels [inch], for a width if one is given."""
         return panel_size(len(self._panels), width)
 
     @property
     def _radius(self) -> float:
-        """Radius of the wheel that rolls [m]; 0 without one."""
+        """Radius of the rolling wheel [m]; 0 without a rolling wheel."""
         wheel = self.scene.motion
         return wheel.rolling_radius if isinstance(wheel, RollingWheel) else 0.0
 
     @property
     def _panels(self) -> list[HarvestPanel]:
-        """The quantities of the picture, each with a curve of steady motion and one of a random road."""
+        """Quantities of the plot, each with curves by steady motion and by a random road."""
 
         def panel(label: str, steady: np.ndarray, name: str, limit: float = math.inf) -> HarvestPanel:
             curves = {"steady motion: mean power, else largest": steady}
@@ -205,7 +205,7 @@ class Harvest(JudgedByRepeating):
 
 
 @announced
-@one_blas_thread()  # the matrices are small: more threads only wait for each other
+@one_blas_thread()  # more threads do not speed up small matrices
 def harvest(
     scene: Scene,
     speeds: np.ndarray | Sequence[float],
@@ -214,9 +214,9 @@ def harvest(
     discretization: DiscretizationChoice = "ritz",
     road: RoadRoughness | None = None,
 ) -> Harvest:
-    """Compute the power that a piezoelectric beam harvests at given speeds, after the start has decayed.
+    """Compute the power that a piezoelectric beam harvests at given speeds, after the initial transient.
 
-    Gravity, road and what else the scene's motion excites act together; see `steady_response`.
+    Gravity, road and all other excitations by the scene's motion act together; see `steady_response`.
 
     Parameters
     ----------
@@ -252,9 +252,9 @@ def harvest(
     start = perf_counter()
     powers = _powers(scene, speeds, modes, tolerance, discretization, road)
     resonances = _resonances(powers.scene, powers.speeds)
-    provenance = Provenance.since(start, powers.provenance.method, _COMPARED)  # time of resonances, too
+    provenance = Provenance.since(start, powers.provenance.method, _COMPARED)  # time of resonances included
     found = replace(powers, resonances=resonances, provenance=provenance)
-    vars(found)["again"] = powers.again  # the model error repeats the powers only
+    vars(found)["again"] = powers.again  # for the model error, only the powers are computed again
     return found
 
 
@@ -267,7 +267,7 @@ def _powers(
     discretization: DiscretizationChoice,
     road: RoadRoughness | None,
 ) -> Harvest:
-    """Compute the result of `harvest` without resonances, which its model error need not solve again."""
+    """Compute the result of `harvest` without resonances, which the model error does not need."""
     start = perf_counter()
     check_scene(scene)
     electrodes = electrodes_of(scene)
@@ -306,7 +306,7 @@ def _powers(
 
 
 def _refinements(request: ResponseRequest) -> Iterator[ResponseRequest]:
-    """Yield requests with half as many more modes each, as far as there are larger models."""
+    """Yield requests, each with 1.5 times as many modes, as long as there are larger models."""
     for _ in range(_LARGER):
         if (finer := request.refined()) is None:
             return
@@ -324,7 +324,7 @@ def electrodes_of(scene: Scene) -> Electrodes:
 def _warn_of_strain(
     strain: np.ndarray, speeds: np.ndarray, electrodes: Electrodes, how: str
 ) -> Iterator[Statement]:
-    """Yield a warning where the layers' strain passes its limit; `how` words what the strain includes."""
+    """Yield a warning if the layers' strain exceeds its limit; `how` states what the strain includes."""
     limit = electrodes.harvester.strain_limit
     with np.errstate(invalid="ignore"):
         beyond = strain > limit
@@ -336,7 +336,7 @@ def _warn_of_strain(
 
 
 def _resonances(scene: Scene, speeds: np.ndarray) -> np.ndarray:
-    """Find the speeds in the range at which the excitation is in resonance with a mode."""
+    """Find the speeds [rad/s] in the range at which the excitation is in resonance with a mode."""
     top = float(np.abs(speeds).max())
     if not top:
         return np.empty(0)
@@ -374,7 +374,7 @@ class ElectricLines:
 
     @classmethod
     def of(cls, request: ResponseRequest) -> ElectricLines:
-        """Solve all coordinates of a request's modal basis."""
+        """Solve for all coordinates of a request's modal basis."""
         motion, speeds = check_steady_state(request.scene.motion), request.speeds
         equations = request.model.modal_equations(request.basis)
         vibration = vibration_of(request.model, request.basis, motion, speeds)
@@ -392,7 +392,7 @@ class ElectricLines:
 
     @property
     def halves(self) -> np.ndarray:
-        """Factor (L,) of the mean of a product of two amplitudes: 1 of what is at rest, else 1/2."""
+        """Factor (L,) of the mean product of two amplitudes of a line: 1 for a static line, else 1/2."""
         return np.where(self.pairs.any(axis=1), 0.5, 1.0)
 
     @property
@@ -431,7 +431,7 @@ class HarvestedPowers:
         )
 
     def apart(self, other: HarvestedPowers) -> np.ndarray:
-        """Compute relative differences (S,) in power or, where there is none, in voltage or current."""
+        """Compute relative differences (S,) in power or, if power is 0, in voltage or current."""
         found = np.zeros(len(self.power))
         for name in ("current", "voltage", "power"):
             own, its = getattr(self, name), getattr(other, name)

@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 _MAXIMA = 16  # number of largest local maxima of the samples that are refined
-_LEAST_SAMPLE = 0.5  # samples below this fraction of the largest lie beside lower maxima (Riesz' inequality)
-_MOST_STEPS = 20  # largest number of Newton's steps: each squares the error, but some begin near a saddle
-_CONVERGED = 1e-15  # relative gain by a step at which the maximum has converged
-_WEAK = 0.02  # ratio of weak lines' sum to that of all: they shift maxima, but hardly cause any
-# Offset of the samples in spacings: symmetric sums have saddles at multiples of the spacing.
+_LEAST_SAMPLE = 0.5  # near samples below this fraction of the largest, maxima are lower (Riesz' inequality)
+_MOST_STEPS = 20  # largest number of Newton's steps; more than a few are needed only near a saddle
+_CONVERGED = 1e-15  # relative increase by one step below which the maximum has converged
+_WEAK = 0.02  # sum of weak lines over the sum of all lines: weak lines shift maxima, but hardly add any
+# Offset of the samples, in spacings of samples: symmetric sums have saddles at multiples of the spacing.
 _OFFSET = np.array([0.21, 0.37])
 _MOST_SAMPLES = 2**20  # number of samples evaluated at once: 8 MB
 
@@ -37,7 +37,7 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
         return largest
     strong = _find_strong(np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1), harmonics)
     degrees = np.stack([(strong * np.abs(h)).max(axis=1) for h in harmonics.T], axis=1)
-    for degree in np.unique(degrees, axis=0):  # highest |h| of strong lines, by which the sum is sampled
+    for degree in np.unique(degrees, axis=0):  # highest |h| of strong lines: sets the number of samples
         rows = np.flatnonzero((degrees == degree).all(axis=1))
         for part in np.array_split(rows, 1 + len(rows) * int(np.prod(_grid(degree))) // _MOST_SAMPLES):
             largest[part] = _find_largest(amplitude[part], harmonics, degree)
@@ -45,7 +45,7 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
 
 
 def _find_strong(size: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
-    """Tell which lines of given sizes (S, H) are strong among all, or among those that cross the strongest.
+    """Find the strong lines, of sizes (S, H): among all, or among those that cross the strongest line.
 
     Lines cross if their harmonics are not multiples of each other.  The strongest line is constant along its
     crests, so that the lines that cross it decide there, however weak they are.
@@ -57,7 +57,7 @@ def _find_strong(size: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
 
 
 def _grid(degree: np.ndarray) -> np.ndarray:
-    """Choose the numbers of samples of each phase for sums of lines of harmonics up to a degree (2,)."""
+    """Choose the number of samples of each phase for harmonics up to a degree (2,)."""
     return np.where(degree > 0, 6 * (degree.max() + 1), 1)
 
 
@@ -107,7 +107,7 @@ def _find_maxima(sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, longest: float) -> np.ndarray:
     """Compute Newton's step (R, 2) of the phases towards a larger magnitude.
 
-    It takes the absolute values of the curvatures, so that it does not end at saddles.
+    The absolute values of the curvatures are used, so that the iteration does not end at saddles.
     """
     k, axes = np.linalg.eigh(curvature)
     size = np.abs(k)
@@ -130,7 +130,7 @@ def _evaluate_size(
     divisor = np.where(size == 0, 1.0, size)
     direction = u / divisor[:, None]
     along = np.einsum("rd,rda->ra", direction, slope)
-    # Part of the slope that only changes the direction of u.
+    # Part of the derivative that changes only the direction of u.
     turning = slope - direction[..., None] * along[:, None]
     bending = np.einsum("rd,rdab->rab", direction, curvature)
     sideways = turning / divisor[:, None, None]

@@ -1,4 +1,4 @@
-"""Linear equations with coefficients periodic in two phases, as harmonics, and how a scene gives them.
+"""Linear equations with coefficients periodic in two phases, as harmonics, and their derivation from a scene.
 
     M q'' + C(theta, chi) q' + K(theta, chi) q = f(theta, chi),   theta' = nu_1,  chi' = nu_2
 
@@ -23,7 +23,7 @@ from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 Pair = tuple[int, int]  # harmonic (j, k)
 
 _EPS = np.finfo(float).eps
-# Attributes that a motion needs to have a steady state.
+# Attributes of motions that have a steady state.
 _STEADY_STATE = ("lines", "road_multiple", "road_acceleration", "steady_acceleration")
 _GRIDS = (8, 16, 32, 64)  # numbers of samples of each phase, tried in turn
 
@@ -79,14 +79,14 @@ class PeriodicSystem:
 
     @cached_property
     def without_stiffness(self) -> np.ndarray:
-        """Whether each coordinate acts only by its time derivative, as the flux of a circuit: shape (n,)."""
+        """Whether only the time derivative of each coordinate matters, as of a circuit's flux: shape (n,)."""
         stiff = self.mean[0].any(axis=(0, 1))
         for order, _, matrix in self.varying:
             stiff = stiff | (matrix.any(axis=(0, 1)) & (order == 0))
         return ~stiff
 
     def is_free(self, harmonics: np.ndarray) -> np.ndarray:
-        """Tell which coordinates have an arbitrary static part, as they lack stiffness; it is taken as 0.
+        """Find coordinates without stiffness, whose static part is arbitrary and set to 0.
 
         The result for harmonics (H, 2) has the shape (S, H, n).
         """
@@ -132,7 +132,7 @@ class MeanModes:
 
 
 def _fourier_coefficients(samples: np.ndarray) -> np.ndarray:
-    """Compute the harmonics of samples (S, N, N) on a grid of the phases; rounding is set to 0."""
+    """Compute the harmonics of samples (S, N, N) on a grid of the phases; rounding errors are set to 0."""
     if (samples == samples[:, :1, :1]).all():
         constant = np.zeros(samples.shape, dtype=complex)
         constant[:, 0, 0] = samples[:, 0, 0]
@@ -142,7 +142,7 @@ def _fourier_coefficients(samples: np.ndarray) -> np.ndarray:
 
 
 def list_harmonics(spectrum: np.ndarray) -> set[Pair]:
-    """List the harmonics (j, k) that differ from 0 at some speed."""
+    """List the harmonics (j, k) that are not 0 at some speed."""
     index = _indices(spectrum)
     return {(int(index[a]), int(index[b])) for a, b in np.argwhere(spectrum.any(axis=0))}
 
@@ -238,7 +238,7 @@ def periodic_system(
 
 
 def _stack(arrays: list[np.ndarray]) -> np.ndarray:
-    """Stack the arrays of all speeds; return a view if they are the same array."""
+    """Stack the arrays of all speeds; return a view if all are the same array."""
     if all(array is arrays[0] for array in arrays):
         return np.broadcast_to(arrays[0], (len(arrays), *arrays[0].shape))
     return np.array(arrays)
@@ -299,7 +299,7 @@ def expand_quantities(
         carrier = motion.steady_acceleration(omega, angle, road)
         root = equations.root(MotionSample(angle, omega, np.zeros(omega.shape), carrier))
         spectra = {name: _fourier_coefficients(getattr(root, name)) for name in used}
-        # Upper half of the harmonics that the grid resolves.
+        # Higher half of the harmonics that the grid of samples resolves.
         high = np.minimum(np.arange(N), N - np.arange(N)) > N // 4
         if not any(each[:, high].any() or each[:, :, high].any() for each in spectra.values()):
             return spectra
@@ -310,7 +310,7 @@ def expand_quantities(
 
 
 def name_line(motion: Motion, harmonic: Pair) -> Line:
-    """Make the line of a harmonic (j, k), named by the motion, or else like "2 road - rotation"."""
+    """Make the excitation line of a harmonic (j, k), named by the motion or like "2 road - rotation"."""
     multiple = abs(harmonic[0] + harmonic[1] * (motion.road_multiple or 0.0))
     for line in motion.lines:
         if abs(line.multiple - multiple) <= 1e-12 * (1 + multiple):
@@ -351,7 +351,7 @@ def excitation_lines(
 
 
 def distinct_lines(lines: Iterable[Line]) -> list[Line]:
-    """Select one line of each frequency, ascending, without the static one."""
+    """Select one line of each frequency, in ascending order, without the static line."""
     distinct: dict[float, Line] = {}
     for line in lines:
         if line.multiple > 1e-12:

@@ -31,11 +31,11 @@ from beamdyn.scene.validity import check_speeds, refuse_tip_load, warn_of_left_o
 from beamdyn.steady.crossings import KINDS, Crossing, Crossings
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
 
-_HIGHEST_ORDER = 20  # highest order of lines that is accepted: its search takes ten seconds
+_HIGHEST_ORDER = 20  # highest accepted order of lines, whose search takes ten seconds
 _NODES = 400  # number of intervals of speed in which roots are bracketed
 # Number of intervals of speed with large deflection: an equilibrium is solved at each, and loci are smooth.
 _BENT_NODES = 100
-_FURTHER_MODES = 2  # modes computed beyond those sought, as modes of other uncoupled parts may be lower
+_FURTHER_MODES = 2  # number of further modes computed, because modes of other uncoupled parts may be lower
 
 
 @statements.announced
@@ -102,7 +102,7 @@ def resonance_speeds(
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
     scene = choose_physics(scene.undamped, [0.0, top], modes, tolerance)
     model = model_to_tolerance(scene, discretization, ends := np.array([0.0, top]), modes, tolerance)
-    sprung = discretization == "fem" and model.equations.shift  # elements may not resolve springs at the root
+    sprung = discretization == "fem" and model.equations.shift  # elements may miss springs at the root
     if sprung and not np.isfinite(solve_with_error(model, ends, modes).error).all():
         model = choose_model(scene, "ritz", ends, modes)
     critical = model.solver.critical_speed
@@ -139,12 +139,12 @@ def resonance_speeds(
 
 
 def _check_stiffness(scene: Scene, critical: float) -> None:
-    """Refuse a beam that turns over about its root under the slightest rotation."""
+    """Refuse a beam that turns over about its root at any speed above 0."""
     if critical > 0:
         return
     in_plane = np.abs([np.cos(scene.mount.bending_angle), np.sin(scene.mount.bending_angle)])
     names = ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]
-    # The softest spring at the root; of equal ones, that nearer the plane of rotation.
+    # The softer spring at the root; of equal springs, the one nearer the plane of rotation.
     spring, _, name = min(zip(scene.mount.root_stiffnesses, -in_plane, names, strict=False))
     bound, remedy = (
         ("the discretization does not resolve so soft a spring", 'give a stiffer one, or "ritz"')
@@ -159,7 +159,7 @@ def _check_stiffness(scene: Scene, critical: float) -> None:
 
 @dataclass(frozen=True)
 class _UncoupledModes:
-    """Modes that no term couples with others, with the lines of their loads and of their stiffness.
+    """Modes that are not coupled with other modes, with the lines of their loads and of their stiffness.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def _warnings(
     top: float,
     critical: float,
 ) -> Iterator[statements.Statement]:
-    """Yield warnings: limits of the search, why nothing was found, and rotation bending the beam too far."""
+    """Yield warnings: limits of the search, reasons for no result, and too large deflection by rotation."""
     scene = model.scene
     if discretization == "fem" and model.discretization.order is None:
         said = f"finite elements do not resolve the springs at the root: solved with {model.discretization}"
@@ -252,7 +252,7 @@ class _Loci:
     model : Model
         The discretized scene.
     solver : Eigensolver
-        Eigensolver of the modes that are sought, which other modes do not affect.
+        Eigensolver of the requested modes, which other modes do not affect.
     places : ndarray of int
         Indices of the solver's coordinates among those of the model.
     numbers : ndarray of int, shape (m,)
@@ -299,7 +299,7 @@ class _Loci:
         return int(np.count_nonzero(np.diff(self._detunings(line, indices) > 0)))
 
     def coincide(self, line: Line, indices: tuple[int, ...]) -> bool:
-        """Tell whether a line equals a natural frequency, or a sum of two, at every speed, as on a hinge."""
+        """Return whether a line equals a natural frequency, or a sum of two, at all speeds, as on a hinge."""
         return coincides(self._detunings(line, indices), self.values[:, indices].sum(axis=1))
 
     def describe_coincidence(self, kind: str, line: Line, indices: tuple[int, ...]) -> str:

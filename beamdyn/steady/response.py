@@ -42,10 +42,10 @@ from beamdyn.steady.vibration import (
     vibration_of,
 )
 
-_MOST_HARMONICS = 20  # largest number of interactions accepted, which takes half a minute
-_HIGHEST_SPEED = 0.99  # largest speed at which modes of a basis are computed, over the critical speed
+_MOST_HARMONICS = 20  # largest accepted number of interactions, whose solution takes half a minute
+_HIGHEST_SPEED = 0.99  # largest speed at which modes of a basis are computed, relative to the critical speed
 _MOST_MODES = 13  # largest number of modes of "auto", at each of two speeds
-# First number of modes tried about equilibria; not small, as each larger basis solves them anew.
+# First number of modes tried about equilibria; not small, because equilibria are solved again for each basis.
 _FIRST_ABOUT_EQUILIBRIA = 6
 # Number of speeds at which the model error is computed, in addition to that of the largest amplitude.
 _MOST_JUDGED = 4
@@ -56,8 +56,8 @@ _LINEAR = "vibration about the equilibrium being linear"
 class SteadyResponse(StatesModelError):
     """Steady response over speed, after the free vibration from the start has decayed.
 
-    `model_error` (k,) and `left_out`, computed when asked for, are what the physics left out would change in
-    the amplitude at the `left_out_speeds` (k,), or by `left_out_at` at others.
+    `model_error` (k,) and `left_out`, computed on first use, are the changes of the amplitude by physical
+    effects that the model leaves out, at the `left_out_speeds` (k,), or by `left_out_at` at other speeds.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class SteadyResponse(StatesModelError):
     error : ndarray, shape (S,)
         Estimated truncation error of the harmonics, relative to the bound.
     lines : tuple of Line, length l
-        Lines (frequencies) of the response, named by what excites them.
+        Spectral lines (frequencies) of the response, named by their excitation.
     line_frequency : ndarray, shape (S, l)
         Frequencies of the lines [Hz].
     line_amplitude, line_amplitude_across : ndarray of complex, shape (S, l)
@@ -124,7 +124,7 @@ class SteadyResponse(StatesModelError):
     harmonics: np.ndarray
     warnings: tuple[str, ...]
     provenance: Provenance
-    # Largest size [m] of the vibration without the static part, (S,).
+    # Largest magnitude (S,) of the vibration [m], without the static part.
     vibration: np.ndarray = field(repr=False)
     request: ResponseRequest = field(repr=False)
 
@@ -144,7 +144,7 @@ class SteadyResponse(StatesModelError):
 
     @property
     def is_warned(self) -> np.ndarray:
-        """Whether a warning applies at each speed, shape (S,)."""
+        """Whether a warning applies, for each speed: shape (S,)."""
         undecided = (np.abs(self.growth_rate) < self.growth_rate_error) & np.isin(
             self.status, ("stable", UNSTABLE)
         )
@@ -194,7 +194,7 @@ class SteadyResponse(StatesModelError):
         return self.speeds[np.union1d(known[spread], known[np.argmax(self.amplitude[known])])]
 
     def left_out_at(self, speeds: Sequence[float] | np.ndarray) -> LeftOutEffects:
-        """Find changes of the amplitude at speeds [rad/s] (k,) by effects left out of the model."""
+        """Compute changes of the amplitude at speeds [rad/s] (k,) by effects left out of the model."""
         if not len(speeds):
             return nothing_known(self.scene)
         request = replace(self.request, speeds=np.asarray(speeds, dtype=float))
@@ -203,7 +203,7 @@ class SteadyResponse(StatesModelError):
     def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0, direction: int = 0) -> np.ndarray:
         """Compute the tip deflection [m] at phases of rotation and road [rad] of shape (...): (S, ...).
 
-        Direction 0 is that of the bending angle at the root, 1 the one across.
+        Direction 0 is that of the bending angle at the root, direction 1 is across.
         """
         rotation, road = np.broadcast_arrays(rotation, road)
         phase = np.tensordot(self.harmonics, np.stack([rotation, road]), axes=1)
@@ -220,7 +220,7 @@ class SteadyResponse(StatesModelError):
         return self.line_amplitude_across if check_direction(direction) else self.line_amplitude
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the resonance curve and, if the beam bends in two directions, the curve in each of them."""
+        """Plot the resonance curve and, if the beam bends in two directions, the curve of each direction."""
         names = modelled_directions(self.scene) if self.scene.physics.planes == 2 else ()
         by_direction = {name: self.largest_tip(direction) for direction, name in enumerate(names)}
         return plot_response(self.speeds, self.amplitude, self.bound, ax, by_direction, self.display_units)
@@ -347,7 +347,7 @@ class ResponseRequest(FieldsOnly):
         )
 
     def solve_with(self, scene: Scene, _: str = "") -> SolvedValues:
-        """Solve amplitudes of another scene with as many modes, more if just one has large deflection."""
+        """Compute amplitudes of another scene with as many modes, or more if one has large deflection."""
         modes = self.basis.modes or 1
         other = replace(self, scene=scene, discretization=ensure_size(scene, self.discretization, modes))
         if scene.physics.large_deflection != self.scene.physics.large_deflection:
@@ -359,7 +359,7 @@ class ResponseRequest(FieldsOnly):
         return SolvedValues(response.amplitude, lost[0] if lost else "", note)
 
     def refined(self) -> ResponseRequest | None:
-        """Return the request with half as many more modes; None if there is no larger model."""
+        """Return the request with 1.5 times as many modes; None if there is no larger model."""
         basis = self.basis.refined()
         if basis is None or basis.modes is None:
             return None
@@ -367,7 +367,7 @@ class ResponseRequest(FieldsOnly):
         return replace(self, basis=basis, discretization=discretization)
 
     def run_smallest_basis(self) -> SteadyResponse:
-        """Solve with the smallest basis whose truncation error meets the tolerance, or the largest tried."""
+        """Solve with the smallest modal basis that meets the tolerance, or with the largest one tried."""
 
         def finer(response: SteadyResponse) -> SteadyResponse | None:
             return None if (response.request.basis.modes or 0) >= _MOST_MODES else response.refined
@@ -376,7 +376,7 @@ class ResponseRequest(FieldsOnly):
         return refine(first, finer, lambda found: not (found.mode_error > self.tolerance).any())
 
     def smallest_basis(self) -> ModalBasis:
-        """Choose modes at the slowest and fastest speed; about equilibria, modes at each speed."""
+        """Choose a basis of modes at the slowest and fastest speed; about equilibria, at each speed."""
         if self.scene.physics.large_deflection:
             return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
         speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)
@@ -389,7 +389,7 @@ class ResponseRequest(FieldsOnly):
 
 
 def _largest(line: np.ndarray, harmonics: np.ndarray, stable: np.ndarray) -> np.ndarray:
-    """Compute the largest size over the phases of a sum of lines (S, d, l); nan without a response."""
+    """Compute the largest magnitude over the phases of a sum of lines (S, d, l); nan without a response."""
     size = np.full(len(line), np.nan)
     size[stable] = largest_over_phases(line[stable], harmonics)
     return size

@@ -1,4 +1,4 @@
-"""What a harvester yields on a random road, beside what its steady motion yields."""
+"""Power that a harvester gains from a random road, in addition to the power of steady motion."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from beamdyn.scene.harvester import Electrodes
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import list_speeds, warn_of_deflection
 
-SEVERAL = 3.0  # standard deviations that a random response rarely passes
-_LARGE = 0.01  # relative change of the root mean square by the parametric term that is worth a warning
+SEVERAL = 3.0  # number of standard deviations that a random response rarely exceeds
+_LARGE = 0.01  # relative change of the root mean square by the parametric term above which a warning is given
 _TOLERANCE = 1e-5  # tolerance of the linear model that gives the root mean squares
 
 
@@ -84,7 +84,7 @@ def harvest_on_road(
     discretization: DiscretizationChoice,
     amplitude: np.ndarray,
 ) -> tuple[RoadHarvest, list[str]]:
-    """Compute the harvest on a random road at the speeds (S,) where motion is stable, and its warnings.
+    """Compute the harvest on a random road at speeds (S,) with stable motion, and warnings.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def _warnings(
     missed: np.ndarray,
     amplitude: np.ndarray,
 ) -> Iterator[str]:
-    """Yield warnings: large deflection, the parametric term left out, resonances the road does not excite."""
+    """Yield warnings of large deflection, the omitted parametric term, and resonances missed by the road."""
     reached = np.nan_to_num(amplitude + SEVERAL * road.deflection)
     yield from warn_of_deflection(reached, scene.beam.length, speeds)
     if change.max() > _LARGE:

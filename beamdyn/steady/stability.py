@@ -33,21 +33,21 @@ from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, gene
 # Largest number of interactions with the periodic coefficients through which two modes resonate.
 _TONGUE_ORDER = 2
 _ROUNDING = 1e-9  # ratio of real part to largest eigenvalue that is rounding error
-# Relative change of the growth rate by one more interaction, below which the rate has settled.
+# Relative change of the growth rate by one more interaction, below which the rate has converged.
 _SETTLED = 1e-6
 _MOST_INTERACTIONS = 4  # largest number of interactions beyond the resonant harmonics
 _MOST_OUTSIDE = 0.1  # largest fraction of an eigenvector in the outermost harmonics
-_SAME_RATE = 0.05  # difference of copies of one growth rate, over the part of the rate by the resonance
+_SAME_RATE = 0.05  # difference of copies of one growth rate, over the resonance's contribution to it
 _NEAREST = 8  # number of eigenvalues followed from one number of interactions to the next
-_OFF = 1e-4  # relative offset of the shift from an eigenvalue, at which the shifted matrix would be singular
+_OFF = 1e-4  # relative offset of the shift from an eigenvalue, at which the matrix is singular
 _SINGULAR = (
     "the equations with periodic coefficients are singular: the excitation is too strong beside "
     "the beam's stiffness; check the size and the unit of each value"
 )
-_STATIONARY = 1e-9  # rate of a stationary harmonic, relative to the rates of the phases
-_MOST_STEPS = 6  # number of interactions within which a stationary harmonic is sought
-_PHASES = 8  # number of phases between commensurate rates, whose fastest growth is used
-_BETWEEN_PHASES = 0.1  # error of the growth rate between the phases, over the range of its values
+_STATIONARY = 1e-9  # frequency of a harmonic, over the phases' rates, below which it is stationary
+_MOST_STEPS = 6  # number of interactions within which a harmonic of frequency 0 is sought
+_PHASES = 8  # number of phase differences tried for commensurate rates; the fastest growth counts
+_BETWEEN_PHASES = 0.1  # error due to phases not tried, over the range of growth rates at those tried
 
 
 def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
@@ -81,7 +81,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     error[singular] = np.inf
     rows = np.flatnonzero(~singular)
     if len(rows):
-        R, n = R[rows], system.size  # modal scales of equal action, which make |V| symmetric
+        R, n = R[rows], system.size  # modal scales that make |V| symmetric
         R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma[rows])))[:, None, :]
         V = _balance(sigma[rows], [(f[rows], np.linalg.solve(R, B[rows] @ R)) for f, B in periodic])
         free = _MeanMotion(system.rates[rows], system.coupling, sigma[rows], V)
@@ -102,7 +102,7 @@ def fastest_growth(parts: Sequence[PeriodicSystem]) -> tuple[np.ndarray, np.ndar
 
 
 def _combine(sigma: np.ndarray, shift: np.ndarray, resonances: list[_Resonance]) -> tuple[float, float]:
-    """Return the largest growth rate of the resonances and of the modes outside them, and its error."""
+    """Return the largest growth rate of resonant and other modes, and its error."""
     scale, resonant = np.abs(sigma).max(), {resonance.mode for resonance in resonances}
     alone = [a for a in range(len(sigma)) if np.imag(sigma[a]) >= 0 and a not in resonant]
     found = [resonance.growth_rate(scale) for resonance in resonances]
@@ -113,7 +113,7 @@ def _combine(sigma: np.ndarray, shift: np.ndarray, resonances: list[_Resonance])
 
 
 def _largest_real_part(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
-    """Return the largest real part of exponents s (..., m), or 0 where it is only rounding error."""
+    """Return the largest real part of exponents s (..., m), or 0 where it is within rounding."""
     largest = np.real(s).max(axis=-1)
     return np.where(np.abs(largest) <= _ROUNDING * scale, 0.0, largest)
 
@@ -130,7 +130,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
     S, n = len(K), system.size
     K, C = np.linalg.solve(M, K), np.linalg.solve(M, C)
     w = np.sqrt(np.abs(K).max(axis=(1, 2)))[:, None, None]
-    w = np.where(w == 0, 1.0, w)  # the coordinate of an uncoupled circuit has no stiffness
+    w = np.where(w == 0, 1.0, w)  # an uncoupled circuit's coordinate has no stiffness
     A = np.zeros((S, 2 * n, 2 * n))
     A[:, :n, n:], A[:, n:, :n], A[:, n:, n:] = w * np.eye(n), -K / w, -C
     periodic = []
@@ -138,7 +138,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
         B = np.zeros_like(A)
         B[:, n:, n * order : n * order + n] = -np.linalg.solve(M, matrix) / (1 if order else w)
         periodic.append((spectrum, B))
-    # A coordinate without stiffness, as the flux of a circuit, is not a state: only its rate is.
+    # A coordinate without stiffness, such as the flux of a circuit, is not a state, but its rate is.
     states = np.append(~system.without_stiffness, np.ones(n, dtype=bool))
     if states.all():
         return A, periodic
@@ -146,7 +146,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
 
 
 def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute eigenvalues (S, 2 n) and vectors (S, 2 n, 2 n) of A; undamped, from mass and stiffness."""
+    """Compute eigenvalues (S, 2 n) and eigenvectors of A; without damping, from mass and stiffness."""
     if system.mean[1].any():
         return np.linalg.eig(A)
     modes, n = MeanModes.of_system(system), system.size
@@ -159,7 +159,7 @@ def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.n
 def _balance(
     sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Scale decaying modes that do not oscillate to act on others as much as others act on them.
+    """Scale overdamped modes so that their coupling to other modes is equal in both directions.
 
     With the scale of oscillating modes, the slow decay of a circuit with a large resistance would act on all
     others by discs that grow with that resistance.
@@ -220,7 +220,7 @@ class _MeanMotion:
         opposite = (h[:, None] == -h[None]).all(axis=2).argmax(axis=1)
         product = np.abs(coupling[..., opposite] * np.swapaxes(coupling, 1, 2))
         own = np.arange(product.shape[1])
-        # Harmonics h and -h have opposite gaps and cancel: a varying frequency does not shift the rate.
+        # Terms of harmonics h and -h cancel (opposite gaps): a varying frequency does not shift the growth.
         product[:, own, own] = 0
         with np.errstate(divide="ignore", invalid="ignore"):
             shift = np.where(product > 0, product / np.abs(self.gap(harmonics)), 0.0).sum(axis=(2, 3))
@@ -233,7 +233,7 @@ class _MeanMotion:
         return reduce(np.add, parts)
 
     def shrunk_radius(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute the radii (S, m) of discs made smaller where others are far away.
+        """Compute the radii (S, m) of Gershgorin discs, made smaller where other discs are far away.
 
         Scaling the coordinates of far discs by t < 1 keeps the terms of a row that couple it with discs
         close by, and multiplies its rest by t; far discs grow by 1/t, to half their distance.
@@ -247,14 +247,14 @@ class _MeanMotion:
         return np.where(between[:, None], radius, np.minimum(radius, scaled))
 
     def resonances(self, considered: np.ndarray) -> Iterator[tuple[int, list[_Resonance]]]:
-        """Yield each index of rates at which discs of opposite energy overlap, with the resonances there."""
+        """Yield each index of rates with overlapping discs of opposite energy, and its resonances."""
         levels = generate_harmonics([(0, 0)], self.coupling, _TONGUE_ORDER)
         harmonics = [h for level in levels for h in level]
         overlap = self._overlap(harmonics, self.radius) & considered[:, None, None, None]
         undamped = np.abs(np.real(self.sigma)).max(axis=1) <= _ROUNDING * np.abs(self.sigma).max(axis=1)
         rows = np.flatnonzero(undamped & overlap.any(axis=(1, 2, 3)))
         overlap[rows] = self[rows]._overlap(harmonics, self[rows].shrunk_radius(harmonics))
-        # The first stationary harmonic found is the one by the fewest interactions.
+        # The first stationary harmonic found has the fewest interactions.
         reached = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)[1:]
         pairs = np.array([h for level in reached for h in level])
         for i in np.flatnonzero(overlap.any(axis=(1, 2, 3))):
@@ -270,7 +270,7 @@ class _MeanMotion:
             yield int(i), found
 
     def _overlap(self, harmonics: list[Pair], radius: np.ndarray) -> np.ndarray:
-        """Tell which discs of opposite energy, not all left of the axis, overlap: shape (S, m, m, H)."""
+        """Return which discs of opposite energy overlap, unless all lie left of the axis: (S, m, m, H)."""
         near = np.abs(self.gap(harmonics)) <= (radius[:, :, None] + radius[:, None, :])[..., None]
         opposite = (np.imag(self.sigma) >= 0)[:, :, None] & (np.imag(self.sigma) <= 0)[:, None, :]
         rightmost = (np.real(self.sigma) + radius).max(axis=1) > 0
@@ -305,7 +305,7 @@ class _Resonance:
     stationary: Pair | None
 
     def growth_rate(self, scale: float) -> tuple[float, float]:
-        """Compute growth rate and its error [1/s], the largest over the phase between commensurate rates.
+        """Compute the growth rate and its error [1/s], largest over the phase between commensurate rates.
 
         `scale` is the largest |eigenvalue| of the mean equations.
         """
@@ -314,7 +314,7 @@ class _Resonance:
         return float(rates.max()), float(errors.max() + _BETWEEN_PHASES * np.ptp(rates))
 
     def _growth_rate_at(self, phase: float, scale: float) -> tuple[float, float]:
-        """Compute growth rate and error [1/s] at a phase, with as many harmonics as settling takes."""
+        """Compute growth rate and error [1/s] at a phase, with as many harmonics as convergence needs."""
         hill, inner = self._hill_matrix(1, phase)
         s, z = np.linalg.eig(hill.toarray())
         rate, near, error = *self._select(s, z, inner, scale), np.inf
@@ -327,7 +327,7 @@ class _Resonance:
         return rate, error
 
     def _select(self, s: np.ndarray, z: np.ndarray, inner: int, scale: float) -> tuple[float, complex]:
-        """Select the growth rate from eigenvalues and vectors, and the value near which to continue.
+        """Select the growth rate from eigenvalues and vectors, and the start value for the next step.
 
         Every exponent s recurs as s + i Omega_h about each harmonic h.  Copies about the outermost
         harmonics, past the `inner` rows, are wrong, because their neighbours are missing.  Of the others,
@@ -358,7 +358,7 @@ class _Resonance:
         return hill, len(inner) * len(self.sigma)
 
     def _fold(self, h: Pair) -> Pair:
-        """Return the harmonic that stands for all that differ from h by multiples of one of frequency 0."""
+        """Return the representative of harmonics that differ from h by multiples of the stationary one."""
         if self.stationary is None:
             return h
         (j, k), (a, b) = h, self.stationary

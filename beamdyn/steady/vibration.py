@@ -1,4 +1,4 @@
-"""Equations of vibration at steady speeds over the phases of the excitation; its lines and stability.
+"""Equations of vibration at steady speeds, their solution by spectral lines, and stability.
 
 A straight beam has the same equations at all speeds.  With large deflection, the beam vibrates about the
 equilibrium to which rotation bends it: its equations at each speed are linear about the equilibrium there, in
@@ -34,11 +34,11 @@ _TURNING, _PAST = "turns freely about the root", "past the critical speed"
 _MISSING, _UNSTABLE_MEAN = "no equilibrium", "unstable equilibrium"
 WITHOUT_STABLE_MEAN = _PAST, _TURNING, _MISSING, _UNSTABLE_MEAN
 _MOST_INTERACTIONS = 5  # largest number of interactions with the periodic coefficients in the response
-_MOST_UNKNOWNS = 2**17  # number of unknowns solved for at once, which fit the processor's cache
-# Order of the tip's axes: the direction of bending, the one across, the one along.
+_MOST_UNKNOWNS = 2**17  # number of unknowns solved at once: they fit the processor's cache
+# Order of the axes at the tip: direction of bending, direction across, direction along the beam.
 _ACROSS_THEN_ALONG = [1, 2, 0]
-_ROUNDING = 1e-15  # relative error where no harmonic is neglected
-_NO_FREQUENCY = 1e-8  # frequency, over a clamped beam's, below which it counts as 0
+_ROUNDING = 1e-15  # relative rounding error if no harmonic is neglected
+_NO_FREQUENCY = 1e-8  # frequency, relative to a clamped beam's, below which it counts as 0
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Vibration:
     without_rate : ndarray of bool, shape (S,)
         Whether the growth rate is undefined at each speed.
     lost : dict of str to ndarray of bool, shape (S,)
-        Whether there is no stable mean to vibrate about, for each reason; the first that is true counts.
+        For each reason, whether there is no stable mean position to vibrate about; the first true one counts.
     """
 
     parts: list[tuple[PeriodicSystem, np.ndarray]]
@@ -66,7 +66,7 @@ class Vibration:
     lost: dict[str, np.ndarray]
 
     def stability(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Compute growth rates of free motion, errors, status, and whether stability is undecided: (S,)."""
+        """Compute growth rates of free motion, errors, status, and if stability is undecided: (S,) each."""
         rate, error = np.full((2, len(self.static)), np.nan)
         if (known := ~self.without_rate).any():
             rate[known], error[known] = fastest_growth([part[known] for part, _ in self.parts])
@@ -98,7 +98,7 @@ def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds:
     equations = model.modal_equations(basis)
     tips = np.broadcast_to(equations.tips, (len(speeds), *equations.tips.shape))
     free = np.zeros(len(speeds), dtype=bool)
-    if shift := model.equations.shift:  # without a shift the stiffness at rest is positive definite
+    if shift := model.equations.shift:  # without a shift, the stiffness at rest is already positive definite
         lowest = np.abs(Solver(model.equations.steady().undamped()).eigenvalues(speeds, 1)[:, 0])
         free = lowest < _NO_FREQUENCY * np.sqrt(shift)
     return Vibration(
@@ -116,7 +116,7 @@ def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds:
 def _about_equilibria(
     model: Model, basis: ModalBasis, motion: Motion | None, speeds: np.ndarray
 ) -> Vibration:
-    """Build equations about each equilibrium, or about the straight beam as a placeholder without one.
+    """Build equations about each equilibrium; without one, about the straight beam as a placeholder.
 
     The directions of the tip are: of bending, across, and along the axis of the beam at the root.
     """
@@ -169,7 +169,7 @@ def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
 def choose_vibrating(
     scene: Scene, discretization: DiscretizationChoice, speeds: np.ndarray, modes: int
 ) -> Model:
-    """Choose a model for the speeds at which the beam has an equilibrium: see `choose_model`."""
+    """Choose a model for those speeds at which the beam has an equilibrium: see `choose_model`."""
     try:
         return choose_model(scene, discretization, speeds, modes)
     except NoEquilibrium:
@@ -221,7 +221,7 @@ def solve_parts(
 def _solve_harmonics(
     system: PeriodicSystem, tips: np.ndarray, interactions: int | None, tolerance: float
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Compute harmonics, tip deflections (S, d, H) and errors (S), with the harmonics each speed needs."""
+    """Compute harmonics, tip deflections (S, d, H) and errors (S,), with the harmonics each speed needs."""
     S, d = tips.shape[:2]
     if not system.load_harmonics:
         return [], np.zeros((S, d, 0), dtype=complex), np.full(S, _ROUNDING)
@@ -242,7 +242,7 @@ def _solve_harmonics(
             if used:
                 q = solve_harmonic_balance(system[part], harmonics[kept])
                 finer = np.einsum("shn,sdn->sdh", q, tips[part])
-            if used >= first:  # the level below `first` only serves to estimate the error
+            if used >= first:  # the level below `first` serves only to estimate the error
                 total = sizes_of(finer).sum(axis=1)
                 distance = sizes_of(finer - c[part, :, kept]).sum(axis=1) / np.where(total == 0, 1, total)
                 error[part] = _ROUNDING if exact else distance
@@ -300,7 +300,7 @@ def add_static(
     -------
     total : ndarray of complex, shape (S, directions, l)
     share : ndarray, shape (S,)
-        Sum of all lines' sizes before over the sum after, at most 1, by which a relative error shrinks.
+        Sum of all lines' magnitudes before, over the sum after (at most 1): factor on relative errors.
     """
     total = line[:, :directions].copy()
     total[..., ~harmonics.any(axis=1)] += static[:, :directions, None]

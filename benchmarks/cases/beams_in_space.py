@@ -17,8 +17,8 @@ from beamdyn.equations.ritz import Ritz, RitzSpaces
 
 BENDING = ("twist rate", "second curvature", "curvature")
 E1, E2, E3 = np.eye(3)
-_ITERATIONS = 10  # iterations of Newton's method for each share of a load, enough for rounding
-_ROUNDING = 1e-10  # change by the last iteration over the coordinates, that is rounding
+_ITERATIONS = 10  # number of Newton iterations for each load step, enough to converge to rounding
+_ROUNDING = 1e-10  # relative change in the last iteration below which it is rounding
 
 
 def uniform(
@@ -37,7 +37,7 @@ def uniform(
     kinks: np.ndarray | None = None,
     hinges: np.ndarray | None = None,
 ) -> BeamInSpace:
-    """Make a beam of one section: law (6, 6), and per length mass, centre of mass and inertia (3, 3)."""
+    """Make a beam of constant section: stiffness (6, 6); mass, centre and inertia (3, 3) per length."""
     points = functions + 16
     quadrature = ArcQuadrature(Cells(np.array(ends), points))
     stations, xi = BeamStations(quadrature, length, np.empty(0)), quadrature.xi
@@ -73,7 +73,7 @@ def _of_strain(name: str, functions: np.ndarray) -> np.ndarray:
 
 
 def bend(beam: BeamInSpace, load: TipForces, steps: int = 4) -> BentBeam:
-    """Solve the equilibrium of a beam with a load, which grows in steps, by Newton's method."""
+    """Solve for the equilibrium of a beam under a load that grows in steps, by Newton's method."""
     q, change = np.zeros(beam.size), np.full(beam.size, np.inf)
     for share in np.arange(1, steps + 1) / steps:
         for _ in range(_ITERATIONS):
@@ -88,7 +88,7 @@ def bend(beam: BeamInSpace, load: TipForces, steps: int = 4) -> BentBeam:
 
 
 def bend_of_45_deg(torsion: float, strains: Sequence[str] = STRAINS) -> np.ndarray:
-    """Compute the displacement [in] of the tip of Bathe and Bolourchi's arc: along, to centre, across."""
+    """Compute the tip displacement [in] of Bathe and Bolourchi's 45 deg arc: along, to centre, across."""
     modulus, radius, second = 1e7, 100.0, 1 / 12
     law = modulus * np.diag([1.0, 0.5, 0.5, torsion / 2, second, second])
     arc = uniform(radius * np.pi / 4, law, strains, functions=8, initial=(0, 0, 0, 0, 0, 1 / radius))
@@ -96,7 +96,7 @@ def bend_of_45_deg(torsion: float, strains: Sequence[str] = STRAINS) -> np.ndarr
 
 
 def helix(length: float, stiffness: float, couple: np.ndarray) -> np.ndarray:
-    """Compute the tip of a beam of equal bending stiffnesses under a couple, about which it winds."""
+    """Compute the tip position of a beam with equal bending stiffnesses that a couple bends to a helix."""
     size = float(np.linalg.norm(couple))
     axis, turn = couple / size, size * length / stiffness
     along = axis * (axis @ E1)

@@ -16,7 +16,7 @@ NAMES = ("iea_15", "nrel_5", "bmodes_test01")
 
 
 def reference_blade(name: str, twisted: bool = True) -> tuple[Blade, float]:
-    """Return a blade for the second method, in units of its root, and its unit of time [s]."""
+    """Return a blade for `reference.twisted_beam`, in units of root properties, and the unit of time [s]."""
     data = stations(name)
     x, length = data["stations"], data["length"]
     mass, stiffness = data["mass_per_length"][0], data["flap_stiffness"][0]

@@ -1,6 +1,6 @@
-"""Drum brakes with pivoted and with duo-servo shoes, and stops, to many digits.
+"""Drum brakes with pivoted and with duo-servo shoes, and a truck's stops, to many digits.
 
-From their inputs as they are; shares nothing with the package but its classes of inputs.
+The inputs count as exact; no code of the package is used except its classes of inputs.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ def _arms(shoe: Shoe) -> tuple[mpf, mpf, mpf, mpf, mpf, mpf]:
 
 
 def locking_friction_of_shoe(shoe: Shoe, leading: bool) -> mpf | None:
-    """Compute the friction at which a shoe locks; None if there is none."""
+    """Compute the friction coefficient at which a shoe locks; None if it never locks."""
     *_, n, d, _ = _arms(shoe)
     limit = n / d if leading else -n / d
     return limit if limit > 0 else None
 
 
 def forces_on_shoe(shoe: Shoe, friction: float, force: float, leading: bool) -> dict[str, Any]:
-    """Compute the fields of `ShoeResult` for a shoe that slides, by name; vectors are complex."""
+    """Compute the fields of `ShoeResult`, by name, for a shoe that does not lock; vectors are complex."""
     s, mu, P = (-1 if leading else 1), mpf(friction), mpf(force)
     K, S, C, n, d, zero = _arms(shoe)
     arm, bracket = mpf(shoe.force_arm) - mpf(shoe.pivot[1]), n + s * mu * d
@@ -71,7 +71,7 @@ def exact_levers(brake: DuoServo, clearance: float) -> dict[str, mpf]:
 
 
 def given_levers(levers: Levers) -> dict[str, mpf]:
-    """Return lever arms and angles as they are given."""
+    """Return given lever arms and angles as exact numbers."""
     phi = {
         "phi1": mpf(levers.alpha1) + mpf(levers.gamma),
         "phi2": mpf(levers.alpha2) - mpf(levers.gamma),
@@ -81,7 +81,7 @@ def given_levers(levers: Levers) -> dict[str, mpf]:
 
 
 def locking_friction(levers: dict[str, mpf]) -> mpf | None:
-    """Compute the friction at which a duo-servo brake locks; None if there is none."""
+    """Compute the lining friction at which a duo-servo brake locks; None if it never locks."""
     sigma = min(levers["a1"], levers["b"]) / levers["r"]
     return sigma / mpmath.sqrt(1 - sigma**2) if sigma < 1 else None
 
@@ -130,7 +130,7 @@ def _sum(P: mpf, Q: mpf, phi: mpf) -> mpf:
 
 
 def friction_of_torque(levers: dict[str, mpf], piston: float, torque: float, near: float) -> mpf:
-    """Find the friction that gives a torque, near an estimate."""
+    """Find the lining friction that gives a torque, near an estimate."""
     wanted, limit = mpf(torque), locking_friction(levers)
 
     def missing(mu: mpf) -> mpf:
@@ -150,7 +150,7 @@ def friction_of_torque(levers: dict[str, mpf], piston: float, torque: float, nea
 
 
 def exact_stop(truck: Truck, conditions: StopConditions) -> dict[str, mpf]:
-    """Compute the fields of `Stop` for a truck that stops, by name; loads are over the weight."""
+    """Compute the fields of `Stop`, by name, for a truck that stops; axle loads are over the weight."""
     m, ml = mpf(truck.empty_mass), mpf(truck.load_mass)
     a, y = ((m * mpf(e) + ml * mpf(w)) / (m + ml) for e, w in zip(truck.empty_cg, truck.load_cg, strict=True))
     V, mu, t1, t2, g = (

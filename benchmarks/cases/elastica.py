@@ -1,4 +1,4 @@
-"""Beams that bend far: published rows as scenes, and our own cases for the second method."""
+"""Beams with large deflection: published cases as scenes, and our cases for `reference.elastica`."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ Branch = Literal["straight", "bent"]
 
 
 def published() -> dict[str, Any]:
-    """Load the tables `case`, `harvester`, `pitchfork`, `least_frequency`, `fold` and `beside`."""
+    """Load the published tables of beams with large deflection (frequencies, pitchforks, folds)."""
     return load("elastica")
 
 
 def scene_of(row: dict[str, Any]) -> bd.Scene:
-    """Make the scene of a published nondimensional row; its speed is in rad/s."""
+    """Make the scene of a published nondimensional case; the speed gamma is taken in rad/s."""
     angles = (math.radians(row[name]) for name in ("setting_angle_deg", "bending_angle_deg"))
     beam, physics = bd.Beam.from_stiffness(1.0, 1.0, 1.0), _physics(branch=row["branch"])
     return bd.Scene(beam, bd.Mount(row["radius"], *angles), physics=physics)
@@ -50,15 +50,15 @@ class Case:
     Parameters
     ----------
     speed
-        In rad/s: gamma, as long as length, and mass and stiffness at the root are 1.
+        Speed [rad/s], equal to gamma because length, and mass and stiffness at the root, are 1.
     radius, setting, bending
-        Of the mount; angles in degrees.
+        Radius and angles [deg] of the mount.
     beam
         Arguments of `Beam.from_stiffness`.
     tip
         Arguments of `TipMass`.
     bent_to
-        The side of the branch beside that from rest, 1 or -1; 0 is that from rest.
+        0 for the branch of equilibria from rest; 1 or -1 for the other branch, bent to this side.
     """
 
     name: str
@@ -89,7 +89,7 @@ class Case:
 
 @cache
 def reference_answer(number: int) -> SceneAnswer:
-    """Compute the answer of the second method to the case at an index of `CASES`."""
+    """Solve the case at an index of `CASES` by collocation (`reference.elastica`)."""
     case = CASES[number]
     if case.bent_to:
         return bent_answer(case.scene, case.speed, case.bent_to)

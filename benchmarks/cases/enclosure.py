@@ -16,7 +16,7 @@ from benchmarks.cases.reference.power_series import Tip, bending_eigenvalues
 
 @dataclass(frozen=True)
 class NondimensionalScene:
-    """A scene of unit length, mass and stiffness and its speed, as beamdyn and as the reference take it."""
+    """A scene of unit length, mass and stiffness with its speed, for beamdyn and for the reference."""
 
     scene: bd.Scene
     gamma: float
@@ -34,7 +34,7 @@ class NondimensionalScene:
 
 
 def random_nondimensional_scene(rng: np.random.Generator) -> NondimensionalScene:
-    """Draw a scene: uniform or tapered, with or without tip body, inward or outward, also past buckling."""
+    """Draw a scene: uniform or tapered, with or without tip body, inward or outward, some past buckling."""
     taper, delta = _random_taper(rng), round(rng.uniform(-10, 5), 4)
     mass, stiffness = ([1.0, -taper], _power(taper, 3)) if rng.random() < 0.7 else ([1.0], [1.0])
     tip = _random_tip(rng) if rng.random() < 0.5 else None
@@ -53,7 +53,7 @@ def _random_taper(rng: np.random.Generator) -> float:
 
 
 def _power(taper: float, exponent: int) -> list[float]:
-    """Return coefficients of (1 - taper x)^exponent, rounded to 12 digits, which define the beam."""
+    """Return coefficients of (1 - taper x)^exponent, rounded to 12 digits, as definition of the beam."""
     return [round(float(c), 12) for c in (Polynomial([1.0, -taper]) ** exponent).coef]
 
 
@@ -64,7 +64,7 @@ def _random_tip(rng: np.random.Generator) -> Tip:
 
 
 def _random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
-    """Draw a speed up to 12 and six times the critical speed; half of them near that."""
+    """Draw a speed up to 12 and six times the critical speed; half of the speeds are near critical."""
     critical = bd.critical_speed(scene)
     near = rng.random() < 0.5 and critical < 12
     return float(critical * rng.uniform(0, 1.5) if near else rng.uniform(0, min(12, 6 * critical)))
@@ -78,5 +78,5 @@ def encloses(bounds: FrequencyBounds, exact: list[mpf]) -> np.ndarray:
 
 
 def relative_width(bounds: FrequencyBounds) -> np.ndarray:
-    """Compute the width of the bounds of the squared frequencies, relative to these."""
+    """Compute the relative width of the bounds of the squared frequencies."""
     return (bounds.upper_squared - bounds.lower_squared) / np.abs(bounds.upper_squared)

@@ -27,7 +27,7 @@ def unknowns(seed: int) -> dict[str, float]:
 
 
 def measured(true: dict[str, float], noise: float = 0.0, seed: int = 0) -> bd.MeasuredFrequencies:
-    """Compute three modes at five speeds of the scene with some values, and add normal relative noise."""
+    """Compute three frequencies at five speeds for given values, and add relative noise (normal)."""
     with unannounced():
         exact = bd.frequency_locus(with_numbers(OUTWARD, true), SPEEDS, MODES).frequency
     shown = exact * (1 + noise * np.random.default_rng([seed, 1]).standard_normal(exact.shape))
@@ -37,5 +37,5 @@ def measured(true: dict[str, float], noise: float = 0.0, seed: int = 0) -> bd.Me
 def identify(
     true: dict[str, float], noise: float = 0.0, seed: int = 0, scene: Scene = OUTWARD
 ) -> bd.Identification:
-    """Identify numbers from data of some values, without a guess of them."""
+    """Identify the numbers of a scene from simulated data, without an initial guess."""
     return bd.identify(scene, measured(true, noise, seed), dict.fromkeys(true))

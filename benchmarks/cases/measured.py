@@ -51,7 +51,7 @@ def _kink_at(place: float, angle: float) -> bd.Table:
 
 
 def compare() -> Iterator[Comparison]:
-    """Compare all measured frequencies [Hz] with computed ones."""
+    """Compare all measured frequencies [Hz] of both beams with computed frequencies."""
     scene = straight_beam()
     for row in load("epps_chandra_1996")["measured"]:
         printed = row["frequency"]
@@ -64,7 +64,7 @@ def compare() -> Iterator[Comparison]:
 
 
 def compare_carnegie() -> Iterator[Comparison]:
-    """Compare Carnegie's theory, which approximates our model, and his experiment [Hz] with computed ones."""
+    """Compare frequencies [Hz] of Carnegie's theory (it approximates our model) and experiment with ours."""
     known = load("twisted_beams")["carnegie"]
     modes = bd.natural_modes(carnegie_scene(), 0.0, len(known["frequency"]))
     reasons = {"printed": APPROXIMATE, "measured": "measured: the blade was not ideally clamped"}

@@ -1,6 +1,6 @@
 """Equilibrium of drawn mechanisms to many digits, from forces and moments on each body.
 
-Nothing is shared with the package but the classes of joints and loads: no rows, no gradients, no scales.
+No code of the package is used except the classes of joints and loads: no rows, gradients or scales.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from mpmath import mpf
 from brakes import planar
 
 DIGITS = 40
-_SETTLED = mpf(10) ** -30  # relative change of the forces at which friction has settled
+_SETTLED = mpf(10) ** -30  # relative change of the forces below which friction has converged
 _STEPS = 60
 
 Wrench = dict[str, tuple[mpf, mpf, mpf]]  # forces along x and y, and moment about (0, 0), by body
@@ -51,7 +51,7 @@ def _scaled(wrench: Wrench, size: Any) -> Wrench:
 
 
 def _pair(body: str, other: str, at: Sequence[float], fx: Any, fy: Any) -> Wrench:
-    """Return a force on a body at a point, and its opposite on the other body there."""
+    """Return a force on a body at a point, and the opposite force on the other body at this point."""
     return _sum(_force(body, at, fx, fy), _force(other, at, -fx, -fy))
 
 
@@ -62,7 +62,7 @@ def _unit(v: Sequence[float]) -> tuple[mpf, mpf]:
 
 
 def _normal(contact: planar.Contact) -> tuple[mpf, mpf]:
-    """Return the normal of a straight face, or the direction away from the centre of a round one."""
+    """Return the normal of a straight face, or of a round face the direction away from its centre."""
     if contact.centre is None:
         return _unit(contact.normal or (0.0, 1.0))
     return _unit([mpf(p) - mpf(c) for p, c in zip(contact.at, contact.centre, strict=True)])
@@ -80,7 +80,7 @@ def _pull(bodies: Sequence[str], points: Sequence[Sequence[float]]) -> Wrench:
 
 
 def joint_forces(joint: planar.Joint) -> list[Unknown]:
-    """List the unknown forces of a joint."""
+    """List the unknown force components of a joint."""
     match joint:
         case planar.Pin():
             axes = (1, 0), (0, 1)
@@ -101,7 +101,7 @@ def joint_forces(joint: planar.Joint) -> list[Unknown]:
 
 
 def load_force(load: planar.Load) -> tuple[Wrench, mpf | None]:
-    """Return the forces of a unit load, and its size in the drawing; None if unknown."""
+    """Return the forces of a unit load, and the load's magnitude as drawn; None if unknown."""
     match load:
         case planar.Force():
             return _force(load.body, load.at, *_unit(load.direction)), _size(load.magnitude)
@@ -124,7 +124,7 @@ def _size(magnitude: float | None) -> mpf | None:
 
 
 def friction_force(joint: Any) -> tuple[Wrench, mpf]:
-    """Return the forces of unit friction in the package's sense, and its coefficient by the joint's force."""
+    """Return the forces of unit friction, signed as in the package, and the friction coefficient."""
     if isinstance(joint, planar.Pin):
         mu = mpf(joint.friction)
         arm = mpf(joint.radius) * mu / mpmath.sqrt(1 + mu * mu)
@@ -137,7 +137,7 @@ def friction_force(joint: Any) -> tuple[Wrench, mpf]:
 def exact_forces(
     mechanism: planar.Mechanism, senses: Mapping[str, float], start: Mapping[str, Sequence[float]]
 ) -> dict[str, list[mpf]] | None:
-    """Compute forces of joints by component, and loads, by name [N, N m]; None if friction does not settle.
+    """Compute forces of joints, and loads, by name [N, N m]; None if friction does not converge.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def exact_forces(
     senses : mapping
         Sign of the friction of each joint that rubs, against the sliding.
     start : mapping
-        Forces of joints that rub, by component, which say in which direction each presses at first.
+        Initial forces of joints with friction, by component, for the direction in which each presses.
     """
     with mpmath.workdps(DIGITS):
         loads = {load.name: load_force(load) for load in mechanism.loads}
@@ -182,7 +182,7 @@ def _solve(
     senses: Mapping[str, float],
     directions: Mapping[str, Sequence[mpf]],
 ) -> dict[str, list[mpf]]:
-    """Solve for forces that balance the known loads, with friction proportional to those along directions."""
+    """Solve for forces in equilibrium with known loads, friction proportional to forces along directions."""
     seen: dict[str, int] = {}
     matrix = mpmath.zeros(3 * len(bodies), len(unknown))
     for j, each in enumerate(unknown):

@@ -59,8 +59,8 @@ def eebrake(tension=None, right=1.0, left=1.0, joints=JOINTS) -> Mechanism:
     )
 
 
-# Random mechanisms, and their virtual work by formulas of their own: points in the frame of the drawing,
-# complex steps of lengths, distances and angles.  Nothing here asks brakes.planar for a derivative.
+# Random mechanisms, and their virtual work by separate formulas: points in the frame of the drawing, complex
+# steps of lengths, distances and angles.  No derivative of brakes.planar is used.
 
 KINDS = ("Pin", "Bar", "Slot", "Contact", "RotationLock", "Cable")
 LOADS = ("Force", "Follower", "Moment", "CablePair", "Spring", "TorsionSpring")
@@ -72,7 +72,7 @@ def _rotated(angle, x, y):
 
 
 class Motion:
-    """A motion that moves every coordinate of every body by a complex step, one at a time: arrays (3 n,)."""
+    """Virtual motions: each coordinate of each body in turn moves by a complex step; arrays (3 n,)."""
 
     def __init__(self, bodies, poses):
         size = 3 * len(bodies)
@@ -94,7 +94,7 @@ class Motion:
         return sum(np.sqrt((q[0] - p[0]) ** 2 + (q[1] - p[1]) ** 2) for p, q in pairwise(places))
 
     def offset(self, joint, normal):
-        """Compute n.(p - o), with n turning with the other body."""
+        """Compute n.(p - o), with a normal n that turns with the other body."""
         p, o = (
             self.point(joint.body, joint.at),
             self.point(joint.other, joint.at if joint.on is None else joint.on),
@@ -104,7 +104,7 @@ class Motion:
 
 
 def joint_functions(motion, joint):
-    """Return the quantities that a joint keeps constant, which grow as its force pushes the first body."""
+    """Return the quantities that a joint keeps constant; they grow in the direction of the joint's force."""
     if isinstance(joint, Pin):
         p, q = motion.point(joint.body, joint.at), motion.point(joint.other, joint.at)
         return [p[0] - q[0], p[1] - q[1]]
@@ -120,7 +120,7 @@ def joint_functions(motion, joint):
 
 
 def load_function(motion, load):
-    """Return the quantity on which a unit load does work; for a spring minus its energy."""
+    """Return the coordinate on which a unit load does work; for a spring minus its energy."""
     if isinstance(load, Force):
         x, y = motion.point(load.body, load.at)
         turned = motion.angle(load.body).real if load.follows else 0.0
@@ -174,7 +174,7 @@ def random_load(rng, kind, name, bodies, magnitude):
 
 
 def least(rows):
-    """Compute the smallest singular value of rows scaled to length 1."""
+    """Compute the smallest singular value of matrix rows scaled to length 1."""
     rows = np.array(rows)
     return np.linalg.svd(rows / np.linalg.norm(rows, axis=1, keepdims=True))[1][-1] if len(rows) else 1.0
 
@@ -204,9 +204,9 @@ def random_mechanism(rng):
 
 
 def virtual_work(mechanism, answer):
-    """Compute the work of joints and loads on every virtual motion, and of loads on the possible motions.
+    """Compute the virtual work of joints and loads in all motions, and of loads in possible motions.
 
-    Both over the largest single contribution, from the sizes that an `Equilibrium` at one position reports.
+    Both are over the largest single contribution, by the magnitudes in an `Equilibrium` at one position.
     """
     origin = {body: answer.position.point(body, (0.0, 0.0)) for body in mechanism.bodies}
     poses = [[*origin[body], float(answer.position.angle(body))] for body in mechanism.bodies]
@@ -248,5 +248,5 @@ def worst_virtual_work(count, seed=0):
 
 
 def _driver(mechanism):
-    """Return the name of the load of unknown amplitude, which moves with every free motion."""
+    """Return the name of the load of unknown magnitude, which moves in every free motion."""
     return next(load.name for load in mechanism.loads if getattr(load, "magnitude", 0.0) is None)

@@ -119,7 +119,7 @@ EXTRAS = (
 
 
 def _at_one(pattern: re.Pattern[str], change: Callable[[str, Random], str]) -> Mutation:
-    """Make a mutation that replaces one of the places that a pattern finds."""
+    """Make a mutation that replaces one of the matches of a pattern."""
 
     def mutate(text: str, random: Random) -> str:
         places = [match.span() for match in pattern.finditer(text)]
@@ -150,7 +150,7 @@ def _one_of(choices: Sequence[str]) -> Callable[[str, Random], str]:
 
 
 def other_name(text: str, random: Random) -> str:
-    """Put a text of the file in the place of another, such as the name of a body or a kind."""
+    """Replace a quoted text of the file by another one, such as the name of a body or a kind."""
     names = _NAME.findall(text) or [""]
     return _at_one(_NAME, lambda _, random: random.choice(names))(text, random)
 
@@ -163,12 +163,12 @@ def insert(text: str, random: Random) -> str:
 
 
 def cut(text: str, random: Random) -> str:
-    """End the file somewhere."""
+    """Cut off the file at a random position."""
     return text[: random.randrange(len(text) + 1)]
 
 
 def shuffle(text: str, random: Random) -> str:
-    """Put the lines into another order."""
+    """Shuffle the lines of the file."""
     lines = text.splitlines(keepends=True)
     random.shuffle(lines)
     return "".join(lines)
@@ -195,9 +195,9 @@ MUTATIONS: dict[str, Mutation] = {
     "cut": cut,
     "shuffled": shuffle,
 }
-# Mutations after which a text mostly is still valid.
+# Mutations after which a file is usually still valid.
 _OFTEN = ("magnitude", "sign", "other digits", "other name")
-_RARE = ("cut", "shuffled", "inserted")  # mutations after which a text hardly ever is TOML
+_RARE = ("cut", "shuffled", "inserted")  # mutations after which a file is rarely valid TOML
 
 
 def mutate(text: str, random: Random) -> tuple[str, str]:

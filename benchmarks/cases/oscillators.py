@@ -1,4 +1,4 @@
-"""Systems q'' + C q' + K q = f with known solutions, as `beamdyn.transient.gauss` takes them."""
+"""Systems q'' + C q' + K q = f with known solutions, in the form that `beamdyn.transient.gauss` solves."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ def _axial(section: dict[str, float]) -> float:
 
 
 def _varied(rng: np.random.Generator, section: dict[str, float], kind: int) -> dict[str, Any]:
-    """Draw properties: constant, each with its own taper, or linear between three stations."""
+    """Draw properties: constant, tapered (each differently), or linear between three stations."""
     if kind == 1:
         return dict(section)
     if kind == 2:
@@ -85,9 +85,9 @@ def _twist(rng: np.random.Generator) -> Any:
 
 
 def _points(rng: np.random.Generator, mass: float, stiffness: float, length: float, planes: int) -> dict:
-    """Draw up to two masses and a spring, apart from each other; one mass in eight is at the tip."""
+    """Draw up to two point masses and a spring at different positions; one mass in eight is at the tip."""
     count = int(rng.choice([0, 1, 2], p=[0.4, 0.4, 0.2]))
-    # Positions that no station has.
+    # Positions at which there is no station.
     places = rng.choice(np.arange(5, 30), count + 1, replace=False) / 31 * length
     if count and rng.random() < 0.125:
         places[0] = length
@@ -100,7 +100,7 @@ def _points(rng: np.random.Generator, mass: float, stiffness: float, length: flo
 
 
 def _amount(rng: np.random.Generator, least: float, most: float) -> float:
-    """Draw a power of ten, or in one of eight cases 0."""
+    """Draw a power of ten between two exponents, or in one of eight cases 0."""
     return 0.0 if rng.random() < 0.125 else 10 ** rng.uniform(least, most)
 
 
@@ -127,7 +127,7 @@ def _damped(rng: np.random.Generator, scene: bd.Scene) -> bd.Scene:
     mass = float(scene.beam.mass_per_length(np.zeros(1))[0]) * scene.beam.length
     kind = rng.integers(6)
     if kind in (1, 2) and (scene.physics.planes == 2 or scene.physics.shear):
-        kind += 3  # modes at rest in 40 digits take minutes if there are hundreds
+        kind += 3  # hundreds of modes at rest in 40 digits would take minutes
     if kind == 1:
         return bd.Scene(scene.beam, scene.mount, physics=scene.physics, damping_ratio=rng.uniform(0.001, 0.1))
     damping = (

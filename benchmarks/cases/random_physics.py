@@ -1,6 +1,6 @@
 """Random scenes with two planes of bending, twist, shear, rotary inertia and springs, in all combinations.
 
-They are in the range of inputs that `reference.of_two_planes` solves in seconds.
+The inputs are in a range that `reference.of_two_planes` solves in seconds.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ MOST_TENSION = 1e4  # largest tension, over the smallest EI / L^2
 _QUARTER = np.pi / 2
 _STEEL = 200e9, 7850.0
 _POISSONS_RATIO = 0.3
-_FUNCTIONS = 20  # number of functions for the critical speed, on all segments together
+_FUNCTIONS = 20  # number of trial functions on all segments, for the critical speed
 
 
 @dataclass(frozen=True)
 class Section:
-    """A uniform steel section; its inertias and shear are those of a rectangle.
+    """A uniform rectangular steel section.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class Section:
     slenderness : float
         Length over thickness.
     ratio : float
-        Second bending stiffness over the first; the width is its root times the thickness.
+        Second bending stiffness over the first; the width is the square root of this times the thickness.
     """
 
     length: float
@@ -58,7 +58,7 @@ class Section:
 
 
 def random_physics_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """Draw a scene and a speed up to 0.999 of the critical one, with any physics but stretch.
+    """Draw a scene and a speed up to 0.999 of the critical speed, with any physics except stretch.
 
     Stiffness ratios 0.05 to 1e4, slenderness 5 to 1000 of the stockier plane where it shears or has rotary
     inertia, springs 1e-6 to 1e6 EI/L, hinges, gamma <= 50.
@@ -68,7 +68,7 @@ def random_physics_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def random_still_scene(rng: np.random.Generator) -> bd.Scene:
-    """Draw such a scene without its speed; three in four have two planes."""
+    """Draw a scene as `random_physics_scene` does, without a speed; three in four have two planes."""
     planes, shear, rotary = int(rng.integers(1, 3)), bool(rng.integers(2)), bool(rng.integers(2))
     planes = 2 if rng.random() < 0.5 else planes
     beam = random_physics_beam(rng, stocky=shear or rotary)
@@ -109,13 +109,13 @@ def _keep(rng: np.random.Generator, section: dict[str, float]) -> dict[str, floa
 
 
 def _taper(rng: np.random.Generator, section: dict[str, float]) -> dict[str, Polynomial]:
-    """Draw width and thickness that shrink to a fifth at most."""
+    """Draw a linear taper of width and thickness, to a fifth at the least."""
     width, thickness = (Polynomial([1.0, -taper]) for taper in rng.uniform(0, 0.8, 2))
     return {name: section[name] * width**a * thickness**b for name, (a, b) in _POWERS.items()}
 
 
 def _stations(rng: np.random.Generator, section: dict[str, float]) -> dict[str, bd.Table]:
-    """Draw properties that are linear between three to six stations; every other beam has a jump."""
+    """Draw properties that are linear between three to six stations; half of the beams have a jump."""
     stations = _random_stations(rng, int(rng.integers(3, 7)), jump=bool(rng.integers(2)))
     width, thickness = rng.uniform(0.5, 1.5, (2, len(stations)))
     return {
@@ -125,7 +125,7 @@ def _stations(rng: np.random.Generator, section: dict[str, float]) -> dict[str, 
 
 
 def _random_stations(rng: np.random.Generator, count: int, jump: bool) -> list[float]:
-    """Draw stations x/L, at least 1 % apart; for a jump, one between the ends is repeated."""
+    """Draw stations x/L, at least 1 % apart; for a jump, an inner station is repeated."""
     inner = np.sort(rng.choice(np.arange(1, 100), count - 2, replace=False)) / 100
     twice = rng.choice(inner, 1) if jump else []
     return np.sort(np.concatenate([[0.0, 1.0], inner, twice])).tolist()
@@ -184,9 +184,9 @@ def random_speed(rng: np.random.Generator, scene: bd.Scene) -> float:
 
 
 def speed_of_deflection(scene: bd.Scene, ratio: float) -> float:
-    """Find the least speed at which the tip bends by a share of the length in linear theory, or the largest.
+    """Find the least speed at which the linear tip deflection is a given fraction of the length.
 
-    The largest is 0.95 critical, gamma = 50, or that with a tension of `MOST_TENSION`.
+    The speed is at most 0.95 critical, gamma = 50, and that with a tension of `MOST_TENSION`.
     """
     model = Model(scene, bd.Ritz(max(6, _FUNCTIONS // (len(scene.beam.breakpoints) - 1))))
     fastest = np.sqrt(MOST_TENSION / largest_tension(scene))

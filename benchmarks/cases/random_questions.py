@@ -1,4 +1,4 @@
-"""Random questions backwards about a brake or vehicle near its example: one input and one result."""
+"""Random inverse questions about brakes and vehicles: the input that gives a wanted result."""
 
 from __future__ import annotations
 
@@ -28,21 +28,21 @@ master_bore = "22.22 mm"
 cylinder_bore = "31.75 mm"
 """
 TYPES = {name: load() for name, (_, load) in STANDARD.items()} | {"forklift": FORKLIFT}
-ROUNDING = ("error", "closure", "residual")  # results that are rounding errors only
-SPREAD, SOUGHT = 1.3, 1.5  # factors that spread the numbers of a design, and the bounds of a search
+ROUNDING = ("error", "closure", "residual")  # results that contain only rounding error
+SPREAD, SOUGHT = 1.3, 1.5  # factors for random inputs, and for the bounds of a search
 
 
 class Asked(NamedTuple):
-    """A question whose answer is known.
+    """An inverse question whose answer is known.
 
     Parameters
     ----------
     what : str
-        Brake, input and result.
+        Names of brake, input and result.
     value : float
-        The input's value, which gave the result [unit of the search].
+        Known value of the input, from which the result was computed [unit of the search].
     found : Solutions
-        What the search finds.
+        Result of the search.
     """
 
     what: str
@@ -51,19 +51,19 @@ class Asked(NamedTuple):
 
     @property
     def residual(self) -> float:
-        """Largest difference of the results from the wanted one, over that."""
+        """Largest relative difference of the results at found inputs from the wanted result."""
         return float(np.max(np.abs(self.found.residuals), initial=0.0)) / abs(self.found.target)
 
     @property
     def distance(self) -> float:
-        """Relative distance of the known value from the nearest found one; inf if none is found."""
+        """Relative distance of the known input from the nearest found input; inf if none is found."""
         within = np.clip(self.value, *self.found.ranges.T)
         return float(np.min(np.abs(np.append(self.found.values, within) / self.value - 1), initial=np.inf))
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """The outcome of the question with a number, as plain numbers."""
+    """Outcome of the question with a number, as plain numbers."""
 
     number: int
     what: str
@@ -73,27 +73,27 @@ class Outcome:
 
 
 def measure(number: int, seed: int) -> list[Outcome]:
-    """Solve the question with a number, and return its outcome."""
+    """Draw and solve the question with a number, and return the outcome."""
     asked = draw(number, seed)
     answers = len(asked.found.values) + len(asked.found.ranges)
     return [Outcome(number, asked.what, asked.residual, asked.distance, answers)]
 
 
 def draw(number: int, seed: int, names: Sequence[str] = tuple(TYPES)) -> Asked:
-    """Draw the question with a number; the named types of brakes take turns."""
+    """Draw the question with a number; the named types of brakes are used in turn."""
     name = names[number % len(names)]
     tries = (_question(TYPES[name], name, np.random.default_rng([seed, number, k])) for k in count())
     return next(asked for asked in tries if asked is not None)
 
 
 def _question(brake: BrakeType[Any], name: str, rng: np.random.Generator) -> Asked | None:
-    """Draw a question; None where the design has no answer, or the result does not depend on the input."""
+    """Draw a question; None if the design has no answer, or the result does not depend on the input."""
     text = base(name).replace('piston_force = "11650 N"', "lining_friction = 0.3")
     tables = tomllib.loads(text + PEDAL * (name == "forklift"))
     design = brake.read(tables, name)
     inputs = [each for each in brake.sweep_inputs(design, tables) if part_at(design, each.path)]
     given = ((each, part_at(tables, each.path)) for each in inputs if not each.choices)
-    # Numbers of the file, but no counts and no shares.
+    # Inputs in the file that are numbers, but neither counts nor fractions.
     entries = [each for each, value in given if isinstance(value, str | float)]
     values = {e.path: part_at(design, e.path) * SPREAD ** rng.uniform(-1, 1) for e in entries}
     written = {e.path: f"{values[e.path]!r} {e.quantity.unit}" for e in entries if e.quantity.unit}

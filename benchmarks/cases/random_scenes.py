@@ -11,13 +11,13 @@ from benchmarks.cases.scenes import time_unit
 
 # Young's modulus [Pa] and density [kg/m3] of each material.
 _MATERIALS = ((200e9, 7850.0), (70e9, 2700.0), (5e9, 1200.0))
-MOST_TENSION = 1e5  # largest tension, over EI / L^2, for which the series converges in seconds
+MOST_TENSION = 1e5  # largest tension, over EI / L^2, for which the power series converges in seconds
 
 
 def random_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """Draw a scene and a speed: slenderness 20 to 2000, gamma up to 50, |delta| up to 10, 0.999 critical.
+    """Draw a scene of slenderness 20 to 2000, |delta| <= 10, and a speed: gamma <= 50, 0.999 critical.
 
-    The tension is at most 1e5 EI / L^2 anywhere: past it the series of the reference takes minutes.
+    The tension is at most 1e5 EI / L^2: above, the power series of the reference takes minutes.
     """
     beam = random_beam(rng)
     mount = bd.Mount(

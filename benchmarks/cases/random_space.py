@@ -1,4 +1,4 @@
-"""Random beams in space: bent far, twisted, swept, sheared and stretched, with offsets, at any angles."""
+"""Random beams in space with large deflection, twist, sweep, shear, stretch and offsets, at any angles."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 
-_OFF = 0.4  # share of the scenes that lack an effect
+_OFF = 0.4  # fraction of the scenes that lack an effect
 
 
 def random_space_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:

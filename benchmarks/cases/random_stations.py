@@ -1,4 +1,4 @@
-"""Random blades by tables of many stations, with jumps and stiffnesses that fall by many decades."""
+"""Random blades given by tables of many stations, with jumps and stiffnesses that fall by many decades."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import beamdyn as bd
 from beamdyn.modes.modal.model import Model
 
 _FEWEST, _MOST = 10, 100  # least and largest number of stations
-_DECADES = 8.0  # most decades by which a stiffness falls from the root to the tip
+_DECADES = 8.0  # largest number of decades by which a stiffness falls from root to tip
 _ROUGHNESS = 0.2  # scatter of the logarithm of a property from station to station
-_JUMPS = 0.1  # share of stations at which the properties jump
+_JUMPS = 0.1  # fraction of stations at which the properties jump
 _CLOSEST = 1e-3  # least distance of two stations
 _FASTEST = 3.0  # largest speed, over the first angular frequency at rest
 
@@ -47,7 +47,7 @@ def _random_stations(rng: np.random.Generator) -> np.ndarray:
 
 
 def _random_table(rng: np.random.Generator, stations: np.ndarray, fall: float, root: float = 1.0) -> bd.Table:
-    """Draw values that fall by some decades on the way to the tip, with roughness."""
+    """Draw values at stations that fall by some decades towards the tip, with random scatter."""
     rough = _ROUGHNESS * rng.standard_normal(len(stations))
     return bd.Table(stations.tolist(), (root * np.exp(rough) * 10 ** (-fall * stations)).tolist())
 

@@ -10,15 +10,15 @@ from numpy.polynomial import Polynomial
 import beamdyn as bd
 from beamdyn.modes.modal.model import Model
 
-# Places x/L between which a reference has separate functions: layers at the ends are as short as 1e-3.
+# Ends x/L of the reference's segments, each with its trial functions: end layers are as short as 1e-3.
 _PLACES = (0.003, 0.02, 0.1, 0.9, 0.98, 0.997)
-_FEWEST, _MOST = 10, 80  # least and largest number of functions of the reference on each segment
+_FEWEST, _MOST = 10, 80  # least and largest number of trial functions of the reference on each segment
 MOST_GAMMA = 3000.0  # largest speed, over sqrt(EI / (rho A L^4)) at the root
 _EPS = np.finfo(float).eps
 
 
 def random_tip_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
-    """Draw a scene of length, mass and stiffness 1 at the root, and a speed up to 0.999 critical."""
+    """Draw a scene of unit length, mass and stiffness at the root, and a speed up to 0.999 critical."""
     wide, thick = (Polynomial([1.0, -taper]) for taper in rng.uniform(0, 0.8, 2) * rng.integers(0, 2, 2))
     beam = bd.Beam.from_stiffness(1.0, wide * thick, wide * thick**3, tip=_random_body(rng))
     radius = rng.choice([0.0, rng.uniform(0, 10), 10 ** rng.uniform(-2, 1)])
@@ -31,7 +31,7 @@ def random_tip_scene(rng: np.random.Generator) -> tuple[bd.Scene, float]:
 
 
 def _random_body(rng: np.random.Generator) -> bd.TipMass:
-    """Draw a body of up to twenty beam masses; every other one is a point, every fifth at the tip."""
+    """Draw a tip body of up to twenty beam masses; half of them are points, a fifth have no offset."""
     mass, size = 10 ** rng.uniform(-3, 1.3), rng.uniform(0, 0.3, 3) * rng.integers(0, 2)
     squares = mass * size**2 / 2
     offset = rng.choice([-1, 1]) * 10 ** rng.uniform(-3, -0.7) * rng.choice([0, 1], p=[0.2, 0.8])
@@ -43,7 +43,7 @@ def reference_frequencies(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Compute squared angular frequencies, and their relative uncertainties: shape (k,) each.
 
-    The functions are doubled until the frequencies hold to the accuracy, which is relative, or to rounding.
+    The number of trial functions is doubled until frequencies have a relative `accuracy`, or to rounding.
     """
     found = []
     for functions in _doubled():
@@ -74,7 +74,7 @@ def _doubled() -> list[int]:
 
 
 def _refined(scene: bd.Scene, functions: int) -> Model:
-    """Make the scene's model by assumed modes, with segments that shrink towards both ends."""
+    """Build the scene's model by assumed modes, on segments that shrink towards both ends."""
     beam = scene.beam
     ends = (0.0, *_PLACES, 1.0)
     split = replace(

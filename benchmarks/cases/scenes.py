@@ -21,7 +21,7 @@ HARVESTER = bd.Scene(
 
 
 def rolling_harvester(speed: float | bd.SpinUp) -> bd.Scene:
-    """Make the harvester of Lee and Yoo (2019) in its wheel on the wavy road, at or up to a speed [rad/s]."""
+    """Make the harvester of Lee and Yoo (2019) in a wheel on the wavy road, at or up to a speed [rad/s]."""
     road = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
     return replace(HARVESTER, motion=bd.RollingWheel(rolling_radius=0.3, speed=speed, road=road))
 
@@ -29,9 +29,9 @@ def rolling_harvester(speed: float | bd.SpinUp) -> bd.Scene:
 ROLLING = rolling_harvester(bd.SpinUp(55.0, duration=10.0))  # scene of Table 3
 STEADY_ROLLING = rolling_harvester(55.0)
 STEADY_ROLLING_IN_GRAVITY = replace(STEADY_ROLLING, gravity=9.81)
-# A short spin-up, over which a sweep takes a moment.
+# A short spin-up, with which a sweep takes little time.
 SHORT_SPIN_UP = rolling_harvester(bd.SpinUp(55.0, duration=0.2))
-AFTER_SHORT_SPIN_UP = (0.3, 0.5)  # window in which peaks of `SHORT_SPIN_UP` are taken [s]
+AFTER_SHORT_SPIN_UP = (0.3, 0.5)  # time window of the largest deflection after `SHORT_SPIN_UP` [s]
 BLADE_SPIN_UP = bd.Scene(
     bd.Beam.from_stiffness(10.0, 1.2, 1.4e4, axial_stiffness=2.8e7),
     bd.Mount(0.0, math.pi),
@@ -55,7 +55,7 @@ def steel_strip(
 
 
 def time_unit(beam: bd.Beam) -> float:
-    """Compute sqrt(rho A L^4 / EI) at the root [s]."""
+    """Compute the unit of time sqrt(rho A L^4 / EI) [s], with values at the root."""
     root = np.zeros(1)
     return float(beam.length**2 * np.sqrt(beam.mass_per_length(root) / beam.bending_stiffness(root))[0])
 

@@ -1,4 +1,4 @@
-"""Published answers apart from tables, beside ours: slopes, limits, a spin-up, growth, branches."""
+"""Published single values beside ours: slopes, limits, a spin-up, growth, branches."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from beamdyn.transient.system import ModalSystem
 from benchmarks.cases.elastica import harvester_at, published
 from benchmarks.cases.scenes import BLADE_SPIN_UP, HARVESTER, time_unit
 
-FAR = 1e7  # hub radius, over the length, at which a limit is taken
-_STEPS = 1.6 * 0.5 ** np.arange(5)  # squared speeds of the differences
+FAR = 1e7  # hub radius, over the length, that stands for an infinite one
+_STEPS = 1.6 * 0.5 ** np.arange(5)  # squared speeds (nondimensional) at which differences are taken
 _UNIFORM = bd.Beam.from_stiffness(1.0, 1.0, 1.0)
 _FULL_TURN = 2 * pi
 _ROUNDING = 1e-13  # relative rounding error of some thousand steps
@@ -43,7 +43,7 @@ def slopes() -> Iterator[Comparison]:
 
 
 def _slopes_at_rest(delta: float) -> tuple[np.ndarray, np.ndarray]:
-    """Extrapolate differences over falling squared speeds to rest; the error is the last change."""
+    """Extrapolate difference quotients at decreasing squared speeds to rest; error: the last change."""
     scene = bd.Scene(_UNIFORM, bd.Mount(delta, pi, pi / 2))
     rest, *turning = (_squares(scene, speed) for speed in (0.0, *np.sqrt(_STEPS)))
     rounding = 2e-13 * rest / _STEPS[-1]
@@ -85,7 +85,7 @@ def growth_factors() -> Iterator[Comparison]:
 
 
 def growth_factor(case: dict[str, Any], modes: int, functions: int = 20, tolerance: float = 1e-12) -> float:
-    """Compute the spectral radius of the monodromy matrix of modes at rest."""
+    """Compute the spectral radius of the monodromy matrix, in coordinates of modes at rest."""
     from scipy.integrate import solve_ivp
 
     nu, delta = case["nu"], case["delta"]
@@ -117,7 +117,7 @@ def _varying_speed(gamma: float, depth: float, nu: float) -> bd.RotationFunction
 
 
 def branches() -> Iterator[Comparison]:
-    """Compare the harvester's bent equilibria: frequencies [Hz], where they begin, and one beside rest."""
+    """Compare the harvester's bent equilibria: frequencies [Hz], first speed, and one at rest."""
     known, unit = published(), time_unit(HARVESTER.beam)
     for row in known["harvester"]:
         where = f"harvester at {row['setting_angle_deg']:g} deg, {row['speed']:g} rad/s, first frequency [Hz]"

@@ -1,6 +1,6 @@
 """Textbook problems of statics as mechanisms, solved by the package in the books' units.
 
-`brakes/published/statics.toml` has what the books print.
+`brakes/published/statics.toml` has the results printed in the books.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def at_angle(degrees: float, length: float = 1.0) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Problem:
-    """A mechanism, and the results of its equilibrium that the book prints."""
+    """A mechanism, and the results of its equilibrium that a book prints."""
 
     mechanism: Callable[[], Mechanism]
     read: Callable[[Equilibrium], dict[str, np.ndarray]]
@@ -48,7 +48,7 @@ class Problem:
 
 
 def _compound_bolt_cutter() -> Mechanism:
-    """Build a compound bolt cutter, which nothing holds in space; the bolt is a bar."""
+    """Build a compound bolt cutter, not fixed to the ground; the bolt is a bar."""
     return Mechanism(
         ("upper handle", "lower handle", "upper jaw", "lower jaw"),
         (
@@ -81,7 +81,7 @@ def _toggle_clamp() -> Mechanism:
 
 
 def _vise_grip() -> Mechanism:
-    """Build vise grips with the jaw force along a normal 20 degrees off."""
+    """Build vise grips with the jaw force at 20 degrees to the jaw's normal."""
     normal = (-math.sin(math.radians(20)), -math.cos(math.radians(20)))
     return Mechanism(
         ("grip", "jaw"),
@@ -96,7 +96,7 @@ def _vise_grip() -> Mechanism:
 
 
 def _slotted_lever() -> Mechanism:
-    """Build a lever with a slot over the pin of a crank of 0.1 m."""
+    """Build a lever with a slot on the pin of a crank of 0.1 m."""
     return Mechanism(
         ("lever", "crank"),
         (
@@ -257,7 +257,7 @@ def answers() -> dict[str, Answers]:
 
 
 def cantilever_brake(angle: float) -> tuple[Mechanism, float]:
-    """Build a cantilever brake with yoke legs at an angle [deg], and compute its N/T by hand.
+    """Build a cantilever brake with yoke legs at an angle [deg], and compute pad force over tension, N/T.
 
     N/T = PC / (2 PS sin(angle)): the arm PC normal to the leg, the arm PS of the pad.
     """

@@ -1,4 +1,4 @@
-"""Equations of the transient of Table 3 in Lee and Yoo (2019): beamdyn's, and the same by hand."""
+"""Equations of the transient of Table 3 in Lee and Yoo (2019): by beamdyn, and written by hand."""
 
 from __future__ import annotations
 

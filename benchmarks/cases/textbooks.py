@@ -16,7 +16,7 @@ Answers = dict[str, tuple[float, ...]]
 
 
 def from_pin_line(case: dict[str, Any], scale: float, tilt: float = 0.0) -> drum.Shoe:
-    """Make a shoe whose book counts theta from the line centre-pin, which lies at `tilt` from -y."""
+    """Make a shoe from angles theta measured from the line centre-pin, which has the angle `tilt` from -y."""
     far = case["pin_distance"]["value"] * scale
     pivot = far * np.sin(tilt), -far * np.cos(tilt)
     arm = case["moment_arm"]["value"] * scale if "moment_arm" in case else 2 * far * np.cos(tilt)
@@ -26,7 +26,7 @@ def from_pin_line(case: dict[str, Any], scale: float, tilt: float = 0.0) -> drum
 
 
 def answers() -> dict[str, Answers]:
-    """Solve all examples; return what each prints: a value, or those of several parts."""
+    """Solve all examples; return the results that each prints: a value, or values of several parts."""
     cases = load("drum_textbooks")
     return {name: solve(cases) for name, solve in _SOLUTIONS.items()}
 
@@ -37,7 +37,7 @@ def _shigley_16_2(cases: dict[str, Any]) -> Answers:
     shoe = from_pin_line(case, 1e-3)
     brake = drum.brake_torque(drum.simplex(shoe), peak_pressure=1e6, friction=case["friction"]["value"])
     leading, trailing = brake.shoes
-    # Moment of the normal force, which passes through the centre.
+    # Moment of the normal force, whose line of action passes through the drum's centre.
     normal = abs(leading.normal[0] * shoe.pivot[1])
     return {
         "friction_moment": (normal - brake.force * 1e-3 * case["moment_arm"]["value"],),
@@ -53,7 +53,7 @@ def _shigley_16_1(cases: dict[str, Any]) -> Answers:
     case, tilt = cases["shigley_16_1"], np.radians(30)
     brake = _pushed(case, 1e-3, 1e3)
     leading, trailing = brake.shoes
-    # Axes along and across the line to the pin.
+    # Axes along and normal to the line from the centre to the pin.
     axes = (np.sin(tilt), -np.cos(tilt)), (np.cos(tilt), np.sin(tilt))
     return {
         "leading_pressure": (leading.peak_pressure / 1e3,),

@@ -24,12 +24,12 @@ def models() -> dict[str, Any]:
 
 
 def second_method_cases() -> list[dict[str, Any]]:
-    """Load twenty cases of the second method (`benchmarks.cases.reference.twisted_beam`), to 12 digits."""
+    """Load twenty cases solved by collocation (`benchmarks.cases.reference.twisted_beam`), to 12 digits."""
     return tomllib.loads((_DATA / "second_method.toml").read_text(encoding="utf-8"))["case"]
 
 
 def scene_of(case: dict[str, Any]) -> bd.Scene:
-    """Make the scene of a case; its nondimensional speed is in rad/s."""
+    """Make the scene of a case with unit length, mass and stiffness: the speed gamma is in rad/s."""
     stops = case.get("breakpoints", ())
     tip = bd.TipMass(**case["tip"]) if "tip" in case else None
     properties = {name: piecewise(case[name], stops) for name in _PROPERTIES if name in case}

@@ -1,4 +1,4 @@
-"""Questions backwards whose answers are known: in closed form, by proportion, or by exhaustive search."""
+"""Inverse design questions with known answers: in closed form, by proportion, or by exhaustive search."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ WIDE = {"beam.thickness": (1e-4, 4e-4), "beam.length": (0.03, 0.08)}
 
 @dataclass(frozen=True)
 class Wanted:
-    """A question backwards, and its answer.
+    """An inverse question, and its answer.
 
     Parameters
     ----------
     name : str
-        What is asked.
+        Name of the question.
     scene, free, targets
         As for `design`.
     values : tuple of float or None
         The numbers to be found; None if no design meets the targets, or `best` is known alone.
     best : float or None
-        The best answer, where the first target asks for it.
+        The best value of the target, if the question asks for a largest or smallest value.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Wanted:
     best: float | None = None
 
     def found(self) -> tuple[float, int]:
-        """Relative error of the answer, and solves.
+        """Relative error of the answer, and number of solutions of the equations.
 
         The error is inf where a design is missed, and 0 where it is proven that there is none.
         """
@@ -82,7 +82,7 @@ def questions() -> Iterator[Wanted]:
 
 
 def _by_powers() -> Iterator[Wanted]:
-    """Yield questions on one number, of which a frequency at rest is a power."""
+    """Yield questions on one number, if a frequency at rest is proportional to a power of it."""
     ranges = {"thickness": (1e-4, 4e-4), "length": (0.03, 0.08), "density": (2e3, 12e3)}
     ranges |= {"youngs_modulus": (50e9, 400e9)}
     for name, (low, high) in ranges.items():
@@ -111,7 +111,7 @@ def _by_a_body() -> Iterator[Wanted]:
 
 
 def _out_of_reach() -> Iterator[Wanted]:
-    """Yield questions on answers beyond those at the bounds, and on targets that contradict each other."""
+    """Yield questions with unreachable or contradictory targets."""
     thickness = {"beam.thickness": (1e-4, 2e-4)}
     for factor in (1.001, 3.0):
         target = bd.Target("frequencies", equals=factor * frequency())
@@ -132,7 +132,7 @@ def _out_of_reach() -> Iterator[Wanted]:
 
 
 def _as_before() -> Iterator[Wanted]:
-    """Yield questions on one number, each asked for by the answer of a single call for a known design."""
+    """Yield questions on one number, whose target is the answer computed for a known design."""
     cases = {
         "beam.thickness": ((1e-4, 4e-4), (1.6e-4, 3.3e-4)),
         "mount.radius": ((0.05, 0.5), (0.11, 0.42)),
@@ -152,10 +152,10 @@ def _as_before() -> Iterator[Wanted]:
 
 
 def _of_two_numbers() -> Iterator[Wanted]:
-    """Yield questions on two numbers: the nearest on a line of designs, or the one that meets two targets."""
+    """Yield questions on two numbers: the nearest design on a line, or the design that meets two targets."""
     spans = np.array([math.log(high / low) for low, high in WIDE.values()])
     for factor in (0.7, 1.2, 1.8):
-        # The point of a + A d = 0 that is nearest, in shares of the ranges, with f ~ h / L^2.
+        # The nearest point of a + A d = 0, in fractions of the ranges, with frequency f ~ h / L^2.
         normal = np.array([1.0, -2.0]) * spans
         step = normal * math.log(factor) / (normal @ normal)
         values = np.array([THICKNESS, LENGTH]) * np.exp(step * spans)
@@ -173,7 +173,7 @@ def _of_two_numbers() -> Iterator[Wanted]:
 
 
 def _limited(critical: float) -> tuple[float, float]:
-    """Find thickness and length of the same frequency that buckle at a speed: on a line, as h ~ L^2."""
+    """Find thickness h and length L with unchanged frequency (h ~ L^2) that buckle at a speed [rad/s]."""
 
     def beyond(length: float) -> float:
         thickness = THICKNESS * (length / LENGTH) ** 2
@@ -185,7 +185,7 @@ def _limited(critical: float) -> tuple[float, float]:
 
 
 def _the_best() -> Iterator[Wanted]:
-    """Yield questions on the largest or smallest answer, at a corner, at a limit or between."""
+    """Yield questions on the largest or smallest answer: at a corner of the ranges, a limit, or inside."""
     fastest = frequency(thickness=4e-4, length=0.03)
     slowest = frequency(thickness=1e-4, length=0.08)
     yield Wanted("fastest", INWARD, WIDE, [bd.Target("frequencies", best="largest")], best=fastest)
@@ -204,7 +204,7 @@ def _the_best() -> Iterator[Wanted]:
 
 
 def _amplitude(word: Literal["largest", "smallest"], bounds: tuple[float, float]) -> Wanted:
-    """Find the best steady amplitude over the thickness by exhaustive search, refined about its best."""
+    """Find the thickness of the best steady amplitude by exhaustive search, refined near the best."""
 
     def amplitudes(values: np.ndarray) -> np.ndarray:
         return bd.study(ROLLING, {"beam.thickness": values}, "amplitude", speed=55.0).value

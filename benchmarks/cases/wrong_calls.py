@@ -1,4 +1,4 @@
-"""Public functions with right arguments, and wrong values to put in their place."""
+"""Public functions with valid arguments, and wrong values to replace arguments by."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from brakes import calipers, drum, forklift, planar
 
 @dataclass(frozen=True)
 class Call:
-    """A public function with its arguments.
+    """A public function with valid arguments.
 
     Parameters
     ----------
     name : str
-        Its name.
+        Name of the function.
     function : callable
         The function.
     arguments : mapping
-        By name: values that it accepts.
+        Accepted values of the arguments, by name.
     """
 
     name: str
@@ -45,7 +45,7 @@ def _short(value: Any) -> str:
     """Shorten a value for a message."""
     try:
         text = repr(value)
-    except Exception as error:  # raised by objects whose repr fails; the call must still be named
+    except Exception as error:  # the repr of some objects fails; the message still needs a text
         text = f"<{type(value).__name__}: {error}>"
     return text if len(text) < 60 else f"{text[:40]}...{text[-12:]}"
 
@@ -115,7 +115,7 @@ def _scene(motion: Any = None) -> bd.Scene:
 
 
 def _twisted() -> bd.Scene:
-    """Make the strip with twist, in both directions of bending, on a spring."""
+    """Make a twisted strip that bends in both directions, on a root spring."""
     beam = bd.Beam.rectangular(**STRIP, twist=0.5, poissons_ratio=0.3)
     physics = bd.Physics(planes=2, shear=True, rotary_inertia=True)
     return bd.Scene(beam, bd.Mount(0.2, root_stiffness=10.0), physics=physics)
@@ -130,7 +130,7 @@ def make_shoe() -> drum.Shoe:
 
 
 def make_clamp() -> planar.Mechanism:
-    """Make a lever on a pin, pressed on a spring."""
+    """Make a mechanism: a lever on a pin, pressed on a spring."""
     lever = planar.Pin("pin", "lever", "ground", (0.0, 0.0))
     hand = planar.Force("hand", "lever", (0.2, 0.0), (0.0, -1.0))
     spring = planar.Spring("spring", "lever", "ground", (0.1, 0.0), (0.1, -0.1), 1000.0, 0.12)
@@ -157,7 +157,7 @@ ROAD = {"slope": 0.3019, "speed": 5.5, "friction": 0.7, "reaction_time": 0.5, "r
 
 
 def right_calls() -> list[Call]:
-    """List every public function that computes or describes, with right arguments."""
+    """List all public functions that compute or describe something, with valid arguments."""
     scene, rolling, clamp, caliper = _scene(), _rolling(), make_clamp(), calipers.SinglePivot().build()
     truck, road = forklift.Truck(**TRUCK), forklift.StopConditions(**ROAD)
     slow = {"modes": 2, "tolerance": 1e-3}
@@ -349,7 +349,7 @@ def right_calls() -> list[Call]:
 
 
 def draw_wrong_call(calls: list[Call], values: list[Any], random: Random) -> Call:
-    """Draw one of the calls with one or two wrong arguments."""
+    """Choose a random call, with one or two arguments replaced by wrong values."""
     call = random.choice(calls)
     names = random.sample([*call.arguments], k=min(len(call.arguments), random.choice((1, 1, 1, 2))))
     return Call(

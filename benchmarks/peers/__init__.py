@@ -1,1 +1,1 @@
-"""Other programs on the same cases: accuracy and time.  Run: python -m benchmarks.peers"""
+"""Comparison with other programs on the same cases: accuracy and time.  Run: python -m benchmarks.peers"""

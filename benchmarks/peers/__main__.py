@@ -1,4 +1,4 @@
-"""Run all that is installed, print the tables, write docs/peers.md, docs/peers.png and the README's table."""
+"""Measure all installed programs, print tables, write docs/peers.md, docs/peers.png and README's table."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""The harvester at a setting angle, bent far by rotation: CalculiX's solid elements beside the elastica.
+"""The harvester at a setting angle with large deflection: CalculiX's solid elements against the elastica.
 
-x runs along the straight beam from the root, y across its thickness, in the plane of rotation, z across its
-width.  A static step finds the equilibrium, a frequency step the vibration about it without the Coriolis
-force, a complex frequency step that with it.
+x runs along the straight beam from the root, y across the thickness (in the plane of rotation), z across the
+width.  A static step of CalculiX finds the equilibrium, a frequency step the vibration about it without the
+Coriolis force, and a complex frequency step the vibration with the Coriolis force.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from benchmarks.peers.tapered import rows
 
 ELEMENTS = (20, 40, 80)  # numbers of elements along the beam
 ACROSS = (1, 2)  # numbers of elements over the thickness and the width
-MODES = 10  # among them at least five in the plane; of more, the complex frequency step loses digits
+MODES = 10  # number of modes, at least five of them in the plane; with more, the complex step loses digits
 COMPARED = 3  # number of frequencies compared, in the plane of rotation
 DECK = """*NODE
 {nodes}
@@ -92,9 +92,9 @@ class Solution:
     static : ndarray, shape (3,)
         Frequencies in the plane of rotation without the Coriolis force [Hz].
     full : ndarray, shape (3,)
-        The same with it [Hz].
+        Frequencies with the Coriolis force [Hz].
     time : float
-        Time of the whole [s].
+        Computing time of all steps [s].
     """
 
     tip: np.ndarray
@@ -107,7 +107,7 @@ class Solution:
 
 
 def solid(case: Case, elements: int) -> Solution:
-    """Solve a case by solid elements; the time is that of one run with the start of the process."""
+    """Solve a case by solid elements; the time is that of one run, including the start of the process."""
     with TemporaryDirectory() as folder:
         Path(folder, "beam.inp").write_text(deck(case, elements))
         command = ["ccx", "-i", "beam"]
@@ -116,7 +116,7 @@ def solid(case: Case, elements: int) -> Solution:
 
 
 def deck(case: Case, elements: int) -> str:
-    """Write the input file of a case.
+    """Return the text of CalculiX' input file for a case.
 
     One element over the width would do in a linear step; in a nonlinear one the reduced integration of a
     single row leaves motions without stiffness, and Newton's iterations diverge.  They cross large residual
@@ -165,13 +165,13 @@ def read(text: str, time: float) -> Solution:
 
 
 def _lies_in_plane(text: str) -> np.ndarray:
-    """Whether each mode takes part along x or y; by symmetry the others do so along z only."""
+    """Return whether each mode has motion along x or y; by symmetry the other modes move along z only."""
     x, y, z = np.abs(rows(text, "P A R T I C I P A T I O N   F A C T O R S")[:, 1:4]).T
     return np.maximum(x, y) > z
 
 
 def _frequencies(text: str) -> np.ndarray:
-    """Read the frequencies [Hz] below the title of either step."""
+    """Read the frequencies [Hz] below the title of a step."""
     return rows(text, "(RAD/TIME)")[:, -2]
 
 
@@ -179,7 +179,7 @@ def _frequencies(text: str) -> np.ndarray:
 
 
 def beam(case: Case) -> Solution:
-    """Solve a case by beamdyn; the time is that of the equilibrium and the modes."""
+    """Solve a case by beamdyn; the time is that of equilibrium and modes."""
     mount = bd.Mount(given()["radius"], math.radians(case.setting_angle))
     scene = replace(HARVESTER, mount=mount, physics=bd.Physics(large_deflection=True))
     time, (tip, modes) = shortest(

@@ -1,7 +1,7 @@
-"""CalculiX: the inward harvester in solid elements.
+"""CalculiX: the harvester that points inward, modelled by solid elements.
 
-A static step under the centrifugal load, then a frequency step as a perturbation of it, which takes up
-the stress and the softening by rotation.
+A static step applies the centrifugal load.  A frequency step then perturbs this state, with the static stress
+and the spin softening.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def version() -> str | None:
 
 
 def points() -> Iterator[Point]:
-    """Yield times of a run, with the start of the process, without writing of the input."""
+    """Yield times of runs, including the start of the process, without writing the input file."""
     exact = measure.harvester_frequencies()
     for elements, nonlinear in SETTINGS:
         results = {speed: solve(deck(elements, speed, nonlinear)) for speed in exact}
@@ -70,7 +70,7 @@ def setting(elements: int, nonlinear: bool) -> str:
 
 
 def solve(text: str) -> tuple[float, float]:
-    """Measure the shortest of several runs [s], and return the first frequency [Hz], too."""
+    """Measure the shortest of several runs [s]; return also the first frequency [Hz]."""
     with TemporaryDirectory() as folder:
         Path(folder, "beam.inp").write_text(text)
         command = ["ccx", "-i", "beam"]

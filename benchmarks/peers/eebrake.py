@@ -1,7 +1,8 @@
-"""Exudyn on the eeBrake: forces of all joints at the open position and closed, both pads at 1 N.
+"""Exudyn on the eeBrake caliper: forces of all joints, open and closed, with 1 N on both pads.
 
-Run: python -m benchmarks.peers.eebrake [cable travel in mm].  The cable is a rigid bar here, whose force is
-the tension: with a free motion Exudyn's static solver moves to another equilibrium without a word.
+Run: python -m benchmarks.peers.eebrake [cable travel in mm].  The cable is modelled as a rigid bar, whose
+force is the tension: with a free motion Exudyn's static solver moves to another equilibrium without a
+warning.
 """
 
 from __future__ import annotations
@@ -91,7 +92,7 @@ def worst(travel: float) -> tuple[float, float]:
     """Compute the largest difference of a pin's force, and that of the tension, per newton on a pad."""
     answer = ours(travel)
     forces, tension = theirs(answer)
-    pins = min(  # the sign is that of either body, the same for all pins
+    pins = min(  # the sign depends on the body to which the force is assigned: the same for all pins
         max(np.abs(force - sign * answer.reactions[name]).max() for name, force in forces.items())
         for sign in (1, -1)
     )

@@ -1,8 +1,8 @@
-"""Exudyn: Table 3's transient with plane ANCF cables.
+"""Exudyn: the transient of Table 3 (Lee and Yoo 2019) with plane ANCF cable elements.
 
-The carrier's centre is fixed and its acceleration acts as a load on the mass, which is the same motion
-and keeps coordinates small.  Prescribed motion is given as Exudyn's symbolic functions, which run in C++:
-twice as fast as functions of Python.
+The carrier's centre is fixed; its acceleration acts as a load on the mass, which is equivalent and keeps
+coordinates small.  Prescribed motion is given by Exudyn's symbolic functions, which run in C++, twice as fast
+as Python functions.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ RUNS = 2
 
 @dataclass(frozen=True)
 class Setting:
-    """Number of cables, step [s], and axial stiffness over that of the beam.
+    """Number of cable elements, time step [s], and axial stiffness over that of the beam.
 
-    A soft axis lets Newton's iterations converge at once, at strains of about 1e-3.
+    With a reduced axial stiffness, Newton's iterations converge in one step, at strains of about 1e-3.
     """
 
     cables: int
@@ -57,7 +57,7 @@ def version() -> str | None:
 
 
 def points() -> Iterator[Point]:
-    """Yield times of the solver alone: without making of the model and reading of the deflection."""
+    """Yield times of the solver alone, without building the model and reading the deflection."""
     for setting in SETTINGS:
         runs = [run(setting) for _ in range(RUNS)]
         error = abs(peak(*runs[-1][1:]) / largest_deflection() - 1)
@@ -65,7 +65,7 @@ def points() -> Iterator[Point]:
 
 
 def run(setting: Setting) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return the time [s], and the tip deflection over time [s], [m]."""
+    """Run a setting; return the computing time [s], and the tip deflection [m] over time [s]."""
     import exudyn
 
     exudyn.config.printToConsole = False
@@ -80,7 +80,7 @@ def run(setting: Setting) -> tuple[float, np.ndarray, np.ndarray]:
 
 
 def solver(exudyn: Any, setting: Setting) -> Any:
-    """Return settings of generalised alpha with default damping, without which it is unstable here."""
+    """Return solver settings: generalised-alpha method with default damping, unstable here without it."""
     settings = exudyn.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = setting.step
@@ -90,7 +90,7 @@ def solver(exudyn: Any, setting: Setting) -> Any:
     integration.numberOfSteps = round(measure.T_END / setting.step)
     integration.newton.absoluteTolerance = 1e-7  # force [N] below 1e-4 of the loads; rounding ends at 5e-9
     integration.newton.relativeTolerance = 1e-6
-    # The modified method fails at the full axial stiffness.
+    # The modified Newton method fails at the full axial stiffness.
     integration.newton.useModifiedNewton = setting.softening < 1
     return settings
 
@@ -150,7 +150,7 @@ class Numpy:
 
 
 def model(setting: Setting) -> tuple[Any, int, list[Any]]:
-    """Build the system; return it, the sensor of the tip, and what must stay alive while it is used."""
+    """Build the system; return it, the tip's sensor, and objects that must be kept while it is used."""
     import exudyn
     from exudyn.beams import GenerateBeamElementsAlongLine
 
@@ -166,7 +166,7 @@ def model(setting: Setting) -> tuple[Any, int, list[Any]]:
 
 
 def sense_position(system: Any, node: int) -> int:
-    """Add a sensor of the position of a node, and return its number."""
+    """Add a sensor for the position of a node; return the sensor's number."""
     import exudyn
     from exudyn.itemInterface import SensorNode
 
@@ -189,7 +189,7 @@ def cable(softening: float) -> Any:
 
 
 def clamp(system: Any, node: int, root: Callable[..., list[Any]]) -> Iterator[Any]:
-    """Prescribe the four coordinates of the root, as `root` here gives them."""
+    """Prescribe the four coordinates of the root by the function `root`."""
     from exudyn.itemInterface import CoordinateConstraint, MarkerNodeCoordinate, NodePointGround
 
     ground = system.AddNode(NodePointGround())
@@ -204,7 +204,7 @@ def clamp(system: Any, node: int, root: Callable[..., list[Any]]) -> Iterator[An
 
 
 def offset(k: int, root: Callable[..., list[Any]]) -> Callable[..., Any]:
-    """Return the motion of a coordinate of the root as a function that Exudyn takes."""
+    """Return the motion of one coordinate of the root, in the form of Exudyn's user functions."""
     import exudyn
 
     def function(mbs, t, itemNumber, lOffset):
@@ -214,7 +214,7 @@ def offset(k: int, root: Callable[..., list[Any]]) -> Callable[..., Any]:
 
 
 def loads(system: Any, elements: list[int]) -> Iterator[Any]:
-    """Load every cable by minus the acceleration of the centre."""
+    """Load every cable element by the inertia force: minus the centre's acceleration."""
     import exudyn
     from exudyn.itemInterface import LoadMassProportional, MarkerBodyMass
 
@@ -231,7 +231,7 @@ def loads(system: Any, elements: list[int]) -> Iterator[Any]:
 
 
 def name_user_function(quantity: str) -> str:
-    """Return Exudyn's name of the parameter that takes a quantity as a function of time."""
+    """Return the name of Exudyn's parameter for a quantity given as a function of time."""
     return f"{quantity}UserFunction"
 
 

@@ -1,11 +1,12 @@
-"""Strips bent and twisted in space by a load at the tip: Exudyn's beams and CalculiX's solids beside ours.
+"""Strips bent and twisted in space by a tip load: Exudyn's beams and CalculiX's solids against ours.
 
-Run: python -m benchmarks.peers.in_space [--solids N].  Random rectangular strips at rest under a dead force
-and, but for those that solids are compared with, a dead moment at the tip, both in random directions, grown
-until the beam at the tip has turned by up to 90 deg.  All have shear, stretch and Saint-Venant's torsion;
-ours has the shortening by twist, too.  x runs along the strip, y across its thickness, z across its width.
-Exudyn: geometrically exact beams of two nodes, whose error falls with the square of their length, on two
-meshes, with the limit that these two give.  CalculiX: C3D20R, the force spread evenly over the tip's face.
+Run: python -m benchmarks.peers.in_space [--solids N].  Random rectangular strips at rest carry a dead force
+and a dead moment at the tip, both in random directions; strips that are also solved by solids carry only a
+force.  The load grows until the section at the tip has rotated by up to 90 deg.  All models have shear,
+stretch and Saint-Venant's torsion; ours also has the shortening by twist.  x runs along the strip, y across
+the thickness, z across the width.  Exudyn uses geometrically exact beams of two nodes, whose error falls with
+the square of the element length, on two meshes with extrapolation.  CalculiX uses elements C3D20R, with the
+force spread evenly over the tip face.
 """
 
 from __future__ import annotations
@@ -39,10 +40,10 @@ from benchmarks.rows import markdown_table
 Row = tuple[str, ...]
 
 SEED, CASES, SOLIDS = 33, 20, 5
-MESHES = (40, 80)  # numbers of Exudyn's beams
-COUNTS = (40, 2, 2)  # numbers of solids along, through the thickness and across the width
+MESHES = (40, 80)  # numbers of Exudyn's beam elements
+COUNTS = (40, 2, 2)  # numbers of solid elements along the strip, through the thickness and across the width
 MODULUS, DENSITY, POISSON = 200e9, 7850.0, 0.3
-_STEP = 1.3  # factor by which the load grows
+_STEP = 1.3  # factor by which the load grows from step to step
 _COARSE = bd.Ritz(6)  # basis while the load grows
 HEAD = (
     *("case", "length : width : thickness", "tip turns by", "Exudyn, 40 beams", "80 beams", "limit"),
@@ -116,7 +117,7 @@ class Case:
 
 
 def random_case(number: int) -> Case:
-    """Draw the case of a number; the first ones, which solids are compared with, have a force alone."""
+    """Draw the case with a number; the first cases, also solved by solids, have a force but no moment."""
     rng = np.random.default_rng([SEED, number])
     width = 1 / rng.uniform(30, 60)
     thickness, wanted = width / rng.uniform(1, 4), np.radians(rng.uniform(30, 90))
@@ -137,7 +138,7 @@ def random_case(number: int) -> Case:
 
 
 def exudyn_tip(case: Case, count: int) -> np.ndarray:
-    """Compute the position (3,) of the tip [m] by a number of Exudyn's beams."""
+    """Compute the position (3,) of the tip [m] with a number of Exudyn's beam elements."""
     import exudyn as solver
     from exudyn.itemInterface import (
         Force,
@@ -170,7 +171,7 @@ def exudyn_tip(case: Case, count: int) -> np.ndarray:
 
 
 def _settings(solver: Any, force: float) -> Any:
-    """Return settings with which Newton's iterations end at rounding of the stiff axis, over a force [N]."""
+    """Return settings with which Newton's iterations end at rounding of the axial force; `force` in N."""
     settings = solver.SimulationSettings()
     settings.solution.file.write = False
     settings.linearSolver.solverType = solver.LinearSolverType.EigenSparse
@@ -181,7 +182,7 @@ def _settings(solver: Any, force: float) -> Any:
 
 
 def limit(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
-    """Extrapolate a result whose error falls to a quarter from a mesh to the next."""
+    """Extrapolate a result whose error falls to a quarter from the coarse to the fine mesh."""
     return fine + (fine - coarse) / 3
 
 
@@ -225,7 +226,7 @@ def deck(case: Case, counts: tuple[int, int, int]) -> str:
 
 
 def face_weights(counts: tuple[int, int, int]) -> np.ndarray:
-    """Compute the share of an even load on the face at the tip that each of its nodes has, in order."""
+    """Compute the fraction of a uniform load on the tip face that acts at each of its nodes, in order."""
     share = {place: 0.0 for place in hexahedra.numbers(counts) if place[0] == 2 * counts[0]}
     for j in range(counts[1]):
         for k in range(counts[2]):
@@ -238,14 +239,14 @@ def face_weights(counts: tuple[int, int, int]) -> np.ndarray:
 
 
 def without_shortening(case: Case) -> np.ndarray:
-    """Compute the position (3,) of the tip [m] if twist did not shorten the strip, as for Exudyn."""
+    """Compute the position (3,) of the tip [m] without shortening by twist, as in Exudyn."""
     bent = Model(case.scene, bd.Ritz(14)).bent
     bent = replace(bent, beam=replace(bent.beam, fibres=np.zeros_like(bent.beam.fibres)))
     return bent.beam.at(load_by_rotation(bent, 1.0).at_rest).tip
 
 
 def rows(solids: int) -> Iterator[Row]:
-    """Yield the strip, the turn of its tip, and the distances of the tips, over the length."""
+    """Yield the strip, the rotation of its tip, and the distances of the tips, over the length."""
     for number in range(CASES):
         case = random_case(number)
         found = bd.equilibrium(case.scene, 0.0)
@@ -262,12 +263,12 @@ def rows(solids: int) -> Iterator[Row]:
 
 
 def apart(first: np.ndarray, second: np.ndarray) -> str:
-    """Word the distance of two tips."""
+    """Format the distance of two tip positions."""
     return f"{np.linalg.norm(first - second):.1e}"
 
 
 def section(body: Sequence[Row]) -> str:
-    """Write the section of the page."""
+    """Write the section of docs/peers.md on strips in space."""
     versions = f"{OURS} {ours.version()}, {tables.versions((calculix, exudyn))}"
     return (
         page.IN_SPACE + INTRODUCTION.format(day=date.today(), versions=versions) + markdown_table(HEAD, body)

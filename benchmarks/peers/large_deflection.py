@@ -1,7 +1,7 @@
-"""Beams that bend far: the equilibrium beside CalculiX's solid elements, a spin-up beside Exudyn's cables.
+"""Large deflection: the equilibrium against CalculiX's solid elements, a spin-up against Exudyn's cables.
 
 Run: python -m benchmarks.peers.large_deflection.  It takes about four minutes, prints the tables, and writes
-them as a section of docs/peers.md, whose other sections stay as they are.
+them as a section of docs/peers.md; other sections of the page are unchanged.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ NOTES = """
 
 
 def bent_rows() -> Iterator[Row]:
-    """Yield equilibrium and frequencies of each case by both programs."""
+    """Yield equilibrium and frequencies of each case by beamdyn and CalculiX."""
     for case in bent.CASES:
         own = bent.beam(case)
         yield str(case), OURS, *solution_cells(own)
@@ -90,7 +90,7 @@ def solution_cells(solution: Solution) -> Row:
 
 
 def bent_differences(solid: Solution, own: Solution) -> np.ndarray:
-    """Compute differences of the tip along and across [lengths], and of frequencies in both steps."""
+    """Compute differences in tip position [lengths], and in frequencies with and without Coriolis force."""
     frequencies = (solid.static / own.static, solid.full / own.full)
     return np.array([*np.abs(solid.tip - own.tip), *(np.abs(ratio - 1).max() for ratio in frequencies)])
 
@@ -103,7 +103,7 @@ def scientific(value: float) -> str:
 
 
 def spin_up_rows() -> Iterator[Row]:
-    """Yield deflections of each spin-up by both programs, and by beamdyn's linear theory."""
+    """Yield deflections of each spin-up by beamdyn and Exudyn, and by beamdyn's linear theory."""
     for duration in spin_up.DURATIONS:
         own, linear = spin_up.elastica(duration), spin_up.linear(duration)
         yield f"{duration:g} s", OURS, f"tolerance {spin_up.TOLERANCE:g}", *run_cells(own), "", ""
@@ -129,7 +129,7 @@ def run_cells(run: Run) -> Row:
 
 
 def section(bent_body: Sequence[Row], spin_up_body: Sequence[Row]) -> str:
-    """Write the section of the page."""
+    """Write the section of docs/peers.md on large deflection."""
     versions = f"{OURS} {ours.version()}, {tables.versions((calculix, exudyn))}"
     parts = (
         page.LARGE_DEFLECTION,

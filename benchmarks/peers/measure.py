@@ -1,4 +1,4 @@
-"""Measurements of programs: what they consist of, and how they are taken."""
+"""Measurements of accuracy and time of programs: data and functions common to all programs."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ BLADE = "first flap frequency of an outward blade at nondimensional speeds 0 to 
 ROLLING = "largest deflection of the rolling harvester in 20...30 s"
 CASES = (HARVESTER, BLADE, ROLLING)
 OURS = "beamdyn"
-DEFAULT, ALONE = "default", "one speed by itself"  # words in the names of beamdyn's settings
+DEFAULT, ALONE = "default", "one speed by itself"  # phrases in the names of beamdyn's settings
 
 T_END, WINDOW = 30.0, (20.0, 30.0)
-ENOUGH = 0.5  # time [s] for which short runs are repeated
+ENOUGH = 0.5  # total time [s] for which short runs are repeated
 
 Result = TypeVar("Result")
 
 
 @dataclass(frozen=True)
 class Point:
-    """A program at one setting: its time [s] (per speed, or of the run) and its largest relative error."""
+    """A program at one setting: time [s] (per speed, or of the transient) and largest relative error."""
 
     case: str
     program: str
@@ -47,7 +47,7 @@ def installed(package: str) -> str | None:
 
 
 def shortest(action: Callable[[], Result], runs: int = 3) -> tuple[float, Result]:
-    """Measure the shortest of several runs [s], and return the last result, too; noise only adds."""
+    """Measure the shortest of several runs [s], as disturbances only lengthen; return also a result."""
     times: list[float] = []
     while len(times) < runs or sum(times) < ENOUGH:
         start = perf_counter()
@@ -65,30 +65,30 @@ def best_threads(action: Callable[[], Result]) -> tuple[float, Result]:
 
 
 def peak(t: np.ndarray, u: np.ndarray) -> float:
-    """Compute the largest |u| in the window, by a parabola through the largest sample and its neighbours."""
+    """Compute the largest |u| in the time window, by a parabola through the largest three samples."""
     a = np.abs(u[(t >= WINDOW[0]) & (t <= WINDOW[1])])
     k = int(a[1:-1].argmax()) + 1
     slope, curvature = (a[k + 1] - a[k - 1]) / 2, a[k + 1] - 2 * a[k] + a[k - 1]
     return float(a[k] - slope**2 / (2 * curvature)) if curvature < 0 else float(a[k])
 
 
-# What is known ------------------------------------------------------------------------------------
+# Reference values ---------------------------------------------------------------------------------
 
 
 @lru_cache
 def given() -> dict[str, float]:
-    """Load Table 1 of the paper, in SI units."""
+    """Load Table 1 of Lee and Yoo (2019), in SI units."""
     return {name: entry["value"] for name, entry in load("lee_yoo_2019")["input"].items()}
 
 
 def harvester_frequencies() -> dict[float, float]:
-    """Load the frequency [Hz] of beam theory by speed [rad/s], to ten digits."""
+    """Load the harvester's first frequency [Hz] by beam theory to ten digits, by speed [rad/s]."""
     rows = load("lee_yoo_2019")["reference"]["first_frequency"]
     return {row["speed"]["value"]: row["bending"]["value"] for row in rows}
 
 
 def blade_frequencies() -> dict[float, float]:
-    """Load the first flap frequency of a uniform blade without hub by speed, to twelve digits."""
+    """Load the first flap frequency of a uniform blade without hub to twelve digits, by speed."""
     return {case["gamma"]: case["frequency"][0] for case in load("rotating_beams")["case"] if _uniform(case)}
 
 

@@ -1,4 +1,4 @@
-"""Measurements of beamdyn on the cases of other programs."""
+"""Measurements of beamdyn on the cases that are also solved by other programs."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def points() -> Iterator[Point]:
 
 
 def measure_frequencies(case: str, scene: bd.Scene, exact: dict[float, float], count: int) -> Iterator[Point]:
-    """Measure a locus up to the largest speed with a known frequency, and those speeds one by one."""
+    """Measure frequencies over many speeds at once, and at each speed with a known frequency alone."""
     speeds = np.linspace(0, max(exact), count)
     for tolerance in TOLERANCES:
         yield measure_locus(case, scene, speeds, exact, tolerance)
@@ -43,7 +43,7 @@ def measure_frequencies(case: str, scene: bd.Scene, exact: dict[float, float], c
 def measure_locus(
     case: str, scene: bd.Scene, speeds: np.ndarray, exact: dict[float, float], tolerance: float | None
 ) -> Point:
-    """Measure the time per speed of a locus."""
+    """Measure the time per speed of frequencies over many speeds at once."""
     time, locus = best_threads(lambda: bd.frequency_locus(scene, speeds, 1, tolerance=tolerance))
     rows = [int(np.abs(speeds - speed).argmin()) for speed in exact]
     error = measure.largest_error(dict(zip(exact, locus.frequency[rows, 0], strict=True)), exact)
@@ -51,7 +51,7 @@ def measure_locus(
 
 
 def measure_alone(case: str, scene: bd.Scene, exact: dict[float, float], tolerance: float | None) -> Point:
-    """Measure the time of one speed by itself."""
+    """Measure the time of frequencies at a single speed."""
     time, results = best_threads(
         lambda: [bd.natural_modes(scene, speed, 1, tolerance=tolerance) for speed in exact]
     )
@@ -64,7 +64,7 @@ def name(tolerance: float | None) -> str:
 
 
 def measure_transient(modes: int | str, tolerance: float) -> Point:
-    """Measure the time of a run with its largest deflection, and the error of that."""
+    """Measure the time of a transient, and the error of its largest deflection."""
     time, largest = best_threads(
         lambda: bd.simulate(ROLLING, measure.T_END, modes, tolerance).peak(*measure.WINDOW)
     )
@@ -75,5 +75,5 @@ def measure_transient(modes: int | str, tolerance: float) -> Point:
 
 @lru_cache
 def largest_deflection() -> float:
-    """Compute the largest deflection of the linear model [m], right to 1e-8."""
+    """Compute the largest deflection of the linear model [m], accurate to 1e-8."""
     return bd.simulate(ROLLING, measure.T_END, tolerance=1e-8).peak(*measure.WINDOW)

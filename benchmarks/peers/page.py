@@ -1,4 +1,4 @@
-"""The parts of docs/peers.md, each written by a command that leaves the others unchanged."""
+"""The sections of docs/peers.md, each written by one command that leaves the others unchanged."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ HEADINGS = (HEADING, LARGE_DEFLECTION, IN_SPACE, PIEZO)  # headings of sections,
 
 
 def write_measurements(text: str, path: Path = PAGE) -> None:
-    """Replace all text before the first section."""
+    """Replace all text of the page before the first section."""
     _, sections = _split(path.read_text(encoding="utf-8"))
     _write(path, text, sections)
 
 
 def write_section(section: str, path: Path = PAGE) -> None:
-    """Replace a section, which begins with one of the headings, or put it in its place."""
+    """Replace the section with the same heading, or insert it in the order of `HEADINGS`."""
     measurements, sections = _split(path.read_text(encoding="utf-8"))
     (heading,) = (heading for heading in HEADINGS if section.startswith(heading))
     _write(path, measurements, sections | {heading: section})

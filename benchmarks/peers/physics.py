@@ -1,7 +1,7 @@
 """Beams that bend in two directions, with twist, or shear and rotary inertia, beside pyBModes and CalculiX.
 
 Run: python -m benchmarks.peers.physics.  It takes about six minutes and 7 GB (the finest mesh), prints the
-tables, and writes them as a section of docs/peers.md, whose other sections stay as they are.
+tables, and writes them as a section of docs/peers.md; other sections of the page are unchanged.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ NOTES = """
 
 
 def twisted_rows() -> Iterator[tuple[str, ...]]:
-    """Yield frequencies of each blade and speed by both programs."""
+    """Yield frequencies of each blade and speed by beamdyn and pyBModes."""
     for blade in models()["blade"]:
         name, rpm = blade["name"], blade["speed_rpm"]
         own = twisted.our_frequencies(name, rpm)
@@ -111,7 +111,7 @@ BLADES = {
 
 
 def tapered_rows() -> Iterator[tuple[str, ...]]:
-    """Yield differences of the solid from the beam for each blade and speed."""
+    """Yield differences in frequency between solid and beam for each blade and speed."""
     if calculix.version() is None:
         yield "", "", f"{calculix.NAME} {tables.MISSING}", *[""] * 6
         return
@@ -135,7 +135,7 @@ def calculix_rows(blade: Blade, speed: float) -> Iterator[tuple[str, ...]]:
 
 
 def other_beams(blade: Blade, speed: float) -> Iterator[tuple[str, np.ndarray]]:
-    """Yield beams that show the size of an effect."""
+    """Yield variants of the beam that show the size of each effect."""
     own = tapered.beam(blade)
     if blade.root == CLAMPED:
         yield "slender beam", tapered.beam_frequencies(own, speed, tapered.SLENDER)
@@ -153,7 +153,7 @@ def thousandths(solid: np.ndarray, own: np.ndarray) -> Iterator[str]:
 def orders(solids: Sequence[np.ndarray]) -> Iterator[str]:
     """Yield the order of convergence from three meshes.
 
-    None where the last change is CalculiX's last digit.
+    The order is None if the last change is within the last digit that CalculiX prints.
     """
     first, last = (np.abs(fine / coarse - 1) for coarse, fine in pairwise(solids))
     for before, after in zip(first, last, strict=True):
@@ -164,7 +164,7 @@ def orders(solids: Sequence[np.ndarray]) -> Iterator[str]:
 
 
 def section(twisted_body: Sequence[tuple[str, ...]], tapered_body: Sequence[tuple[str, ...]]) -> str:
-    """Write the section of the page."""
+    """Write the section of docs/peers.md on two planes, twist and shear."""
     versions = f"{OURS} {ours.version()}, {tables.versions((pybmodes, calculix))}"
     width, thickness = (f"{root:g} to {tip:g} m" for root, tip in (tapered.WIDTH, tapered.THICKNESS))
     ratio = tapered.WIDTH[0] / tapered.THICKNESS[0]

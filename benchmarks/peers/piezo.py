@@ -45,8 +45,8 @@ WIDTHS = 0.05, 0.2, 0.5  # widths, over the length
 MESHES = (6, 2, 1), (12, 4, 1), (24, 8, 1)
 FREQUENCY = 18.0  # frequency of the base [Hz], half the first natural one
 PLAIN, CAMBER = bd.Physics(), bd.Physics(camber=True)
-_TOWARDS_ROOT, _TOWARDS_EDGE = 2.0, 1.5  # powers by which elements shrink towards the clamp and the edge
-_REDUCED = 3  # order of integration by 2 x 2 x 2 points, with which thin elements do not lock
+_TOWARDS_ROOT, _TOWARDS_EDGE = 2.0, 1.5  # exponents of the decrease of element sizes towards clamp and edge
+_REDUCED = 3  # order of quadrature with 2 x 2 x 2 points, which avoids locking of thin elements
 _PAIRS = (0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)  # pairs of directions, in Voigt's order
 HEAD = (
     "width/length",
@@ -104,22 +104,22 @@ def _strains(u: Any) -> np.ndarray:
 
 
 def elastic(C: np.ndarray) -> Any:
-    """Return the form of the strain energy with the stiffness C."""
+    """Return the bilinear form of the strain energy with the stiffness C."""
     return BilinearForm(lambda u, v, _: np.einsum("iek,ij,jek->ek", _strains(v), C, _strains(u)))
 
 
 def inertia(rho: float) -> Any:
-    """Return the form of the kinetic energy with the density rho."""
+    """Return the bilinear form of the kinetic energy with the density rho."""
     return BilinearForm(lambda u, v, _: rho * dot(u, v))
 
 
 def piezoelectric(e: np.ndarray) -> Any:
-    """Return the form of the energy of the coupling e of a potential with strains."""
+    """Return the bilinear form of the piezoelectric energy, which couples potential and strains by e."""
     return BilinearForm(lambda p, v, _: np.einsum("iek,ji,jek->ek", _strains(v), e, _slopes(p)))
 
 
 def dielectric(eps: np.ndarray) -> Any:
-    """Return the form of the energy of the field with the permittivity eps."""
+    """Return the bilinear form of the electric field's energy with the permittivity eps."""
     return BilinearForm(lambda p, q, _: np.einsum("iek,ij,jek->ek", _slopes(q), eps, _slopes(p)))
 
 
@@ -142,7 +142,7 @@ class Solid:
     Parameters
     ----------
     stiffness, mass : sparse matrix, shape (n, n)
-        Of displacements and potentials.
+        Matrices of displacements and potentials.
     push : ndarray, shape (n,)
         Load by a unit acceleration of the base.
     unit : float
@@ -163,7 +163,7 @@ class Solid:
         vector = ElementVector(ElementHexS2())
         whole, inner, u = (Basis(mesh, vector, elements=e, intorder=_REDUCED) for e in (None, core, layers))
         phi, (c, e, eps) = Basis(mesh, ElementHexS2(), elements=layers, intorder=_REDUCED), constants()
-        unit = math.sqrt(c[0, 0] / eps[2, 2])  # unit with which the blocks are equally large
+        unit = math.sqrt(c[0, 0] / eps[2, 2])  # potential that makes both blocks similar in size
         K = elastic(isotropic(BRASS, BRASS_RATIO)).assemble(inner) + elastic(c).assemble(u)
         M = inertia(HEAVY_BRASS).assemble(inner) + inertia(HEAVY_PZT).assemble(u)
         free, potential, raised = _free(whole), _potentials(phi), np.zeros(whole.N)
@@ -192,7 +192,7 @@ def _lowest(K: Any, M: Any) -> float:
 
 
 def _potentials(phi: Any) -> Any:
-    """Return potentials by coordinates: 0 at the inner electrode, free inside, one at the outer one."""
+    """Return the matrix of potentials: 0 at the inner electrode, free inside, equal at the outer one."""
     height, small = phi.doflocs[2], 1e-9 * LENGTH
     top = height > CORE / 2 + LAYER - small
     inside = (height > CORE / 2 + small) & ~top
@@ -201,7 +201,7 @@ def _potentials(phi: Any) -> Any:
 
 
 def _free(basis: Any) -> np.ndarray:
-    """Return displacements that neither the clamp nor symmetry holds."""
+    """Return the indices of displacements that are not fixed by clamp or symmetry."""
     x, y, z = basis.doflocs
     small, component = 1e-9 * LENGTH, np.empty(basis.N, dtype=int)
     for dofs in (basis.nodal_dofs, basis.edge_dofs):
@@ -211,7 +211,7 @@ def _free(basis: Any) -> np.ndarray:
 
 
 def solid(width: float) -> tuple[Found, Found]:
-    """Extrapolate the results of three meshes, and return their relative errors, too."""
+    """Extrapolate the results of three meshes; return them and their relative errors."""
     by_mesh = [Solid.of(width, counts).found() for counts in MESHES]
     values, errors = np.transpose([extrapolate(each) for each in zip(*by_mesh, strict=True)]).tolist()
     return Found(*values), Found(*errors)
@@ -221,7 +221,7 @@ def solid(width: float) -> tuple[Found, Found]:
 
 
 def scene(width: float, resistance: float, physics: bd.Physics) -> bd.Scene:
-    """Make the bimorph as a beam."""
+    """Build the scene of the bimorph modelled as a beam."""
     strip = bd.Beam.rectangular(LENGTH, width, CORE, BRASS, HEAVY_BRASS, poissons_ratio=BRASS_RATIO)
     material = {"d31": D31, "s11e": S11, "eps33t": EPS_33, "poissons_ratio": -S12 / S11}
     layers = bd.Harvester(LAYER, HEAVY_PZT, "series", **material, resistance=resistance)
@@ -229,7 +229,7 @@ def scene(width: float, resistance: float, physics: bd.Physics) -> bd.Scene:
 
 
 def beam(width: float, physics: bd.Physics) -> tuple[Found, Found]:
-    """Compute the answers of the beam, and the model errors that it states."""
+    """Compute the results of the beam model, and its stated model errors."""
     short, opened = (bd.natural_modes(scene(width, r, physics), modes=1) for r in (0.0, math.inf))
     voltage = _voltage(width, physics)
     camber = np.nan if physics is CAMBER else abs(_voltage(width, CAMBER) / voltage - 1)
@@ -244,7 +244,7 @@ def _voltage(width: float, physics: bd.Physics) -> float:
 
 
 def _percent(error: float) -> str:
-    """Word a model error in percent, or that it is not stated."""
+    """Format a model error in percent, or state that it is unknown."""
     return "not stated" if np.isnan(error) else f"{error:.2%}"
 
 

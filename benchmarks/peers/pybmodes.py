@@ -1,6 +1,7 @@
-"""pyBModes: the uniform outward blade, flapping out of the plane of rotation.
+"""pyBModes: the uniform outward blade, bending out of the plane of rotation (flap).
 
-Its elements also stretch, twist and bend in the plane; these are made stiff, so that flap comes first.
+The elements of pyBModes also stretch, twist and bend in the plane; these deformations are made stiff, so that
+flap modes come first.
 """
 
 from __future__ import annotations
@@ -87,7 +88,7 @@ def version() -> str | None:
 
 
 def points() -> Iterator[Point]:
-    """Yield times of a solution for one mode, without reading of the main file and checks of the model."""
+    """Yield times of a solution for one mode, without reading the main file and checking the model."""
     exact = measure.blade_frequencies()
     for elements in ELEMENTS:
         results = {speed: solve(elements, speed) for speed in exact}
@@ -97,7 +98,7 @@ def points() -> Iterator[Point]:
 
 
 def solve(elements: int, speed: float) -> tuple[float, float]:
-    """Measure the shortest time [s], and return the first frequency, which has no unit here."""
+    """Measure the shortest time [s]; return also the first frequency, nondimensional."""
     with model(deck(elements, speed), SECTIONS) as blade:
         time, result = best_threads(lambda: blade.run(n_modes=1, check_model=False))
     return time, 2 * math.pi * result.frequencies[0]
@@ -105,7 +106,7 @@ def solve(elements: int, speed: float) -> tuple[float, float]:
 
 @contextmanager
 def model(main_file: str, sections: str) -> Iterator[Any]:
-    """Yield a blade of pyBModes, read from the text of its files, which exist inside the context."""
+    """Yield pyBModes' blade from the texts of its input files, which exist only inside the context."""
     from pybmodes.models import RotatingBlade
 
     with TemporaryDirectory() as folder:
@@ -116,7 +117,7 @@ def model(main_file: str, sections: str) -> Iterator[Any]:
 
 
 def deck(elements: int, speed: float) -> str:
-    """Write the main input file."""
+    """Return the text of pyBModes' main input file."""
     return MAIN.format(
         rpm=speed * 30 / math.pi,
         radius=1.0,

@@ -1,9 +1,9 @@
 """Random rectangular cantilevers as solid bodies: CalculiX, elements C3D20R, extrapolated over three meshes.
 
 x runs along the strip from its root, y across its thickness (the direction in which the beam bends), z across
-its width.  The root face is held in all directions.  A static step with large displacements under the load of
-rotation precedes the frequencies, which are those of a perturbation of it: stress and softening by rotation
-count, Coriolis forces do not.
+its width.  The root face is fixed in all directions.  A static step with large displacements under the
+centrifugal load precedes the frequency step about this state: static stress and spin softening are included,
+Coriolis forces are not.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ Counts = tuple[int, int, int]  # numbers of elements along x, y, z
 
 BENDING, TORSION, CAMBER, OTHER, STRETCH = "bending", "torsion", "camber", "other direction", "stretch"
 KINDS = (BENDING, TORSION, CAMBER, OTHER, STRETCH)
-MODES = 12  # number of modes that are asked for
-_TOWARDS_ROOT, _TOWARDS_EDGES = 2.0, 1.5  # powers by which elements shrink towards the clamp and its corners
-# Width over thickness: above the first one element through the thickness, above the second two on all meshes.
+MODES = 12  # number of requested modes
+_TOWARDS_ROOT, _TOWARDS_EDGES = 2.0, 1.5  # exponents of grading of the mesh towards clamp and corners
+# Ratios of width to thickness: above the first, one element through the thickness; above the second, two.
 _THIN, _THICK = 25.0, 6.0
-# Length over thickness above which a strip is replaced, and that of its replacement.
+# Length over thickness above which a strip is replaced by a thicker one, and the ratio of that one.
 _SLENDEREST, _THICKENED = 900.0, 600.0
-_MOST_STRAIN = 2e-3  # largest strain by rotation at the root, which steel bears
-_ORDERS = 0.8, 4.0  # least and largest order of convergence that is believed
-_LEAST_ERROR = 2e-5  # least relative error of a frequency; smaller estimates have failed
+_MOST_STRAIN = 2e-3  # largest strain due to rotation at the root, which steel can bear
+_ORDERS = 0.8, 4.0  # least and largest plausible order of convergence
+_LEAST_ERROR = 2e-5  # least estimated relative error of a frequency; smaller estimates were found to be wrong
 _LONGEST = 900.0  # time limit of one mesh [s]
-_OVERLAP = 0.5  # overlap of two shapes, above which they are one mode on two meshes
+_OVERLAP = 0.5  # overlap of two mode shapes on two meshes above which they are the same mode
 DECK = """*NODE, NSET=ALL
 {nodes}
 *ELEMENT, TYPE=C3D20R, ELSET=STRIP
@@ -80,9 +80,9 @@ class Strip:
     setting_angle : float
         0 (the strip points inward) or 180 (outward).
     bending_angle : float
-        Of the thickness out of the plane of rotation.
+        Angle of the thickness direction out of the plane of rotation.
     taper : callable, optional
-        Thickness and width at x/L over those given; for a strip that is no plain one.
+        Function of x/L: factors of thickness and width of a tapered strip.
     """
 
     length: float
@@ -98,7 +98,7 @@ class Strip:
     taper: Callable[[float], tuple[float, float]] | None = None
 
     def scene(self, physics: bd.Physics | None = None) -> bd.Scene:
-        """Make the strip as a beam; plain, if no physics is given."""
+        """Build the scene of the strip as a beam; with default physics, the slender beam."""
         beam = bd.Beam.rectangular(
             *(self.length, self.width, self.thickness, self.youngs_modulus, self.density),
             poissons_ratio=self.poissons_ratio,
@@ -114,7 +114,7 @@ class Strip:
 def random_strip(rng: np.random.Generator) -> Strip:
     """Draw a strip: at rest (a third), inward below 0.9 of the critical speed, or outward to gamma 5.
 
-    Rotation strains it by no more than steel bears, so that short and thick ones turn more slowly than that.
+    The speed is limited by the strain that steel bears, so that short and thick strips rotate more slowly.
     """
     length = _rounded(10 ** rng.uniform(-1.5, 0))
     width = _rounded(length / 10 ** rng.uniform(math.log10(2.5), math.log10(50)))
@@ -134,7 +134,7 @@ def random_strip(rng: np.random.Generator) -> Strip:
 
 
 def _rounded(value: float) -> float:
-    """Round to the six digits that a file of references keeps."""
+    """Round to six digits, as in the file of references."""
     return float(f"{value:.6g}")
 
 
@@ -150,9 +150,9 @@ class Mode:
 
     @property
     def shares(self) -> np.ndarray:
-        """Share of each of `KINDS` in the squared displacements of the mid-surface."""
+        """Fraction of each of `KINDS` in the squared displacements of the mid-surface."""
         u, v, w = np.moveaxis(self.shape, 2, 0)
-        # Weights for Legendre polynomials.
+        # Weights that give the coefficients of Legendre polynomials across the width.
         weights = [1 / 6, 2 / 3, 1 / 6], [-0.5, 0, 0.5], [1 / 3, -2 / 3, 1 / 3]
         mean, odd, even = (v @ each for each in weights)
         parts = mean, odd / math.sqrt(3), even / math.sqrt(5), w.mean(axis=1), u.mean(axis=1)
@@ -161,12 +161,12 @@ class Mode:
 
     @property
     def kind(self) -> str:
-        """Kind with the greatest share."""
+        """Kind of the mode: the one with the greatest fraction."""
         return KINDS[int(self.shares.argmax())]
 
 
 def meshes(strip: Strip) -> tuple[Counts, Counts, Counts]:
-    """Return three meshes, each twice as fine as the one before, but alike through a thin strip."""
+    """Return three meshes, each twice as fine as the previous one, except through a thin strip."""
     ratio = strip.width / strip.thickness
     if ratio > _THIN:
         along, through, across = 8, (1, 1, 1), 4
@@ -181,7 +181,7 @@ def meshes(strip: Strip) -> tuple[Counts, Counts, Counts]:
 
 
 def solid_modes(strip: Strip, counts: Counts, modes: int = MODES) -> list[Mode]:
-    """Compute modes of the solid on one mesh, from the lowest frequency."""
+    """Compute modes of the solid on one mesh, in ascending order of frequency."""
     with TemporaryDirectory() as folder:
         Path(folder, "strip.inp").write_text(deck(strip, counts, modes))
         subprocess.run(["ccx", "-i", "strip"], cwd=folder, capture_output=True, timeout=_LONGEST)
@@ -189,7 +189,7 @@ def solid_modes(strip: Strip, counts: Counts, modes: int = MODES) -> list[Mode]:
 
 
 def deck(strip: Strip, counts: Counts, modes: int = MODES) -> str:
-    """Write the input file of a mesh."""
+    """Return the text of CalculiX' input file for a mesh."""
     number = hexahedra.numbers(counts)
     sides = coordinates(strip, counts)
     points = (
@@ -218,7 +218,7 @@ def deck(strip: Strip, counts: Counts, modes: int = MODES) -> str:
 
 
 def _tapered(strip: Strip, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Map a place in the strip of constant section to the tapered one."""
+    """Map a position in the strip of constant section to the tapered strip."""
     if strip.taper is None:
         return x, y, z
     thicker, wider = strip.taper(x / strip.length)
@@ -226,7 +226,7 @@ def _tapered(strip: Strip, x: float, y: float, z: float) -> tuple[float, float, 
 
 
 def coordinates(strip: Strip, counts: Counts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return places [m] of nodes along x, y, z, in steps of half an element."""
+    """Return positions [m] of nodes along x, y, z, at steps of half an element."""
     along, through, across = (np.linspace(0, 1, count + 1) for count in counts)
     side = 2 * across - 1
     corners = (
@@ -242,7 +242,7 @@ def coordinates(strip: Strip, counts: Counts) -> tuple[np.ndarray, np.ndarray, n
 
 
 def line_nodes(counts: Counts, number: dict[hexahedra.Place, int]) -> list[int]:
-    """Return nodes of the mid-surface on both edges and between them, without those of the root."""
+    """Return the mid-surface nodes along both edges and between them, without nodes at the root."""
     along, through, across = counts
     if across % 2:
         raise ValueError("an even number of elements across has nodes in the middle")
@@ -254,7 +254,7 @@ def read_modes(text: str) -> list[Mode]:
     values = rows(text, "E I G E N V A L U E   O U T P U T")
     if not len(values):
         raise ValueError("the .dat file has no frequency: the static step did not converge")
-    # Fortran writes exponents of three digits without a letter.
+    # Fortran writes exponents of three digits without the letter E.
     text = re.sub(r"(?<=\d)-(?=\d{3}\b)", "E-", text)
     blocks = re.split(r"displacements \(vx,vy,vz\) for set LINES.*\n", text)[1:]
     lines = [[line.split() for line in block.strip().partition("\n\n")[0].splitlines()] for block in blocks]
@@ -274,15 +274,15 @@ class SolidMode:
     kind : str
         One of `KINDS`.
     number : int
-        Within the kind, from 1.
+        Number of the mode within its kind, from 1.
     frequency : float
-        Extrapolated [Hz].
+        Extrapolated frequency [Hz].
     error : float
-        Relative, of that frequency: an estimate.
+        Estimated relative error of the extrapolated frequency.
     by_mesh : tuple of float
         Frequencies of the three meshes [Hz], from the coarsest.
     share : float
-        Of the kind in the squared displacements.
+        Fraction of the kind in the squared displacements.
     """
 
     kind: str
@@ -294,7 +294,7 @@ class SolidMode:
 
 
 def reference(strip: Strip, counts: Sequence[Counts] = (), modes: int = MODES) -> list[SolidMode]:
-    """Compute modes of the strip as a solid, extrapolated over three meshes, in ascending order."""
+    """Compute modes of the strip as a solid body, extrapolated from three meshes, in ascending order."""
     body = thickened(strip)
     counts = counts or meshes(body)
     *coarser, finest = (solid_modes(body, each, modes) for each in counts)
@@ -318,10 +318,10 @@ def reference(strip: Strip, counts: Sequence[Counts] = (), modes: int = MODES) -
 
 
 def thickened(strip: Strip) -> Strip:
-    """Return the strip, or for a very slender one a thicker one of smaller modulus with like modes.
+    """Return the strip, or for a very slender one a thicker strip of smaller modulus with similar modes.
 
-    What the thickness over the length still changes in bending and torsion is less than what rounding does
-    in a mesh of the slender one: 3e-4 of the first frequency at length/thickness 1000, 5e-3 at 2500.
+    The ratio of thickness to length changes bending and torsion by less than rounding errors do in a mesh of
+    the slender strip: 3e-4 of the first frequency at length/thickness 1000, 5e-3 at 2500.
     """
     if strip.length < _SLENDEREST * strip.thickness:
         return strip
@@ -331,7 +331,7 @@ def thickened(strip: Strip) -> Strip:
 
 
 def thinner(strip: Strip, body: Strip, kind: str) -> tuple[float, float]:
-    """Return the factor from a thickened strip's frequency to the strip's, and its relative error."""
+    """Return the ratio of the strip's frequency to the thickened strip's, and its relative error."""
     if body == strip:
         return 1.0, 0.0
     by_thickness = 0.05 / _THICKENED
@@ -344,13 +344,13 @@ def thinner(strip: Strip, body: Strip, kind: str) -> tuple[float, float]:
 
 
 def twist_factor(strip: Strip) -> float:
-    """Compute the torsion constant over width thickness^3 / 3, by the series of Timoshenko and Goodier."""
+    """Compute the torsional constant over width thickness^3 / 3, by Timoshenko and Goodier's series."""
     ratio, n = strip.width / strip.thickness, np.arange(1, 100, 2)
     return float(1 - 192 / np.pi**5 / ratio * np.sum(np.tanh(n * np.pi * ratio / 2) / n**5))
 
 
 def error_by_rounding(strip: Strip, frequency: float) -> float:
-    """Estimate the relative error of a frequency by rounding in CalculiX, as measured."""
+    """Estimate the relative error of a frequency by rounding in CalculiX, from measurements."""
     first = 3.516 / (2 * math.pi * strip.time_unit())  # first frequency of the beam at rest
     return 3e-4 * (strip.length / (1000 * strip.thickness)) ** 4 * (first / frequency) ** 2
 
@@ -373,7 +373,7 @@ def error_through_thickness(strip: Strip, kind: str, count: int) -> float:
 
 
 def pair(coarse: Sequence[Mode], fine: Sequence[Mode]) -> tuple[np.ndarray, np.ndarray]:
-    """Find for each mode of a fine mesh that of a coarse one, by kind and shape, and their overlap."""
+    """Find for each mode of a fine mesh the same mode of a coarse mesh, by kind and shape, with overlap."""
     step = len(fine[0].shape) // len(coarse[0].shape)
     shapes = (
         np.array([mode.shape[every - 1 :: every].ravel() for mode in each])
@@ -387,12 +387,12 @@ def pair(coarse: Sequence[Mode], fine: Sequence[Mode]) -> tuple[np.ndarray, np.n
 
 
 def extrapolate(by_mesh: Sequence[float]) -> tuple[float, float]:
-    """Extrapolate three values, each of a mesh twice as fine as the last; return the relative error, too.
+    """Extrapolate three values, each on a mesh twice as fine as the last; return also the relative error.
 
-    The order is that observed, within bounds.  The error is half of what is extrapolated, where the order
-    lies within them; all of it where convergence is slower, three times that where it is faster than the
-    elements' own (the coarsest mesh says little then).  Where the differences change sign, nothing is
-    extrapolated.
+    The order of convergence is the observed one, within bounds.  The error is half of the extrapolated
+    correction if the order is within the bounds, the whole correction if convergence is slower, and three
+    times the correction if it is faster than that of the elements (the coarsest mesh is then unreliable).  If
+    the differences change sign, the finest value is returned.
     """
     before, last = (b - a for a, b in pairwise(by_mesh))
     finest = by_mesh[-1]

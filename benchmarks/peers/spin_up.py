@@ -1,7 +1,8 @@
-"""The outward spin-up of Kane and of Simo and Vu-Quoc: Exudyn's cables beside the elastica.
+"""The spin-up of an outward beam (Kane; Simo and Vu-Quoc): Exudyn's cables against the elastica.
 
-It takes 15 s in the literature; in a third of that the beam bends by 18 % of its length, past linear theory.
-The cables lie along x at the start and turn about -z; their root is held in place, its slope prescribed.
+In the literature the spin-up takes 15 s; in a third of this time the beam bends by 18 % of its length, beyond
+linear theory.  The cable elements lie along x at the start and rotate about -z; the root's position is fixed,
+its slope prescribed.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ TOLERANCE = 1e-5
 
 @dataclass(frozen=True)
 class Setting:
-    """Number of cables, step [s], and axial stiffness over that of the published beam.
+    """Number of cable elements, time step [s], and axial stiffness over that of the published beam.
 
     The published beam stretches, which the elastica leaves out: stretch delays the free vibration after the
     fast spin-up.  A stiffer axis takes more cables, as it locks the bending of a few.
@@ -49,7 +50,7 @@ SETTINGS = (
 
 @dataclass(frozen=True)
 class Run:
-    """Deflection of the tip across the rotating axis [m] at `times`, and the time that it took [s]."""
+    """Deflection of the tip across the rotating axis [m] at `times`, and the computing time [s]."""
 
     tip: np.ndarray
     time: float
@@ -60,7 +61,7 @@ class Run:
         return float(np.abs(self.tip).max())
 
     def differs_from(self, other: Run) -> float:
-        """Largest difference at any time, over the largest deflection of the other."""
+        """Return the largest difference at any time, over the other run's largest deflection."""
         return float(np.abs(self.tip - other.tip).max()) / other.largest
 
 
@@ -76,12 +77,12 @@ def given() -> dict[str, float]:
 
 
 def elastica(duration: float) -> Run:
-    """Simulate with large deflection by beamdyn, for a duration of the spin-up [s]."""
+    """Simulate a spin-up of a given duration [s] by beamdyn with large deflection."""
     return _simulate(duration, bd.Physics(large_deflection=True))
 
 
 def linear(duration: float) -> Run:
-    """Simulate by linear theory of beamdyn, for a duration of the spin-up [s]."""
+    """Simulate a spin-up of a given duration [s] by the linear theory of beamdyn."""
     return _simulate(duration, bd.Physics())
 
 
@@ -98,7 +99,7 @@ def _simulate(duration: float, physics: bd.Physics) -> Run:
 
 @lru_cache
 def cables(duration: float, setting: Setting) -> Run:
-    """Simulate by Exudyn, for a duration of the spin-up [s]; the time is that of the solver alone."""
+    """Simulate a spin-up of a given duration [s] by Exudyn; the time is that of the solver alone."""
     import exudyn as solver
 
     solver.config.printToConsole = False
@@ -111,7 +112,7 @@ def cables(duration: float, setting: Setting) -> Run:
 
 
 def settings_of_solver(solver: Any, setting: Setting) -> Any:
-    """Return settings of generalised alpha with default damping."""
+    """Return settings of the generalised-alpha method with default damping."""
     settings = solver.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = T_END / (SAMPLES - 1)
@@ -131,13 +132,13 @@ def angle(m: Any, t: Any, duration: float) -> Any:
 
 
 def deflection(t: np.ndarray, x: np.ndarray, y: np.ndarray, duration: float) -> np.ndarray:
-    """Compute the tip deflection across the turned axis [m] from the position of the tip."""
+    """Compute the tip deflection across the rotated axis [m] from the position of the tip."""
     turned = angle(Numpy, t, duration)
     return x * np.sin(turned) + y * np.cos(turned)
 
 
 def model(duration: float, setting: Setting) -> tuple[Any, int, list[Any]]:
-    """Build the system; return it, the sensor of the tip, and what must stay alive while it is used."""
+    """Build the system; return it, the tip's sensor, and objects that must be kept while it is used."""
     import exudyn as solver
     from exudyn.beams import GenerateBeamElementsAlongLine
     from exudyn.itemInterface import Cable2D

@@ -1,4 +1,4 @@
-"""scipy's solve_ivp: Table 3's transient in three modes, right-hand side and Jacobian written by hand."""
+"""scipy's solve_ivp: Table 3's transient in three modes, with hand-written right-hand side and Jacobian."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
-"""The strip of Epps and Chandra (1996), straight and swept by 15 deg: ratios of frequencies beside solids.
+"""The strip of Epps and Chandra (1996), straight and swept by 15 deg: ratios of frequencies, beam and solid.
 
-Run: python -m benchmarks.peers.swept [--elements 75].  CalculiX, elements C3D20R, about the static state
-under rotation; the ratio of each frequency of the swept strip to that of the straight one, at rest and at 750
-rpm, so that what the clamp and the camber of the section do to both is left out.
-Solids have no Coriolis force.
+Run: python -m benchmarks.peers.swept [--elements 75].  CalculiX solves the strips by elements C3D20R about
+the static state under rotation.  Compared is the ratio of each frequency of the swept strip to that of the
+straight strip, at rest and at 750 rpm, so that effects of clamp and camber on both strips cancel.  The solids
+have no Coriolis force.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ ACROSS, COMPARED, BOUND = (1, 4), 6, 0.02
 
 
 def solid_frequencies(sweep: float, speed: float, elements: int) -> np.ndarray:
-    """Compute the lowest frequencies [Hz] of the strip as a solid, motions across the width included."""
+    """Compute the lowest frequencies [Hz] of the strip as a solid, also of motions across the width."""
     counts = (elements, *ACROSS)
     number = hexahedra.numbers(counts)
     of_root = [n for place, n in number.items() if place[0] == 0]
@@ -62,7 +62,7 @@ def _node_lines(
         xi, eta, zeta = (step / (2 * count) for step, count in zip(place, counts, strict=True))
         s, y, across = xi * (STRAIGHT + SWEPT), (eta - 0.5) * THICKNESS, (zeta - 0.5) * WIDTH
         beyond = s - STRAIGHT
-        if abs(beyond) < 1e-9:  # the section at the kink is mitred
+        if abs(beyond) < 1e-9:  # the section at the kink lies on the bisector of the angle
             x, z = STRAIGHT - across * math.tan(sweep / 2), across
         elif beyond < 0:
             x, z = s, across
@@ -73,7 +73,7 @@ def _node_lines(
 
 
 def beam_frequencies(sweep: float, speed: float) -> np.ndarray:
-    """Compute the frequencies of the beam in space without the Coriolis force."""
+    """Compute the frequencies [Hz] of the strip as a beam in space, without the Coriolis force."""
     kink = STRAIGHT / (STRAIGHT + SWEPT)
     angle = bd.Table([0.0, kink, kink, 1.0], [0.0, 0.0, sweep, sweep])
     beam = bd.Beam.rectangular(

@@ -1,4 +1,4 @@
-"""Tables and a picture of the measurements."""
+"""Tables and a plot of the measurements of all programs."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from benchmarks.peers.measure import ALONE, CASES, DEFAULT, OURS, Point
 from benchmarks.rows import markdown_table, time_text
 
 MISSING = "not installed"
-MARKERS = {  # markers and colours, the same in all frames
+MARKERS = {  # markers and colours of the programs, equal in all panels
     OURS: ("o", "C0"),
     "CalculiX": ("s", "C1"),
     "pyBModes": ("^", "C2"),
     "Exudyn": ("D", "C3"),
     "solve_ivp": ("X", "C4"),
 }
-TITLE_WIDTH = 42  # characters of a line of a title that fit its frame
+TITLE_WIDTH = 42  # number of characters of a title's line that fit the width of a panel
 INTRODUCTION = """# Beside other programs
 
 Written by `python -m benchmarks.peers` on {day} (Python {python}, {machine}), which installs nothing;
@@ -49,7 +49,7 @@ NOTES = """## How it is measured
 
 
 class Peer(Protocol):
-    """Interface of the module for a program."""
+    """Interface of a module that measures one program."""
 
     NAME: str
     BETTER: str
@@ -61,7 +61,7 @@ class Peer(Protocol):
 
 
 def ratio(point: Point, points: Sequence[Point], alone: bool = False, default: bool = False) -> float:
-    """Return the program's time over our shortest with an equal or smaller error; nan if there is none."""
+    """Return the program's time over our shortest time with at most its error; nan if there is none."""
     ours = [
         p.time
         for p in points
@@ -78,7 +78,7 @@ def versions(peers: Sequence[Peer]) -> str:
 
 
 def rows(points: Sequence[Point], peers: Sequence[Peer]) -> Iterator[tuple[str, ...]]:
-    """Yield case, program, setting, time, error and ratio; then the programs that are missing."""
+    """Yield case, program, setting, time, error and ratio; then the programs that are not installed."""
     for case in CASES:
         shown = case
         for point in (p for p in points if p.case == case):
@@ -95,7 +95,7 @@ def ratios(point: Point, points: Sequence[Point]) -> tuple[str, str]:
 
 
 def target_rows(points: Sequence[Point], peers: Sequence[Peer]) -> Iterator[tuple[str, ...]]:
-    """Yield for each program how much faster we are at the target's setting, and over all settings."""
+    """Yield for each program the ratio of its time to ours, at the target's setting and over all settings."""
     for peer in peers:
         by_setting = {p.setting: p for p in points if p.program == peer.NAME}
         if peer.TARGET is not None and by_setting:
@@ -107,7 +107,7 @@ def target_rows(points: Sequence[Point], peers: Sequence[Peer]) -> Iterator[tupl
 
 
 def times(value: float) -> str:
-    """Word a ratio."""
+    """Format a ratio of times in words."""
     return "" if math.isnan(value) else f"{value:.0f}" if value >= 10 else f"{value:.1g}"
 
 
@@ -123,7 +123,7 @@ TARGET_HEAD = (
 
 
 def markdown(points: Sequence[Point], ours: Peer, peers: Sequence[Peer]) -> str:
-    """Write the page of the documentation."""
+    """Return the text of the documentation page on other programs."""
     first = INTRODUCTION.format(
         day=date.today(),
         python=platform.python_version(),
@@ -142,12 +142,12 @@ def markdown(points: Sequence[Point], ours: Peer, peers: Sequence[Peer]) -> str:
 
 
 def picture(points: Sequence[Point], path: Path) -> None:
-    """Draw error against time into a file."""
+    """Plot error against time, and save the plot to a file."""
     drawn(points).savefig(path, dpi=120)
 
 
 def drawn(points: Sequence[Point]) -> Figure:
-    """Draw error against time, in a frame for each case."""
+    """Plot error against time, in a panel for each case."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(13.0, 4.4), layout="constrained")
@@ -157,7 +157,7 @@ def drawn(points: Sequence[Point]) -> Figure:
 
 
 def frame(ax: Axes, case: str, points: Sequence[Point]) -> None:
-    """Draw error against time of a case; hollow markers where no locus is used."""
+    """Plot error against time for a case; hollow markers stand for speeds solved one by one."""
     for program, alone in dict.fromkeys((p.program, p.setting.startswith(ALONE)) for p in points):
         own = [p for p in points if (p.program, p.setting.startswith(ALONE)) == (program, alone)]
         label, style = (f"{program}, {ALONE}", "none") if alone else (program, None)

@@ -1,7 +1,7 @@
-"""A short tapered blade of steel: CalculiX's solid elements beside a beam with shear and rotary inertia.
+"""A short tapered steel blade: CalculiX's solid elements against a beam with shear and rotary inertia.
 
-It is ten times longer than wide and points outward; x runs along it from the root, y across its thickness,
-which lies along the axis of rotation, z across its width.
+The blade is ten times longer than wide and points outward; x runs along it from the root, y across the
+thickness (along the axis of rotation), z across the width.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ WIDTH, THICKNESS = (0.1, 0.06), (0.02, 0.01)  # width and thickness [m], each at
 SPEEDS = (0.0, 200.0)  # speeds [rad/s]
 # Numbers of elements along the blade, its thickness and its width.
 MESHES = ((20, 1, 2), (40, 2, 4), (80, 4, 8))
-MODES = 14  # the first three of either direction lie below the fifteenth, with those of torsion
+MODES = 14  # number of modes, which include the first three of both directions
 CLAMPED, HELD_AXIALLY = "clamped", "held axially"
 DECK = """*NODE
 {nodes}
@@ -60,17 +60,17 @@ BLADE, CENTRIF, {speed_squared:.12g}, {axis:g}, 0, 0, 0, 1, 0
 
 @dataclass(frozen=True)
 class Blade:
-    """A blade, and how the solid's root face is held.
+    """A blade, and the support of the solid's root face.
 
     Parameters
     ----------
     poissons_ratio : float
-        Of the material.
+        Poisson's ratio of the material.
     root : str
         `CLAMPED`: every node of the face.  `HELD_AXIALLY`: every node along the beam only, across it the
         mean of the face, so that the face may contract.
     tapered : bool
-        Otherwise it has everywhere the section at its middle.
+        Whether the blade tapers; otherwise its section is everywhere that at the middle.
     """
 
     poissons_ratio: float = 0.0
@@ -102,7 +102,7 @@ def solid_frequencies(blade: Blade, counts: tuple[int, int, int], speed: float) 
 
 
 def deck(blade: Blade, counts: tuple[int, int, int], speed: float) -> str:
-    """Write the input file; CalculiX counts the softening by rotation, not the Coriolis force."""
+    """Return CalculiX' input file; spin softening is included, the Coriolis force is not."""
     number = hexahedra.numbers(counts)
     root_nodes = "\n".join(f"{n}," for place, n in number.items() if place[0] == 0)
     return DECK.format(
@@ -128,7 +128,7 @@ def node_lines(blade: Blade, counts: tuple[int, int, int], number: dict[Place, i
 
 
 def root_lines(root: str, counts: tuple[int, int, int], number: dict[Place, int]) -> Iterator[str]:
-    """Yield the lines that hold the root face."""
+    """Yield the input lines that support the root face."""
     yield "*BOUNDARY"
     if root == CLAMPED:
         yield "ROOT, 1, 3"
@@ -136,7 +136,7 @@ def root_lines(root: str, counts: tuple[int, int, int], number: dict[Place, int]
     yield "ROOT, 1, 1"
     along, across = counts[1:]
     yield from mean_is_zero(3, product(range(along), range(across)), number)
-    for half in (range(across // 2), range(across // 2, across)):  # both halves, so that the face cannot turn
+    for half in (range(across // 2), range(across // 2, across)):  # halves: the face cannot rotate
         yield from mean_is_zero(2, product(range(along), half), number)
 
 
@@ -184,7 +184,7 @@ SLENDER = bd.Physics(planes=2)
 
 
 def beam(blade: Blade) -> bd.Beam:
-    """Make the blade as a beam, with Cowper's shear coefficient."""
+    """Build the beam model of the blade, with Cowper's shear coefficient."""
     return bd.Beam.rectangular(
         length=LENGTH,
         width=blade.width(),
@@ -196,7 +196,7 @@ def beam(blade: Blade) -> bd.Beam:
 
 
 def with_hutchinsons_shear(blade: Blade) -> bd.Beam:
-    """Make the beam with Hutchinson's shear coefficients of the section at the root."""
+    """Build the beam model with Hutchinson's shear coefficients for the section at the root."""
     nu, own = blade.poissons_ratio, beam(blade)
     cowper = 10 * (1 + nu) / (12 + 11 * nu)
     ratio = float(blade.width()(0) / blade.thickness()(0))
@@ -210,7 +210,7 @@ def with_hutchinsons_shear(blade: Blade) -> bd.Beam:
 
 
 def with_stress_of_rotation(blade: Blade, speed: float) -> bd.Beam:
-    """Make the beam with the axial stress of rotation added to E in bending, as in a solid."""
+    """Build the beam model with the axial stress by rotation added to E in bending, as in a solid."""
     own, width, thickness = beam(blade), blade.width(), blade.thickness()
     moment = (width * thickness * Polynomial([HUB, LENGTH])).integ()
     tension = DENSITY * speed**2 * LENGTH * (moment(1.0) - moment)
@@ -224,10 +224,10 @@ def with_stress_of_rotation(blade: Blade, speed: float) -> bd.Beam:
 
 
 def hutchinson(ratio: float, nu: float) -> float:
-    """Compute the shear coefficient of a rectangle of Hutchinson (2001), doi:10.1115/1.1349417.
+    """Compute Hutchinson's shear coefficient of a rectangle (2001), doi:10.1115/1.1349417.
 
-    The width is across the shear force.  The contraction of wide sections is in it: past a ratio of 5.6 (at
-    nu = 0.3) its inverse is negative, as if shear made the beam stiffer.
+    `ratio` is width (across the shear force) over depth.  The coefficient includes the lateral contraction of
+    wide sections: above a ratio of 5.6 (at nu = 0.3) its inverse is negative, as if shear stiffened the beam.
     """
     n = np.pi * np.arange(1, 200)
     series = np.sum(16 * nu**2 * ratio**5 * (n - ratio * np.tanh(n / ratio)) / (n**5 * (1 + nu)))

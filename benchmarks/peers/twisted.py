@@ -1,7 +1,8 @@
-"""Twisted blades of wind turbines: pyBModes with the physics of a beam that bends in two planes.
+"""Twisted blades of wind turbines: pyBModes, set up as a beam that only bends in two planes.
 
-Without offsets of the sections its stretch and torsion are apart from bending, and its bending has no rotary
-inertia, so that any large stiffness of either will do: it keeps their modes above those compared.
+Without offsets of the sections, pyBModes' stretch and torsion are not coupled with bending, and its bending
+has no rotary inertia.  So any large stiffness of stretch and torsion keeps their modes above the compared
+ones.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ from benchmarks.peers import pybmodes
 NAMES = {"iea_15": "IEA 15 MW", "nrel_5": "NREL 5 MW", "bmodes_test01": "BModes Test01"}
 # Approximate numbers of elements; equally many between neighbouring stations.
 ELEMENTS = (200, 400, 800, 1600)
-CONVERGED = 2e-5  # relative change of all frequencies at which no finer mesh is solved
+CONVERGED = 2e-5  # relative change of all frequencies below which no finer mesh is solved
 MODES = 5
-TOLERANCE = 1e-7  # tolerance of our frequencies, far below what is compared
+TOLERANCE = 1e-7  # tolerance of our frequencies, far below the compared differences
 STIFFNESS = 1e3  # G J over E I, and E A L^2 over E I: the frequencies do not change from 0.1 to 1e14
 GYRATION = 1e-6  # square of the radius of gyration of the sections for torsion, over L^2
 HEAD = """Blade
@@ -32,18 +33,18 @@ sec_loc str_tw tw_iner mass_den flp_iner edge_iner flp_stff edge_stff tor_stff a
 
 
 def our_frequencies(name: str, rpm: float) -> np.ndarray:
-    """Compute the first five frequencies [Hz] by beamdyn."""
+    """Compute the first five frequencies [Hz] of a blade by beamdyn."""
     return bd.natural_modes(blade_scene(name), rpm * math.pi / 30, MODES, tolerance=TOLERANCE).frequency
 
 
 def their_frequencies(name: str, rpm: float, elements: int) -> np.ndarray:
-    """Compute the first five frequencies [Hz] by pyBModes."""
+    """Compute the first five frequencies [Hz] of a blade by pyBModes."""
     with pybmodes.model(main_file(name, rpm, elements), sections(name)) as blade:
         return np.array(blade.run(n_modes=MODES, check_model=False).frequencies)
 
 
 def refined(name: str, rpm: float) -> Iterator[tuple[int, np.ndarray, float]]:
-    """Yield number of elements, frequencies and their largest relative change, until that is small."""
+    """Yield number of elements, frequencies and their largest relative change, until this is small."""
     coarser = np.full(MODES, np.nan)
     for elements in ELEMENTS:
         found = their_frequencies(name, rpm, elements)
@@ -55,7 +56,7 @@ def refined(name: str, rpm: float) -> Iterator[tuple[int, np.ndarray, float]]:
 
 
 def boundaries(name: str, elements: int) -> np.ndarray:
-    """Return ends of about a number of elements, equally many between neighbouring stations.
+    """Return the ends x/L of about a given number of elements, equally many between all stations.
 
     An element has the mass and stiffness at its middle, so that the error falls with the square of its
     length only if there is a boundary at each station.
@@ -67,7 +68,7 @@ def boundaries(name: str, elements: int) -> np.ndarray:
 
 
 def main_file(name: str, rpm: float, elements: int) -> str:
-    """Write the main input file; its radius is that of the tip."""
+    """Return the text of the main input file, in which the radius is that of the tip."""
     data, ends = stations(name), boundaries(name, elements)
     return pybmodes.MAIN.format(
         rpm=rpm,
@@ -79,7 +80,7 @@ def main_file(name: str, rpm: float, elements: int) -> str:
 
 
 def sections(name: str) -> str:
-    """Write the file of the sections."""
+    """Return the text of the file of section properties."""
     data = stations(name)
     x, mass, twist = data["stations"], data["mass_per_length"], data["twist_deg"]
     flap, edge = data["flap_stiffness"], data["edge_stiffness"]
@@ -91,5 +92,5 @@ def sections(name: str) -> str:
 
 
 def extrapolated(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
-    """Extrapolate frequencies whose error falls to a quarter when the elements are halved."""
+    """Extrapolate frequencies whose error falls to a quarter with elements of half the length."""
     return fine + (fine - coarse) / 3

@@ -1,4 +1,4 @@
-"""Contents of command, screen and HTML report for each type of brake; `base.BrakeType` describes the pattern.
+"""Results that command, screen and HTML report show for each type of brake; see `base.BrakeType`.
 
 `STANDARD` lists the types of brakes that have no options of their own: each gets a command and a screen.
 """
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from brakes.answers.base import BrakeType
 
-_SHOWN = {  # names of what a module shows, by the name of the command
+_SHOWN = {  # names in the module of each command that are shown
     "drum": "Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.",
     "band": "Torque, tensions, pressure and self-locking of a simple or differential band brake.",
     "block": "Torque, forces, pressure and self-locking of a block brake with one or two levers.",
@@ -25,7 +25,7 @@ _SHOWN = {  # names of what a module shows, by the name of the command
 
 
 def _load(name: str) -> BrakeType[Any]:
-    """Import a type when it is wanted, so that a command imports no other brake than its own."""
+    """Import a type of brake on first use, so that a command imports only its own type of brake."""
     alone = name in ("drum", "vehicle")
     module = import_module(f"brakes.answers.{name if alone else 'machine'}")
     return module.BRAKE if alone else module.MACHINES[name]

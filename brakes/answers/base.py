@@ -59,7 +59,7 @@ class Answer(Result, ABC):
     provenance: Provenance | None = field(default=None, kw_only=True)
 
     def headline(self) -> Iterator[str]:
-        """Yield the headlines of its parts, its error, and the number of refusals; see `Result.headline`."""
+        """Yield the results' summaries, the error, and the number of refusals; see `Result.headline`."""
         parts = (getattr(self, each.name) for each in fields(self))
         said = (line for part in parts if isinstance(part, Result) for line in part.headline())
         yield from dict.fromkeys((*said, error_at_most(self.error)))
@@ -85,7 +85,7 @@ class Answer(Result, ABC):
         return {}
 
     def loadable(self) -> Result | None:
-        """Return the mechanics' result, which can be saved, if the answer consists of one only; else None."""
+        """Return the result that can be saved to a file, if the answer consists of one result; else None."""
         return None
 
     @abstractmethod
@@ -126,7 +126,7 @@ class Answer(Result, ABC):
         return ()
 
     def branches(self) -> Mapping[str, Answer]:
-        """Return the answer with each of its solutions drawn, by their names; empty if there is only one."""
+        """Return a copy of the answer for each solution, which draws it, by name; empty if only one."""
         return {}
 
     def handles(self, place: float) -> Sequence[Handle]:
@@ -166,7 +166,7 @@ class SweepRequest:
     axes : sequence of Axis
         The varied inputs, with their values.
     combine : {"product", "zip"}
-        Whether each value is combined with each of the other inputs, or values are taken side by side.
+        "product": every combination of values; "zip": the first values of all inputs, then the second, ...
     run : TaskRunner, optional
         Runs the tasks with designs that are solved one by one; by default in this process.
     """
@@ -179,7 +179,7 @@ class SweepRequest:
 
 
 class BrakeType(ABC, Generic[FileModel]):
-    """Base of types of brakes: how a TOML file is read and solved, and what is shown.
+    """Base of types of brakes, which read and solve a TOML file and define the results to show.
 
     Command, screen and HTML report use only this class and `Answer`. To add a type of brake ``name``:
 
@@ -269,11 +269,11 @@ class BrakeType(ABC, Generic[FileModel]):
         """Read the design that tables describe; raises `ConfigError` with all mistakes."""
 
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the tables of a design that has the same drawing and is solved faster."""
+        """Return the tables of a simplified design that has the same drawing and is solved faster."""
         return tables
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the form, for the choices made there."""
+        """Make drawings that explain the symbols of the form, for the entries given in the form."""
         return ()
 
     @abstractmethod
@@ -282,11 +282,11 @@ class BrakeType(ABC, Generic[FileModel]):
 
     @abstractmethod
     def outputs(self, design: FileModel) -> Sequence[Output]:
-        """Describe the numbers of the answer to a design, which users can name and sweeps can show."""
+        """Describe the outputs of the answer to a design, which users can name and sweeps can show."""
 
     @abstractmethod
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
-        """Return the inputs of the form, for tables that may be incomplete."""
+        """Return the inputs that the form shows for the given tables, which may be incomplete."""
 
     @property
     def optional(self) -> Collection[str]:
@@ -294,7 +294,7 @@ class BrakeType(ABC, Generic[FileModel]):
         return ()
 
     def idle(self, entries: Mapping[str, str]) -> Iterable[str]:
-        """Return the paths of inputs that have no effect beside the given entries; see `Document`."""
+        """Return the paths of inputs that have no effect with the given entries; see `Document`."""
         return ()
 
     @abstractmethod
@@ -303,10 +303,10 @@ class BrakeType(ABC, Generic[FileModel]):
 
     @abstractmethod
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
-        """Solve the requested designs; return their results, and warnings."""
+        """Solve the requested designs of a sweep; return their results, and warnings."""
 
     def answer(self, tables: Mapping[str, Any], source: str) -> Answer:
-        """Solve the design of tables, and add the provenance; raises what `read` and `solve` raise."""
+        """Read and solve the design of tables, and add the provenance; errors as of `read` and `solve`."""
         start, design = perf_counter(), self.read(tables, source)
         with in_words_of_file(type(design), tables, source):
             answer = self.solve(design)
@@ -377,7 +377,7 @@ class BrakeType(ABC, Generic[FileModel]):
         asked = SweepRequest(design, tables, axes, combine, run)
         made, warnings = self.sweep_cases(asked, [*wanted, ERROR])
         given = {entry.name: getattr(made, entry.name) for entry in fields(made)}
-        # The last of the results is the error, which has a field of its own.
+        # The last of the results is the error, which the sweep keeps in a separate field.
         given |= {key: given[key][:-1] for key in ("results", "result_units", "found")}
         more = {"design": plain(design.model_dump()), "provenance": self._provenance(start)}
         return BrakeSweep(**given, **more, error=made.found[-1]), warnings
@@ -412,12 +412,12 @@ class ArrayBrakeType(BrakeType[FileModel]):
         return [name for name, field in self.model.model_fields.items() if not field.is_required()]
 
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
-        """Describe the numbers and choices in the tables of the design; a sweep refuses choices by name."""
+        """Describe the outputs and choices in the design's tables; a sweep refuses choices, naming them."""
         there = [entry for entry in describe(type(design)) if getattr(design, entry.path.partition(".")[0])]
         return [each for each in there if each.quantity.unit or each.quantity.symbol or each.choices]
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
-        """Solve the requested designs as one design whose numbers are arrays."""
+        """Solve all requested designs at once, as one design whose numbers are arrays."""
         designs = designs_of(asked.axes, asked.combine)
         in_si = Designs([VariedInput(a.input.path, "", a.values) for a in asked.axes], asked.combine)
         columns, paths = in_si.columns(), [entry.path for entry in describe(type(asked.design))]
@@ -434,7 +434,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
             return made, made.warnings
         values[:, rows] = [np.broadcast_to(output.shown(answer), rows.shape) for output in outputs]
         made = swept(designs, outputs, [*values], answer.refusals, refused)
-        # Only designs that lack one of the wanted results get a reason.
+        # Reasons are given only for designs that lack one of the wanted results.
         lacking, why = np.any(np.isnan(values[:-1]), axis=0).tolist(), answer.refusals_of_cases(len(rows))
         unanswered = {int(rows[i]): said for i, said in why.items() if lacking[rows[i]]}
         made = replace(made, unanswered=tuple(sorted(unanswered.items())))
@@ -450,7 +450,7 @@ class TableBrakeType(BrakeType[FileModel]):
         return made, made.warnings
 
     def solve_task(self, task: CaseTask) -> SolvedCases:
-        """Solve the designs of a task, in this process or in a worker."""
+        """Solve the designs of a task, in this process or in a worker process."""
 
         def solve_determined(tables: Mapping[str, Any]) -> Answer:
             answer = self.solve(self.read(tables, self.name))

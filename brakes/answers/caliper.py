@@ -55,7 +55,7 @@ from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError
 from brakes.planar.system import OppositeTravelError, join_names
 
 _STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
-_AT_STOPS = 11  # number of positions in the stroke at which the slider stops
+_AT_STOPS = 11  # number of positions of the screen's slider over the stroke
 _STROKE_HEADS = (
     *("cable", "finger", "right pad", "left pad"),
     *("right force", "left force", "both", "left/right"),
@@ -86,7 +86,7 @@ _OUTPUTS = (
 
 @dataclass(frozen=True)
 class CaliperAnswer(planar.PlanarAnswer):
-    """A caliper over its stroke, where it closes, and with friction, wear and a stop if the file has them.
+    """A caliper over its stroke and at its end, with friction, wear and a stop if the file has them.
 
     Attributes
     ----------
@@ -125,12 +125,12 @@ class CaliperAnswer(planar.PlanarAnswer):
 
     @property
     def status(self) -> str:
-        """Whether statics determines the forces and the pads press; see `planar.Equilibrium`."""
+        """Status: whether statics determines the forces, and pads press; see `planar.Equilibrium`."""
         return self.run.status
 
     @property
     def message(self) -> str:
-        """The status as a sentence, with the travel from which on a pad would pull."""
+        """The status as a sentence, with the travel above which a pad would have to pull."""
         pulls = (self.run.pad_force <= 0).any(axis=1)
         if not pulls.any():
             return self.run.message
@@ -138,7 +138,7 @@ class CaliperAnswer(planar.PlanarAnswer):
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Sentences on undetermined forces, open contacts, jamming, and a vehicle that does not stop."""
+        """Sentences on undetermined forces, open contacts, jamming, and a vehicle that cannot stop."""
         slips = self.stop and self.stop.status != "stops" and f"the vehicle {self.stop.message}"
         return (*self._unsolved, *([slips] if slips else []))
 
@@ -240,7 +240,7 @@ class CaliperAnswer(planar.PlanarAnswer):
 
     @staticmethod
     def _tensions(friction: PivotFriction) -> str:
-        """State the tension of the cable without friction, squeezing and releasing."""
+        """State the cable's tension without friction, while squeezing and while releasing the lever."""
         both = (friction.squeezing_tension, friction.releasing_tension)
         squeezing, releasing = (planar.format_size(size, "N") for size in both)
         return (
@@ -304,7 +304,7 @@ class CaliperAnswer(planar.PlanarAnswer):
 
 
 class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
-    """Type of brake for mechanisms given part by part, and for named calipers."""
+    """Type of brake for mechanisms given by their bodies and joints, and for named calipers."""
 
     name = "mechanism"
     title = "Mechanism"
@@ -334,7 +334,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         """Read the caliper or the mechanism that tables describe."""
         mistakes = {}
         for part in PARTS:
-            if isinstance(text := tables.get(part), str):  # a text is not a list of tables
+            if isinstance(text := tables.get(part), str):  # a text in place of a list of tables is a mistake
                 form = 'give a list of tables, e.g. [{ name = "A", body = "arm", at = "B" }]'
                 try:
                     tomllib.loads(f"parts = {text}")
@@ -400,7 +400,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         return mechanism_sketch(any(text for path, text in entries.items() if path.startswith("stop.")))
 
     def outputs(self, design: CaliperInput | MechanismInput) -> Sequence[Output]:
-        """Describe the numbers at the end of the stroke, and the largest force of each joint."""
+        """Describe the outputs at the end of the stroke, and the largest force of each joint."""
         core = design.core
         if isinstance(core, Mechanism):
             return mechanism_outputs(core)

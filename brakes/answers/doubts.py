@@ -14,12 +14,12 @@ from beamdyn.common.inputs.described import part_at, with_parts
 from brakes.answers.tables import format_number
 
 Answer = TypeVar("Answer")
-_SAME = 1e-9  # relative difference of two results that counts as none
-PART = 0.1  # fraction by which friction varies, as makers of linings state it
+_SAME = 1e-9  # relative difference of two results below which they count as equal
+PART = 0.1  # fraction by which friction varies, according to makers of linings
 
 
 def change(other: float, value: float, unit: str, none: str) -> str:
-    """State a result with its unit and its change relative to another; `none` if it is not finite."""
+    """State a result with its unit and its change relative to another result; `none` if not finite."""
     if not np.isfinite(other):
         return none
     relative = f" ({100 * (other / value - 1):+.1f} %)" if value else ""
@@ -40,7 +40,7 @@ def with_less_and_more(design: Any, path: str, solve: Callable[[Any], Answer]) -
     """
     friction, found = part_at(design, path), list[Answer]()
     for part in (1 - PART, 1 + PART) if friction else ():
-        # The varied friction may be out of its bounds, or lock the brake.
+        # With the varied friction out of bounds, or with a brake that locks, there is no result.
         with suppress(InvalidValue, NoAnswer):
             found.append(solve(with_parts(design, {path: part * friction})))
     return found
@@ -49,7 +49,7 @@ def with_less_and_more(design: Any, path: str, solve: Callable[[Any], Answer]) -
 def hangs_on_friction(
     design: Any, path: str, of: str, result: Callable[[Any], float], unit: str, none: str
 ) -> str:
-    """State how a result changes with 10 % less and more friction, in a sentence of the same form for all.
+    """State in one sentence how a result changes with 10 % less and 10 % more friction.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def hangs_on_friction(
     path : str
         Path of the friction coefficient in the design.
     of : str
-        What rubs, and the name of the result, such as "tyres on the road: stopping distance".
+        Rubbing parts, and the name of the result, such as "tyres on the road: stopping distance".
     result : callable
         ``result(design)``: the result in `unit`; nan or inf if there is none.
     unit : str

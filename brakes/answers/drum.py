@@ -34,7 +34,7 @@ _SHOE = (
 
 
 def _outputs(shoes: int) -> tuple[Output, ...]:
-    """Describe all numbers of a brake with `shoes` shoes; names of a shoe's numbers end in its index."""
+    """Describe all outputs of a brake with `shoes` shoes; names of a shoe's numbers end in its index."""
     return take_from(lambda answer: answer.result, _WHOLE) + tuple(
         Output(f"{o.name}_{i + 1}", f"{o.words}, shoe {i + 1}", o.of, o.unit, o.scale)
         for i in range(shoes)
@@ -49,7 +49,7 @@ class DrumAnswer(RubbingAnswer):
     solver = staticmethod(brake_torque)
 
     def tables(self) -> list[RenderableType]:
-        """Make the tables of the brake as a whole and of its shoes."""
+        """Make the tables of the brake and of its shoes."""
         brake, shoes = self.result, self.result.shoes
         direction = "reverse" if brake.reverse else "forward"
         title = "Shoes (components: x to the shoe's side, y upward)"
@@ -63,7 +63,7 @@ class DrumAnswer(RubbingAnswer):
         ]
 
     def outputs(self) -> tuple[Output, ...]:
-        """Describe the numbers of the brake and of its shoes."""
+        """Describe the outputs of the brake and of its shoes."""
         return _outputs(len(self.result.shoes))
 
     def drawings(self, place: float) -> Rows:
@@ -75,7 +75,7 @@ class DrumAnswer(RubbingAnswer):
         return charts_of(self.result)
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Make handles for lining, pin, force and drum of the first shoe."""
+        """Make points to move in the drawing: lining, pin, force and drum of the first shoe."""
         shoe = self.result.shoes[0].shoe
         r, force = float(shoe.drum_radius), float(shoe.force_arm)
         pivot = float(shoe.pivot[0]), float(shoe.pivot[1])
@@ -90,7 +90,7 @@ class DrumAnswer(RubbingAnswer):
 
 
 def _from_bottom(x: float, y: float) -> float:
-    """Compute the angle of a point about the drum's centre, from straight down [rad]."""
+    """Compute the angle of a point about the drum's centre, from the downward vertical [rad]."""
     return float(np.arctan2(x, -y))
 
 
@@ -114,7 +114,7 @@ class DrumType(RubbingType[DrumInput]):
         return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:
-        """Describe the numbers of the brake, of its shoes and of repeated stops."""
+        """Describe the outputs of the brake, of its shoes and of repeated stops."""
         return *_outputs(len(design.core.shoes)), *heat_outputs(design)
 
 

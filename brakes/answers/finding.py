@@ -26,9 +26,9 @@ from brakes.common.finding import find, find_whole
 from brakes.common.solutions import Solutions
 
 FIND, SO_THAT = "--find", "--so-that"
-_USUAL = {"m": "mm", "rad": "deg"}  # units that people use, where the file has none
+_USUAL = {"m": "mm", "rad": "deg"}  # units in which values are shown if the file has none
 _TIMES = 10.0  # factor around an input's value within which it is sought, if no bounds are given
-_ROUNDED = 1e-3  # largest relative rounding of a wanted value
+_ROUNDED = 1e-3  # largest relative rounding error of a wanted value
 # Number of samples at the start of a search, for designs solved together, and for designs solved one by one.
 _TOGETHER, _ONE_BY_ONE = 129, 17
 
@@ -100,7 +100,7 @@ class _Designs:
             return np.full(len(x), np.nan)
 
     def reason(self, x: float) -> str:
-        """Return the reason why there is no result at a value of the input."""
+        """Return the reason why there is no result at a value of the input [unit of the axis]."""
         try:
             made = self._sweep(np.array([x]))
         except NoAnswer as error:
@@ -165,7 +165,7 @@ def _whole_numbers(brake: BrakeType[Any], axis: Axis) -> np.ndarray:
 
 
 def _axis(brake: BrakeType[Any], design: Any, tables: Mapping[str, Any], text: str) -> Axis:
-    """Find the input that is sought, with its first samples: as given, or around its value in the file."""
+    """Find the sought input, with the first samples of the search: as given, or around the file's value."""
     inputs = brake.sweep_inputs(design, tables)
     entry = find_input(inputs, text.partition("=")[0].strip(), f'{FIND} = "{text}"')
     value, _ = nominal_of(design, entry, FIND)

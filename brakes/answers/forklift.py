@@ -81,7 +81,7 @@ _OF_LININGS = "forces.lining_friction", "the linings, which limit it,: Stopping 
 
 
 def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> tuple[Output, ...]:
-    """Describe the numbers of the stages, followed by the outputs `pedal` if stop or forces are shown."""
+    """Describe the outputs of the stages, followed by those of the pedal if stop or forces are shown."""
     groups = {
         "vehicle": take_from(lambda answer: answer.stop, _VEHICLE),
         "kinematics": take_from(lambda answer: answer.motion, _MOTION),
@@ -123,7 +123,7 @@ class ForkliftAnswer(Answer):
 
     @cached_property
     def kinematics(self) -> Kinematics | None:
-        """Motion of the shoes position by position, if this stage is there; for a single case only."""
+        """Motion of the shoes position by position, if this stage is shown; for a single case only."""
         return (
             None if self.motion is None else follow_shoes(self.motion.geometry, float(self.motion.clearance))
         )
@@ -215,14 +215,14 @@ class ForkliftAnswer(Answer):
 
     @property
     def _one_stop(self) -> ForkliftInput:
-        """The design without repeated stops, whose computation takes long."""
+        """The design without repeated stops, which take long to compute."""
         return self.design.model_copy(update={"heat": None})
 
     def _again(self, design: ForkliftInput) -> ForkliftAnswer:
         return solve_stages(design, self.stages)
 
     def _doubt(self) -> str:
-        """State the stopping distance with less and more friction of what limits it: tyres or linings."""
+        """State the stopping distance with less and more friction of tyres or linings, whichever limit it."""
 
         def distance(design: ForkliftInput) -> float:
             found = solve_stages(design, ("vehicle",)).stop
@@ -234,7 +234,7 @@ class ForkliftAnswer(Answer):
         return hangs_on_friction(self._one_stop, path, of, distance, "m", "does not stop")
 
     def rows(self) -> Iterable[Sequence[object]]:
-        """Make the rows of names, values and units of all numbers."""
+        """Make rows of name, value and unit of all outputs."""
         return outputs_csv(stage_outputs(self.stages, pedal_outputs(self.design)), value=self)
 
     def figure(self, place: float | None = None) -> Figure:
@@ -249,7 +249,7 @@ class ForkliftAnswer(Answer):
         return ((replace(first, title=outcome(self.stop)), *others), *below)
 
     def _drawn(self, place: float | None) -> Rows:
-        """Make all drawings; for kinematics alone, the brake at a position from 0 to 2 of its two stages."""
+        """Make all drawings; for kinematics alone, the brake at a slider position from 0 to 2."""
         if place is not None and self.stages == ("kinematics",) and (motion := self.motion) is not None:
             turns = (
                 min(place, 1.0) * float(motion.seating_turn),
@@ -320,7 +320,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
         geometry = motion or (design.levers and design.levers.core)
         if "forces" in shown and design.forces and geometry is not None:
             piston_force, friction = design.forces.piston_force, design.forces.lining_friction
-            if chained is not None:  # locked wheels limit the torque: it does not show the linings' friction
+            if chained is not None:  # locked wheels limit the torque, not the linings' friction
                 piston_force, friction = chained.braked.actuation.actuator_force, None
             with of_file({"friction": "lining_friction"}):
                 forces = internal_forces(
@@ -368,7 +368,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
         return solve_stages(design, self.stages)
 
     def outputs(self, design: ForkliftInput) -> Sequence[Output]:
-        """Describe the numbers of the stages that are shown, and of the pedal."""
+        """Describe the outputs of the stages that are shown, and of the pedal."""
         return stage_outputs(self.stages or design.stages, pedal_outputs(design))
 
     def default_results(self, design: ForkliftInput) -> str:

@@ -1,4 +1,4 @@
-"""Handles on a forklift's drawings: points that the user can move, and the inputs for their new places."""
+"""Handles on a forklift's drawings: points that the user can move, and the inputs that result."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ def truck_handles(stop: Stop) -> list[Handle]:
     turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # rotates row vectors
 
     def on_slope(label: str, at: Sequence[Any], values: Values) -> Handle:
-        """Make a handle at a point, whose coordinates along and normal to the slope `values` takes."""
+        """Make a handle at a point; `values` converts coordinates along and normal to the slope to inputs."""
         place, back = _pair(np.array(at, dtype=float) @ turn), turn.T
         return Handle(label, place, lambda x, y: values(*_pair((x, y) @ back)), step=0.01, grain=1e-3)
 
     def find_empty_cg(x: float, y: float) -> dict[str, float]:
-        """Find the empty truck's centre of gravity for which truck and load have theirs at (x, y)."""
+        """Find the empty truck's centre of gravity that puts that of the loaded truck at (x, y)."""
         m, ml = float(t.empty_mass), float(t.load_mass)
         cg = ((m + ml) * np.array([x, y - r]) - ml * np.array(t.load_cg, dtype=float)) / m
         return {"truck.empty_cg_x": float(cg[0]), "truck.empty_cg_y": float(cg[1])}
@@ -85,7 +85,7 @@ def duo_servo_handles(motion: ShoeMotion, progress: float) -> list[Handle]:
 
 
 def _place_drawn(motion: ShoeMotion, progress: float, point: object) -> np.ndarray:
-    """Compute where a point of the right shoe, given at rest, is drawn."""
+    """Compute the drawn position of a point of the right shoe that is given at rest."""
     return moved(np.array([point], dtype=float), motion.geometry, motion, progress, "right")[0]
 
 
@@ -96,7 +96,7 @@ def _contact_at_rest(motion: ShoeMotion) -> np.ndarray:
 
 
 def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float) -> dict[str, float]:
-    """Find the place at rest of a pin drawn at (x, y), by iteration: the pin itself changes the motion."""
+    """Find the position at rest of a pin drawn at (x, y), by iteration, as the pin changes the motion."""
     turn = max(progress - 1, 0) * float(motion.drum_turn) - min(progress, 1) * float(motion.seating_turn)
     back = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])  # rotates row vectors
 
@@ -109,7 +109,7 @@ def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float
 
 
 def _find_contact(motion: ShoeMotion, progress: float, x: float, y: float) -> dict[str, float]:
-    """Find the contact angle whose point is drawn in the direction of (x, y), and at rest the clearance."""
+    """Find the contact angle of a point drawn at (x, y); for the brake at rest, also the clearance."""
 
     def residual(angle: np.ndarray) -> np.ndarray:
         other = _move_changed(motion.geometry, motion, contact_angle=float(angle))
@@ -126,7 +126,7 @@ def _move_changed(geometry: DuoServo, motion: ShoeMotion, **changed: object) -> 
 
 
 def _iterate(start: np.ndarray, residual: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Iterate x + residual(x) until the residual is negligible; end early where no brake has these values."""
+    """Iterate x + residual(x) until the residual is negligible; stop early if no brake has these values."""
     for _ in range(_ITERATIONS):
         try:
             step = residual(start)

@@ -41,7 +41,7 @@ Draw = Callable[[MachineResult], Drawing]
 
 
 def _of_lining(brake: Machine) -> tuple[Output, ...]:
-    """Describe the numbers of one lining of a brake."""
+    """Describe the outputs of one lining of a brake."""
     forces = (
         Output(name, stated.words, lambda lining, name=name: lining.reactions[name], stated.unit)
         for name, stated in brake.reactions.items()
@@ -50,7 +50,7 @@ def _of_lining(brake: Machine) -> tuple[Output, ...]:
 
 
 def _outputs(brake: Machine) -> tuple[Output, ...]:
-    """Describe all numbers of a brake; those of a lining have names that end in its number."""
+    """Describe all outputs of a brake; those of a lining have names that end in its number."""
     count = len(brake.linings(0.0, False))
     return take_from(lambda answer: answer.result, _WHOLE) + tuple(
         Output(f"{o.name}_{i + 1}", f"{o.words}, lining {i + 1}", o.of, o.unit, o.scale)
@@ -105,7 +105,7 @@ class MachineAnswer(RubbingAnswer):
         ]
 
     def outputs(self) -> tuple[Output, ...]:
-        """Describe the numbers of the brake and of its linings."""
+        """Describe the outputs of the brake and of its linings."""
         return _outputs(self.result.brake)
 
     def drawings(self, place: float) -> Rows:
@@ -127,7 +127,7 @@ _PLATES = "Rings pressed together: torque and pressure, new and worn in."
 _SLIDING = (
     "A drum brake whose shoes slide on an abutment: torque, where the linings touch, when it locks itself."
 )
-TYPES: dict[type[Machine], MachineType] = {}  # types by class of the brake
+TYPES: dict[type[Machine], MachineType] = {}  # types of brakes by the class of the brake
 
 
 class MachineType(RubbingType[MachineInput]):
@@ -165,7 +165,7 @@ class MachineType(RubbingType[MachineInput]):
         return *self.sketched(), (cylinder_sketch(),)
 
     def outputs(self, design: MachineInput) -> Sequence[Output]:
-        """Describe the numbers of the brake, of its linings and of repeated stops."""
+        """Describe the outputs of the brake, of its linings and of repeated stops."""
         return *_outputs(design.core), *heat_outputs(design)
 
 

@@ -36,7 +36,7 @@ WITHOUT = "without friction"
 
 
 def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
-    """Describe the numbers of a mechanism: loads and travels at the end of the stroke, largest joint forces.
+    """Describe the outputs of a mechanism: loads and travels at the end of the stroke, largest joint forces.
 
     With friction there are also the unknown loads, squeezing and releasing.
     """
@@ -121,12 +121,12 @@ class MechanismAnswer(planar.PlanarAnswer):
 
     @property
     def last(self) -> Equilibrium:
-        """Equilibrium over the stroke if there is one, else as drawn."""
+        """Equilibrium over the stroke, or as drawn if there is no stroke."""
         return self.over or self.equilibrium
 
     @property
     def status(self) -> str:
-        """Whether statics determines the forces; see `planar.Equilibrium`."""
+        """Status: whether statics determines the forces; see `planar.Equilibrium`."""
         return self.last.status
 
     @property
@@ -148,7 +148,7 @@ class MechanismAnswer(planar.PlanarAnswer):
     def warnings(self) -> Sequence[str]:
         """Warnings of statics, toggle positions, and directions in which friction holds the mechanism."""
         said = [*self.last.warnings]
-        if self.motion is not None:  # toggle positions, and joints whose inputs do not suit the motion
+        if self.motion is not None:  # warns of toggle positions and unsuitable inputs of joints
             said += [toggle.message for toggle in self.motion.toggles]
             angles = {body: self.motion.position.angle(body) for body in self._mechanism.bodies}
             said += [words for joint in self._mechanism.joints for words in joint.doubts(angles)]
@@ -185,7 +185,7 @@ class MechanismAnswer(planar.PlanarAnswer):
         return [*shown, self._diagnosis(self.message, self.last.virtual_work)]
 
     def _columns(self) -> dict[str, np.ndarray]:
-        """Return travels and sizes of the loads over the stroke, by name with unit."""
+        """Return travels and magnitudes of the loads over the stroke, by name with unit."""
         if self.motion is None or self.over is None:
             return {}
         travels, loads = {}, {}
@@ -274,7 +274,7 @@ class MechanismAnswer(planar.PlanarAnswer):
         return with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
 
     def _travelled(self, index: int) -> str:
-        """State the travel of the driver at the position of an index."""
+        """State the travel of the driving load at the position of an index."""
         if self.motion is None:
             return ""
         factor, unit, _ = planar.units_of(self._mechanism.load(self.motion.driver))

@@ -66,7 +66,7 @@ class FromPedal(Result):
             "force at which the wheels lock": self.braked.locking,
             "least friction that stops": self.braked.friction,
         }
-        # The reasons of many cases are not shown.
+        # Reasons are shown only for a single case.
         alone = {what: found for what, found in asked.items() if np.ndim(found.reason) == 0}
         lacking = tuple(f"{what}: {found.message}" for what, found in alone.items() if found.reason)
         return (*self.braked.actuation.warnings, *self.heat.warnings, *lacking)
@@ -77,7 +77,7 @@ class FromPedal(Result):
         return () if self.fade is None else self.fade.refusals
 
     def tables(self, doubtful: Sequence[Any] = ()) -> list[RenderableType]:
-        """Make the tables of the forces from the pedal on, the verdict on its force, and repeated stops.
+        """Make the tables of forces from pedal to wheels, of the pedal force's limit, and of repeated stops.
 
         Digits in which the `doubtful` results differ, such as those with other friction, are dimmed.
         """
@@ -87,7 +87,7 @@ class FromPedal(Result):
         return [outputs_table(title, OUTPUTS, self, doubtful), said, *stops]
 
 
-# The energy and the pv of the first stop are in the table of the first stop.
+# The table of the first stop already has its energy and its pressure times velocity.
 _FADE = tuple(each for each in HEAT if each.name not in ("energy", "pv"))
 OUTPUTS = (
     *take_from(
@@ -117,7 +117,7 @@ OUTPUTS = (
 
 
 def pedal_outputs(design: ForkliftInput) -> tuple[Output, ...]:
-    """Describe the numbers of the pedal and of repeated stops, as far as the file has tables of them."""
+    """Describe the outputs of pedal and repeated stops, if the file has tables for them."""
     repeated = () if design.heat is None else take_from(lambda found: found.fade, _FADE)
     return (*OUTPUTS, *repeated) if design.pedal else ()
 
@@ -135,7 +135,7 @@ def solve_pedal(design: ForkliftInput) -> FromPedal:
     ValueError
         As for `brakes.chain.brake_from_pedal`.
     NoAnswer
-        If the brake locks by itself: its torque does not follow from the pedal.
+        If the brake is self-locking, so that its torque does not follow from the pedal.
     """
     geometry = design.brake.motion if design.brake else design.levers and design.levers.core
     assert geometry and design.pedal and design.line and design.truck and design.stop and design.forces

@@ -1,4 +1,4 @@
-"""What answers on calipers and on mechanisms share: tables, outputs, friction, and handles."""
+"""Tables, outputs, friction, and handles that answers on calipers and on mechanisms share."""
 
 from __future__ import annotations
 
@@ -28,16 +28,16 @@ from brakes.drawings.mechanism import animate, free_body_diagrams
 from brakes.drawings.mechanism_parts import members
 from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Position, Stroke
 
-_ROWS = 5  # number of positions of a stroke that its table shows
+_ROWS = 5  # number of positions of a stroke that the table shows
 
 
 def units_of(load: Load) -> tuple[float, str, str]:
-    """Return factor and unit for showing a load's travel, and the unit of its size."""
+    """Return factor and unit for showing a load's travel, and the unit of the load."""
     return (180 / np.pi, "deg", load.unit) if load.is_couple else (1e3, "mm", load.unit)
 
 
 def joint_outputs(mechanism: Mechanism, magnitudes: Any) -> list[Output]:
-    """Describe each joint's largest force; `magnitudes` takes the forces of all joints from an answer."""
+    """Describe each joint's largest force; `magnitudes(answer)` returns the forces of all joints."""
     return [
         Output(
             f"largest_{name_output(joint.name)}",
@@ -55,7 +55,7 @@ def name_output(words: str) -> str:
 
 
 def select_rows(count: int) -> np.ndarray:
-    """Select which of `count` positions of a stroke have rows in the table, by index."""
+    """Return the indices of the positions, of `count` in a stroke, that the table shows."""
     return evenly_spread(count, _ROWS)
 
 
@@ -67,7 +67,7 @@ def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
         for load in mechanism.loads
     ]
     rows.append(())
-    # Smaller forces than this error [N] count neither as tension nor as compression.
+    # Forces smaller than this error [N] count as neither tension nor compression.
     largest = np.nan_to_num(np.abs(np.concatenate([(0.0,), *map(np.ravel, magnitudes.values())])))
     least = max(1e-9, float(np.nan_to_num(equilibrium.largest_error)) * float(largest.max(initial=0.0)))
     for joint in mechanism.joints:
@@ -89,7 +89,7 @@ def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
 
 
 def format_force(value: Any, digits: int = 5) -> str:
-    """Format a force as text; nan is a force that statics does not determine, or that jams."""
+    """Format a force as text; nan: statics does not determine the force, or friction jams."""
     number = float(np.ravel(value)[0])
     if np.isnan(number):
         return "not determined"
@@ -97,7 +97,7 @@ def format_force(value: Any, digits: int = 5) -> str:
 
 
 def format_size(value: Any, unit: str, digits: int = 5) -> str:
-    """Format a force or moment with its unit; for nan, write the words of `format_force` alone."""
+    """Format a force or moment with its unit; for nan, words without a unit."""
     return format_force(value, digits) + ("" if np.isnan(value) else f" {unit}")
 
 
@@ -133,16 +133,16 @@ class MechanismFriction(Result):
 
     @staticmethod
     def _moving(found: FrictionalEquilibrium) -> list[tuple[str, Equilibrium]]:
-        """Return names and equilibria of the two directions of motion."""
+        """Return names and equilibria of the two directions of motion, squeezing and releasing."""
         return [*found.ways.items()][1:]
 
     @property
     def last(self) -> FrictionalEquilibrium:
-        """Equilibria over the stroke if there is one, else those as drawn."""
+        """Equilibria over the stroke, or as drawn if there is no stroke."""
         return self.over or self.drawn
 
     def locking(self, answered: bool) -> list[str]:
-        """Return sentences on undetermined directions of motion: those with an answer, or those without."""
+        """Return sentences on directions of motion that lock: those with forces, or those without."""
         return [
             Words(name, ": ", way.message)
             for name, way in self._moving(self.last)
@@ -302,7 +302,7 @@ class PlanarAnswer(Answer):
         return {"": self.equilibrium}
 
     def free_bodies(self) -> Figure:
-        """Draw each body by itself with the forces on it."""
+        """Draw the free-body diagram of each body."""
         return free_body_diagrams(self.equilibria)
 
     def animate(self, path: Path, force: bool) -> None:

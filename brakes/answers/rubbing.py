@@ -1,4 +1,4 @@
-"""What answers on drum brakes and on brakes pressed by one force share: self-locking, friction, heating."""
+"""Self-locking, friction and heating, for answers on drum brakes and on brakes pressed by one force."""
 
 from __future__ import annotations
 
@@ -99,14 +99,14 @@ class RubbingAnswer(Answer):
         return [*([] if self.fade is None else stops_tables(self.fade)), self._doubt()]
 
     def _doubt(self) -> str:
-        """State the torque at this force with less and more friction, under other laws, and in reverse."""
+        """State the torque at this force with other friction, other pressure laws, and in reverse."""
         torque, mu, back = self.result.torque, self.result.friction, not self.result.reverse
         ends = ", ".join(
             _change(self.again(friction=part * mu).torque, torque) for part in (1 - PART, 1 + PART)
         )
         others = [f"{words} {_change(found, torque)}" for words, found in self.by_other_laws()]
         turned = self.again(reverse=back).torque
-        if not abs(turned / torque - 1) < 1e-9:  # the negation is also true for nan, when the brake locks
+        if not abs(turned / torque - 1) < 1e-9:  # true also for nan, when the brake locks
             others.append(f"{'reverse' if back else 'forward'} {_change(turned, torque)}")
         said = "; ".join((f"friction -+{100 * PART:.0f} %: {ends}", *others))
         return f"At this force, torque {tables.format_number(torque)} N m; {said}."
@@ -124,27 +124,27 @@ class RubbingAnswer(Answer):
             yield type(self).solver(brake, friction=result.friction, **given)
 
     def _other_laws(self) -> Iterator[tuple[str, Any]]:
-        """Yield the words of each other pressure law, and the brake under it, if that is possible."""
+        """Yield the name of each other pressure law, and the brake under this law, if possible."""
         brake = self.result.brake
         for law in (each for each in brake.laws if each != brake.law):
             with suppress(InvalidValue):
                 yield brake.laws[law], brake.with_law(law)
 
     def rows(self) -> Iterable[Sequence[object]]:
-        """Make the rows of names, values and units of all numbers, for a file."""
+        """Make rows of name, value and unit of all outputs, for a file."""
         return tables.outputs_csv((*self.outputs(), *heat_outputs(self.design)), value=self)
 
     def figure(self, place: float | None = None) -> Figure:
-        """Draw the brake with its forces, beside pressures and factors."""
+        """Draw the brake with its forces, and beside it charts of pressures and brake factors."""
         ((drawing, *_), *_) = self.drawings(0.0)
         return beside_charts(drawing, self.charts(0.0))
 
     @abstractmethod
     def outputs(self) -> tuple[Output, ...]:
-        """Describe the numbers of the brake and its linings that tables, sweeps and files show."""
+        """Describe the outputs of the brake and its linings that tables, sweeps and files show."""
 
     def loadable(self) -> Any:
-        """Return the mechanics' result, which can be saved; None if repeated stops were computed."""
+        """Return the forces' result, which can be saved to a file; None with repeated stops."""
         return self.result if self.fade is None else None
 
     def values(self) -> dict[str, Any]:
@@ -154,7 +154,7 @@ class RubbingAnswer(Answer):
 
 
 class RubbingType(ArrayBrakeType[FileModel]):
-    """A type of brake that slides or locks: what its screen and sweeps show first."""
+    """Base of types of brakes that slide or lock: results that screen and sweeps show first."""
 
     error_from = "rounding of inputs and sums, over the margin to self-locking"
     key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))
@@ -163,12 +163,12 @@ class RubbingType(ArrayBrakeType[FileModel]):
 
 
 def heat_outputs(design: Any) -> tuple[Output, ...]:
-    """Describe the numbers of repeated stops; none if the file has no heat."""
+    """Describe the outputs of repeated stops; none if the file has no heat."""
     return () if design.heat is None else tables.take_from(lambda answer: answer.fade, HEAT)
 
 
 def stops_tables(fade: Fade) -> Iterator[RenderableType]:
-    """Make the tables of repeated stops as a whole, and stop by stop."""
+    """Make two tables of repeated stops: of all stops together, and of each stop."""
     title = f"Heat in {len(fade.end)} stops at this force, without cooling while it brakes"
     yield tables.outputs_table(title, HEAT, fade)
     names = [str(i + 1) for i in range(len(fade.end))][:_SHOWN]

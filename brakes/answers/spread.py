@@ -94,8 +94,8 @@ def nominal_of(design: Any, entry: Input, option: str = SPREAD) -> tuple[float, 
 
 
 def _check_reach(entry: Input, given: SpreadInput) -> None:
-    """Refuse a tolerance that reaches beyond the bounds of its input."""
-    in_unit = "1 deg" if entry.quantity.unit == "rad" else None  # unit in which people read the bounds
+    """Refuse a tolerance that reaches beyond the input's bounds."""
+    in_unit = "1 deg" if entry.quantity.unit == "rad" else None  # unit in which the message states the bounds
     for end in given.distribution.reach:
         try:
             entry.quantity.within_bounds(in_unit or end, end)

@@ -19,23 +19,23 @@ from beamdyn.common.results.columns import evenly_spread, meanings
 from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words
 
 _SHOWN = 24  # largest number of rows of a sweep that are shown
-_ROUNDING = 1e-12  # relative difference of two answers that counts as none
+_ROUNDING = 1e-12  # relative difference of two answers below which they count as equal
 SCALES = {
     "mm": 1e-3,
     "deg": pi / 180,
     "kN": 1e3,
     "MPa": 1e6,
     "MW/m2": 1e6,
-}  # SI values of the units that are shown
+}  # values in SI of the displayed units
 
 
 def take(name: str, words: str, unit: str = "") -> Output:
-    """Make the output of an attribute of the same name, shown in a unit."""
+    """Make an output from the attribute of the same name, shown in a unit."""
     return Output(name, words, attrgetter(name), unit, SCALES.get(unit, 1.0))
 
 
 def take_fields(kind: type, names: str) -> tuple[Output, ...]:
-    """Make outputs of a result's fields, given their names with spaces between; `Meaning` gives the words."""
+    """Make outputs of a result's fields, named in one text with spaces; `Meaning` gives the words."""
     each = ((name, meanings(kind)[name]) for name in names.split())
     return tuple(take(name, stated.words, stated.shown or stated.unit) for name, stated in each)
 
@@ -46,7 +46,7 @@ def resultant(vector: np.ndarray) -> np.ndarray:
 
 
 def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Output, ...]:
-    """Turn outputs of a part of an answer into outputs of the answer, from which `part` takes the part."""
+    """Turn outputs of one result into outputs of the answer; `part(answer)` returns the result."""
     return tuple(
         Output(o.name, o.words, lambda answer, o=o: o.of(part(answer)), o.unit, o.scale) for o in outputs
     )
@@ -66,7 +66,7 @@ def list_outputs(
 
 
 def _doubted(output: Output, result: Any, doubtful: Sequence[Any]) -> str | Text:
-    """Format an output, with those digits dimmed in which doubtful results differ; nan counts as equal."""
+    """Format an output; dim the digits in which doubtful results differ; nan counts as equal."""
     value = float(output.shown(result))
     changes = [abs(float(output.shown(other)) - value) for other in doubtful]
     change = float(np.fmax.reduce([0.0, *changes]))
@@ -102,7 +102,7 @@ def _choices(entry: Input) -> list[str]:
 
 
 def _default(entry: Input) -> str:
-    """State the default of a key as a file would give it."""
+    """State the default of a key in the form that a file has."""
     words = "required" if entry.required else default_words(entry)
     return "" if words == NOT_GIVEN else words
 

@@ -56,9 +56,9 @@ class OneDirection:
     holding : Holding
         Whether the vehicle at rest holds on the slope.
     braking : Braking
-        Hardest braking in a stop, and what ends it.
+        Hardest braking in a stop, and its limit: locking wheels or pitching over.
     needs : mapping of str to Needed
-        Inputs that give a wanted result, by name.
+        Values of inputs at which a result has its wanted value, by name.
     slowing : Slowing, optional
         The stop on the slope, if the file has one.
     """
@@ -70,7 +70,7 @@ class OneDirection:
 
 
 def _of_one_way(design: VehicleInput) -> tuple[Output, ...]:
-    """Describe the numbers of one direction."""
+    """Describe the outputs of one direction."""
     names = ["friction_to_hold"] if design.lever is None else [*_WORDS]
     asked = (
         Output(name, _WORDS[name][0], lambda way, name=name: way.needs[name].value, _WORDS[name][1])
@@ -85,12 +85,12 @@ def _of_one_way(design: VehicleInput) -> tuple[Output, ...]:
 
 
 def _of_stop(design: VehicleInput) -> tuple[Output, ...]:
-    """Describe the numbers of the stop in one direction; none if the file has no stop."""
+    """Describe the outputs of the stop in one direction; none if the file has no stop."""
     return () if design.stop is None else take_from(lambda way: way.slowing, _SLOWING)
 
 
 def _outputs(design: VehicleInput) -> tuple[Output, ...]:
-    """Describe all numbers; names end in the axle that is downhill or leads, but for those of the lever."""
+    """Describe all outputs; names end in the axle that is downhill or leads, but for those of the lever."""
     ways = tuple(
         Output(f"{o.name}_{axle}", f"{o.words}, {axle} downhill", o.of, o.unit, o.scale)
         for axle in _AXLES
@@ -100,7 +100,7 @@ def _outputs(design: VehicleInput) -> tuple[Output, ...]:
 
 
 def _of_lever(design: VehicleInput) -> tuple[Output, ...]:
-    """Describe the numbers of the lever; none if the file has no lever, and no pressure for a cable."""
+    """Describe the outputs of the lever; none if the file has no lever, and no pressure for a cable."""
     if design.lever is None:
         return ()
     return tuple(each for each in _LEVER if design.line or each.name != "pressure")
@@ -145,7 +145,7 @@ class VehicleAnswer(Answer):
     def tables(self) -> list[RenderableType]:
         """Make the tables of both directions, of wanted values that do not exist, and of the lever."""
         ways = [*self.ways.values()]
-        # Outputs that other rows and tables show: the status in words, and the stop.
+        # Outputs left out here, because other rows and tables show them: status in words, and stop.
         elsewhere = {"holds", *(each.name for each in _SLOWING)}
         others = with_less_and_more(self.design, "road.friction", BRAKE.solve)
         doubtful = [[other.ways[axle] for other in others] for axle in self.ways]
@@ -181,14 +181,14 @@ class VehicleAnswer(Answer):
         return hangs_on_friction(self.design, "road.friction", of, largest, "deg", "none")
 
     def _lacking(self) -> Iterable[tuple[str, str, str]]:
-        """Yield each wanted input that does not exist: its words, the axle, and the reason."""
+        """Yield each input for which no value gives the wanted result: its name, the axle, the reason."""
         for axle, way in self.ways.items():
             for name, found in way.needs.items():
                 if found.reason:
                     yield _WORDS[name][0], axle, found.message
 
     def rows(self) -> Iterable[Sequence[object]]:
-        """Make the rows of names, values and units of all numbers."""
+        """Make rows of name, value and unit of all outputs."""
         return outputs_csv(_outputs(self.design), value=self)
 
     def figure(self, place: float | None = None) -> Figure:
@@ -205,9 +205,9 @@ class VehicleAnswer(Answer):
 
 
 def _failures(way: OneDirection) -> list[str]:
-    """Return sentences on a vehicle that does not hold, and on one that does not stop, in one direction.
+    """Return sentences saying that the vehicle does not hold or does not stop in one direction.
 
-    For many designs only the stop has a sentence; the output `holds` tells which of them hold.
+    For many designs only the stop has a sentence; the output `holds` is true for the designs that hold.
     """
     holding, slowing = way.holding, way.slowing
     said = [f"it {slowing.message}"] if slowing is not None and not np.all(slowing.stops) else []
@@ -255,7 +255,7 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
         return vehicle_sketch()
 
     def outputs(self, design: VehicleInput) -> Sequence[Output]:
-        """Describe the numbers of both directions, and of the lever."""
+        """Describe the outputs of both directions, and of the lever."""
         return _outputs(design)
 
 

@@ -28,7 +28,7 @@ _BODIES, _POINTS, _DIRECTIONS = (
 )
 _LISTED = [key for key, hint in _HINTS_OF_KEYS.items() if is_list(hint)]
 _ROLES = ("cable", "pads", "centring")  # keys of [caliper] whose values are names of joints and loads
-# Units that numbers typed without a unit have, by the SI unit.
+# Units of numbers that are typed without a unit, by the SI unit of the input.
 _UNITS = {"m": "mm", "rad": "deg", "N/m": "N/mm"}
 _FIRST = {  # initial values of inputs of a new joint or load
     "direction": "-90 deg",
@@ -56,13 +56,13 @@ def _entries(tables: dict[str, Any]) -> Entries:
 
 
 def _list_at(tables: Mapping[str, Any], key: str) -> list[Any]:
-    """Return the list at a key of tables; an empty list if there is none, as for a text with a mistake."""
+    """Return the list at a key of tables; an empty list if the key is missing or has another value."""
     given = tables.get(key)
     return given if isinstance(given, list) else []
 
 
 def _table_at(tables: Mapping[str, Any], key: str) -> dict[str, Any]:
-    """Return the table at a key of tables; an empty table if there is none."""
+    """Return the table at a key of tables; an empty table if the key is missing or has another value."""
     given = tables.get(key)
     return given if isinstance(given, dict) else {}
 
@@ -72,7 +72,7 @@ def _bodies(tables: Mapping[str, Any]) -> list[str]:
 
 
 def _parts(tables: Mapping[str, Any]) -> Iterator[tuple[str, int, dict[str, Any]]]:
-    """Yield kind, number within the kind, and table of each joint and load."""
+    """Yield kind, index within the kind, and table of each joint and load."""
     for key in _PARTS:
         for number, part in enumerate(_list_at(tables, key)):
             if isinstance(part, dict):
@@ -89,12 +89,12 @@ def _without(part: Mapping[str, Any], *keys: str) -> dict[str, Any]:
 
 
 def covers(path: str) -> bool:
-    """Tell whether the lists show the input of a path, so that the form need not."""
+    """Return whether the lists show the input of a path, so that the form can leave it out."""
     table = path.partition(".")[0]
     return table in ("bodies", "points", *_PARTS) or path in ("run.driver", "run.travel")
 
 
-# What is listed -----------------------------------------------------------------------------------------
+# Contents of the lists ----------------------------------------------------------------------------------
 
 
 def groups(entries: Mapping[str, str]) -> list[ListGroup]:
@@ -146,7 +146,7 @@ def _item(key: str, number: int, part: Mapping[str, Any], tables: Mapping[str, A
 
 
 def _cell(entry: Input, value: Any, tables: Mapping[str, Any]) -> Cell:
-    """Make the cell of an input of a joint or load, to be typed, or chosen from the known names."""
+    """Make the cell of an input of a joint or load: a text field, or a choice of known names."""
     key = entry.path
     if isinstance(value, list) and all(isinstance(part, str) for part in value):
         text = ", ".join(value)
@@ -170,7 +170,7 @@ def _cell(entry: Input, value: Any, tables: Mapping[str, Any]) -> Cell:
     return Cell(key, words, text, known, _HINTS.get(key, meaning), usual)
 
 
-# Changes ------------------------------------------------------------------------------------------------
+# Changes by the user ------------------------------------------------------------------------------------
 
 
 def put(entries: Mapping[str, str], item: Item, key: str, text: str) -> Entries:
@@ -253,7 +253,7 @@ def add(entries: Mapping[str, str], kind: str) -> Entries:
     tables = _tables(entries)
     if kind == "body":
         tables["bodies"] = [*_bodies(tables), _fresh("body", _bodies(tables))]
-    elif kind == "point":  # a new point at a free place, named by the next letter
+    elif kind == "point":  # a new point at a free position, named by the next letter
         points = _table_at(tables, "points")
         name = next((letter for letter in ascii_uppercase if letter not in points), _fresh("P", [*points]))
         taken = {tuple(at) for at in points.values() if isinstance(at, list)}
@@ -274,7 +274,7 @@ def _fresh(word: str, taken: Sequence[str]) -> str:
 
 
 def _first(key: str, kind: str, tables: Mapping[str, Any]) -> Any:
-    """Choose the first value of an input of a new joint or load: the newest body, the newest points."""
+    """Choose the initial value of an input of a new joint or load: the newest body, the newest points."""
     points, body = [*_table_at(tables, "points")], next(reversed(_bodies(tables)), "")
     if key == "name":
         return _fresh(_PARTS[kind].kind(), [str(part.get("name")) for _, _, part in _parts(tables)])
@@ -291,8 +291,8 @@ def _first(key: str, kind: str, tables: Mapping[str, Any]) -> Any:
 def remove(entries: Mapping[str, str], item: Item) -> Entries:
     """Remove a body, point, joint or load from the entries, with joints and loads that refer to it.
 
-    Without its driver there is no stroke.  [caliper] loses the names that are removed; without cable and pads
-    it is removed itself.
+    The stroke is removed with its driver.  Removed names are deleted in [caliper], and the table itself is
+    deleted if cable and pads are missing.
     """
     tables, name = _tables(entries), item.name
     keys: Sequence[str] = ()
@@ -334,7 +334,7 @@ def empty(entries: Mapping[str, str]) -> Entries:
     return _entries({"title": "my mechanism", "bodies": ["body 1"], "points": points})
 
 
-# What is missing ----------------------------------------------------------------------------------------
+# Advice on what is missing ------------------------------------------------------------------------------
 
 
 def advice(entries: Mapping[str, str]) -> list[str]:
@@ -364,16 +364,16 @@ def _structure(tables: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
-    """Compare degrees of freedom with unknown loads, and ask for a driver of the stroke, in sentences."""
+    """Return advice that compares mobility with the number of unknown loads, and asks for a driver."""
     run = _table_at(tables, "run")
     try:
         core = mechanism_from_dict({**tables, "run": _without(run, "driver", "travel")}, "mechanism").core
     except (ConfigError, ValueError):
-        return  # the form shows the mistakes at their fields
+        return  # the form shows mistakes beside its fields
     if not isinstance(core, Mechanism):
         return
     free = core.system.size - core.system.constraints
-    # A spring has no unknown magnitude: it follows from the spring's length.
+    # The force of a spring is no unknown: it follows from the spring's length.
     unknown = sum(getattr(load, "magnitude", 0.0) is None for load in core.loads)
     if free > unknown:
         yield (

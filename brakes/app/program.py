@@ -22,7 +22,7 @@ from brakes.reproduce.forklift_as_printed import answer_as_printed
 
 
 def _as_printed(answer: ForkliftAnswer) -> str:
-    """Make an HTML table of the results beside those of the paper's printed stop."""
+    """Make an HTML table of the results beside the printed results of the paper's stop."""
     printed = answer_as_printed(answer.design, answer.stages) or answer
     rows = list_outputs(stage_outputs(answer.stages), [answer, printed])
     return html([table("", ("", "corrected", "as printed", "unit"), rows, (0, 3))])
@@ -35,11 +35,11 @@ FORCES = make_screen(forklift.TYPES["forces"], _PAPER)
 FORKLIFT = make_document(forklift.FORKLIFT, (VEHICLE, KINEMATICS, FORCES))
 
 
-# Calipers, given by name with their dimensions, and mechanisms given part by part -------------------------
+# Calipers, given by name with their dimensions, and mechanisms, given by bodies and joints -----------------
 
 
 def check_caliper(text: str, source: str) -> CaliperInput:
-    """Parse the file of a named caliper; raises `ConfigError` if it describes a mechanism of parts."""
+    """Parse the file of a named caliper; raises `ConfigError` if it describes another mechanism."""
     design = parse_mechanism(text, source)
     if not isinstance(design, CaliperInput):
         raise ConfigError(source, ["caliper: missing; a mechanism of parts has a screen of its own"])
@@ -47,7 +47,7 @@ def check_caliper(text: str, source: str) -> CaliperInput:
 
 
 def check_mechanism(text: str, source: str) -> MechanismInput:
-    """Parse the file of a mechanism given part by part.
+    """Parse the file of a mechanism given by its bodies and joints.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Screens and documents that are made from any type of brake."""
+"""Screens and documents, made from the description of any type of brake."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def make_document(
     brake : BrakeType
         Type of brake whose file is the document.
     screens : tuple of Screen
-        Screens of the document; by default the one of the type.
+        Screens of the document; by default the screen of the type of brake.
     check : callable, optional
         ``check(text, name)`` raises `ConfigError` if a file is not for this document; by default the
         commands' check.
@@ -67,7 +67,7 @@ def _nest(entries: Mapping[str, str]) -> dict[str, Any]:
 
 
 def make_screen(brake: BrakeType[Any], *more: FoldedPart) -> Screen:
-    """Make the screen of a type of brake; `more` are further parts that can be folded out."""
+    """Make the screen of a type of brake; `more` are further parts of the screen that fold out."""
     return Screen(
         brake.title,
         brake.purpose,
@@ -94,7 +94,7 @@ def make_screen(brake: BrakeType[Any], *more: FoldedPart) -> Screen:
 
 
 def make_sweeps(brake: BrakeType[Any]) -> Sweeps:
-    """Make the sweeps of a type of brake: one input against any of the outputs."""
+    """Make the screen's sweeps of a type of brake: any output over one input."""
 
     def names(tables: Mapping[str, Any]) -> list[str]:
         return [output.name for output in brake.outputs(brake.read(tables, brake.name))]
@@ -106,7 +106,7 @@ def make_sweeps(brake: BrakeType[Any]) -> Sweeps:
 
 
 def _make_backwards(brake: BrakeType[Any]) -> Backwards:
-    """Make the inverse questions of a type of brake: any input for a wanted value of any output."""
+    """Make the screen's inverse questions: the value of any input that gives a wanted value of an output."""
 
     def units(tables: Mapping[str, Any]) -> dict[str, str]:
         return {output.name: output.unit for output in brake.outputs(brake.read(tables, brake.name))}

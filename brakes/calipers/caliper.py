@@ -21,7 +21,7 @@ from brakes.planar.statics import combine, find_wrong_way, one_way_parts, tolera
 from brakes.planar.system import OppositeTravelError
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
-_FINGER = 40.0  # usual force of the hand on the lever of a brake [N], a firm squeeze
+_FINGER = 40.0  # usual force of the hand on a brake lever [N], a firm squeeze
 _PAD = OneWay(
     "pad",
     "pull",
@@ -45,8 +45,8 @@ class Caliper:
         Bodies, joints and loads; the loads include the cable and the rim's forces on the pads, of any
         magnitude.
     centring : tuple of joints
-        Joints that keep the free arms in step until the pads touch, such as equal return springs.  Empty if
-        the mechanism does so itself: then `split`, not statics, tells how the rim loads the two pads.
+        Joints that couple the arms' rotations until the pads touch, such as equal return springs.  Empty if
+        the mechanism couples the arms: then `split`, not statics, determines how the rim loads the two pads.
     cable : str
         Name of the load that closes the brake.
     pads : tuple of 2 str
@@ -56,7 +56,7 @@ class Caliper:
     lever_ratio : float
         Travel of the finger over the travel of the cable.
     clearance : float
-        Mean gap between pad and rim [m]; the brake is centred so that both pads touch at once.
+        Mean gap between pad and rim [m]; the brake is centred so that both pads touch at the same time.
     pivot_radius : float
         Radius of the pivots [m].
     name : str
@@ -91,7 +91,7 @@ class Caliper:
         check_inputs(self)
         one_of("split", self.split, ("equal force", "equal work"))
         for name in (self.cable, *self.pads):
-            self.mechanism.load(name).with_magnitude(None)  # with_magnitude raises if the load is a spring
+            self.mechanism.load(name).with_magnitude(None)  # raises an error if the load is a spring
         if len({self.cable, *self.pads}) < 3:
             raise ValueError(f"cable {self.cable!r} and pads {self.pads}: name three different loads")
 
@@ -105,7 +105,7 @@ class Caliper:
 
     @cached_property
     def contact(self) -> float:
-        """Travel of the cable at which the pads touch, their mean travel being the clearance [m].
+        """Cable travel at which the pads touch [m]: their mean travel is then the clearance.
 
         Raises
         ------
@@ -188,7 +188,7 @@ class Caliper:
         return self._at(run.motion.position[-1], run.tension, force)
 
     def _at(self, position: Position, tension: float, right: float) -> Equilibrium:
-        """Solve the equilibrium at a position; the right pad's force [N] is an unknown if it is nan."""
+        """Solve the equilibrium at a position and tension [N]; a right pad's force of nan is an unknown."""
         return solve(self._with(tension, None if np.isnan(right) else right, None), position)
 
     def _with(self, tension: float | None, right: float | None, left: float | None) -> Mechanism:
@@ -197,7 +197,7 @@ class Caliper:
         )
 
     def _forces(self, position: Position, tension: float) -> dict[str, Any]:
-        """Compute forces at a cable tension [N], by the names of the attributes of `CaliperStroke`.
+        """Compute forces at a cable tension [N], as a mapping by attribute of `CaliperStroke`.
 
         If the arms are coupled, the result is a weighted mean of the equilibria with only one pad: any such
         mean is in equilibrium, and the weight is the right pad's fraction of the work.
@@ -212,14 +212,14 @@ class Caliper:
             share = b / (a + b)
         return _mean(right, left, self.pads, share)
 
-    # What changes it --------------------------------------------------------------------------------
+    # Friction and wear ------------------------------------------------------------------------------
 
     def friction(
         self, coefficient: float, travel: float | None = None, finger: float = _FINGER
     ) -> PivotFriction:
         """Compute the caliper's efficiency with friction at a travel of the cable [m], by default at contact.
 
-        The coefficient applies to all pivots that have none of their own; slots and contacts have their own.
+        The coefficient applies to all pivots without a coefficient, but not to slots and contacts.
         The forces of the pads are those without friction; friction changes the tension that they need.
         """
         coefficient = not_negative("coefficient", coefficient)
@@ -280,7 +280,7 @@ def _with_magnitudes(mechanism: Mechanism, magnitudes: dict[str, float | None]) 
 def _mean(
     a: Equilibrium, b: Equilibrium | None, pads: tuple[str, str], share: np.ndarray | float
 ) -> dict[str, Any]:
-    """Compute the mean of two equilibria, with the weight `share` of the first; without `b`, take `a`.
+    """Compute the mean of two equilibria, with the weight `share` of the first; `a` if there is no `b`.
 
     Errors and residuals are the larger of the two, and the status is judged anew.
     """

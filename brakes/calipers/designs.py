@@ -1,4 +1,4 @@
-"""Six bicycle calipers as data: their dimensions, and the mechanisms that these describe.
+"""Six bicycle calipers as data: their dimensions, and the mechanisms with these dimensions.
 
 x points to the right and y up, seen from the front; the wheel's mid-plane is x = 0 and the brake is drawn
 open.  "Right" and "left" are the sides of the pads; the rim pushes the pads outward.  Dimensions of a
@@ -228,8 +228,8 @@ class CentrePull(Design):
     Parameters
     ----------
     pivot, pad, hook : tuple of 2 floats
-        Pivot and pad of the right arm, and its end of the straddle cable, on the other side of the middle
-        [m].
+        Pivot and pad of the right arm, and the arm's end of the straddle cable, on the other side of the
+        middle [m].
     yoke, stop : tuple of 2 floats
         The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
 
@@ -259,7 +259,7 @@ class Cantilever(Design):
     Parameters
     ----------
     pivot, pad, hook : tuple of 2 floats
-        Boss and pad of the right arm, and its end of the straddle cable [m].
+        Boss and pad of the right arm, and the arm's end of the straddle cable [m].
     yoke, stop : tuple of 2 floats
         The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
 
@@ -324,7 +324,7 @@ NAMED: dict[str, type[Design]] = {
     "v-brake": VBrake,
 }
 
-# Equal return springs turn free arms by equal angles; they do not hold them once the pads touch.
+# Equal return springs turn free arms by equal angles; the arms can turn apart once the pads touch.
 CENTRED = (RotationLock("return springs", LEFT, RIGHT, -1.0),)
 
 

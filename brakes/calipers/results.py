@@ -18,7 +18,7 @@ from brakes.planar.statics import is_answer
 class CaliperStroke(Result):
     """Travel and forces of a caliper over its stroke, at S positions; pads in the order right, left.
 
-    At every position the pads are loaded as if the rim were just there.  What cannot be determined is nan.
+    At every position the pads are loaded as if they touched the rim there.  Undetermined values are nan.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ class PivotFriction(Result):
     Parameters
     ----------
     coefficient : float
-        Coefficient of friction of every pivot that has none of its own.
+        Coefficient of friction of every pivot for which none is given.
     cable : float
         Travel of the cable [m].
     tension, squeezing_tension, releasing_tension : float
@@ -179,7 +179,7 @@ class PivotFriction(Result):
 
     @property
     def has_answer(self) -> bool:
-        """Whether a tension moves the brake both ways, while no contact opens and no cable slackens."""
+        """Whether the brake moves both ways with the cable tight and all contacts closed."""
         return is_answer(self.status, (self.squeezing_tension, self.releasing_tension))
 
 

@@ -102,7 +102,7 @@ class Stance:
         moved = mu * self.cg_height * lift
         if self.braked_wheel == "rear":
             return mu * GRAVITY * x / (inertia * length + moved)
-        holds = inertia * length - moved  # not positive where pitching over comes first
+        holds = inertia * length - moved  # not positive if the vehicle pitches over before the tyre slips
         return mu * GRAVITY * (length - x) / holds if holds > 0 else math.inf
 
 
@@ -129,11 +129,11 @@ class StoppingDistance(Result):
     pad_limit : float
         Force on each pad at the lower of these two limits [N], which is not exceeded.
     limited_by : {"brake", "grip", "pitching over"}
-        What limits the deceleration.
+        Limit of the deceleration.
     status : {"stops", "does not stop"}
         Whether the vehicle stops.
     message : str
-        The status as a sentence, with what limits the stop if that is not the brake.
+        The status as a sentence, with the limit of the deceleration if that is not the brake.
 
     Examples
     --------
@@ -279,9 +279,9 @@ def _radius_ratio(rim_radius: float | None, tyre_radius: float | None) -> float:
 
 
 def _integrated(energy: float, factor: float, force: Callable[[float], float]) -> np.ndarray:
-    """Compute the distances in which a force that depends on distance takes up the energy.
+    """Compute the distances [m] in which a force that depends on distance absorbs energies [J].
 
-    It integrates ds/dE = 1/(factor F(s)); the last distance is inf if the force F vanishes before.
+    The function integrates ds/dE = 1/(factor F(s)); the last distance is inf if the force F vanishes before.
     """
     from scipy.integrate import solve_ivp
 

@@ -1,4 +1,4 @@
-"""From pedal or lever to the wheels: actuation by line or cable, braking force, fading and heat of a stop."""
+"""From pedal or lever to wheels: actuation by line or cable, braking force, fading and heat of a stop."""
 
 from brakes.chain.actuation import Actuation, actuate, force_for, ratio_for
 from brakes.chain.braked import BrakedStop, brake_from_pedal

@@ -69,7 +69,7 @@ class Actuation(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentence on a pedal force above what the standards allow; empty if it is allowed."""
+        """Sentence on a pedal force above the limit of the standards; empty if it is allowed."""
         limb = self.pedal.operated_by
         return (f"the {self.verdict}",) if passes(limb, self.pedal_force) else ()
 
@@ -87,7 +87,7 @@ def actuate(pedal: Pedal, line: Line) -> Actuation:
     pedal : Pedal
         The pedal and the force on it.
     line : HydraulicLine or BrakeCable
-        What carries the force on to the actuators.
+        Transmission of the force to the actuators.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def force_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
     pedal : Pedal
         The pedal; its own force is not used.
     line : HydraulicLine or BrakeCable
-        What carries the force on to the actuators.
+        Transmission of the force to the actuators.
     actuator_force : float or ndarray
         Wanted force on each actuator [N].
 
@@ -167,7 +167,7 @@ def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
     pedal : Pedal
         The pedal; its own ratio is not used.
     line : HydraulicLine or BrakeCable
-        What carries the force on to the actuators.
+        Transmission of the force to the actuators.
     actuator_force : float or ndarray
         Wanted force on each actuator [N].
 
@@ -213,7 +213,7 @@ def _output_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Numbers:
 
 
 def _ends(pedal: Pedal, line: Line, output: Numbers, travel: Numbers) -> tuple[tuple[Numbers, str], ...]:
-    """Decide which cases have no answer, and why."""
+    """Find the cases without an answer (pressure or travel at the limit), and the reasons."""
     over = output > line.limit * (1 + EDGE)
     far = travel > (np.inf if pedal.travel is None else pedal.travel * (1 + EDGE))
     return (

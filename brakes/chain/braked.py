@@ -1,4 +1,4 @@
-"""A truck's stop from its pedal, with the smaller of the forces that brakes and road can give.
+"""A truck's stop from the pedal force, with the smaller of the forces that brakes and road can give.
 
 The torque of a brake is C* r times the force on its actuator, with brake factor C* and drum radius r.
 So the pedal force at which the wheels just lock follows from the torque of locked wheels in closed form.
@@ -100,7 +100,7 @@ def brake_from_pedal(
     pedal : Pedal
         The pedal and the force on it.
     line : HydraulicLine or BrakeCable
-        What carries the force to the brakes.
+        Transmission of the force to the brakes.
     torque_per_force : float or ndarray
         Torque of a brake over the force on its actuator, C* r [m].
 

@@ -32,7 +32,7 @@ from brakes.chain.braked import BrakedStop
 from brakes.common.heat import Duty, Fade, repeat_stops, warn_of_pv
 from brakes.vehicle import Stop
 
-_LEAST = 1e-12  # friction that replaces zero, at which no brake gives a torque
+_LEAST = 1e-12  # friction that replaces 0, because without friction there is no torque
 BRAKES = 2  # number of brakes that share the energy
 
 
@@ -257,6 +257,6 @@ def fade_of_stops(
 
 
 def _free_way(stop: Stop) -> np.ndarray:
-    """Compute the distance [m] before a sudden full force that gives the stop's length and heat."""
+    """Compute the distance [m] before a sudden full force that gives the stop and heat of a gradual rise."""
     way = np.where(stop.stops, stop.rise_distance + stop.braking_distance, np.nan)
     return np.nan_to_num(np.maximum(way - heat_of_stop(stop).energy / stop.brake_force, 0.0))

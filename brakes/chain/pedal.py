@@ -30,7 +30,7 @@ class Pedal:
     force : float or ndarray
         Force on the pedal [N].
     operated_by : {"foot", "hand", "grip", "bicycle"}
-        What presses: a foot, a hand that pulls, a hand that squeezes a truck's grip, or one on a bicycle's
+        Control: a foot pedal, a lever pulled by hand, a truck's grip squeezed by hand, or a bicycle's brake
         lever.
     booster : float or ndarray
         Force behind the booster over the force of the rod, up to the run-out.

@@ -84,7 +84,7 @@ class FindOptions:
         return {"find": self.find, "so_that": self.so_that}
 
     def check(self, **others: object) -> None:
-        """Refuse one of the two options without the other, and --find beside options on many designs."""
+        """Refuse --find or --so-that alone, and --find together with options on many designs."""
         if (self.find is None) != (self.so_that is None):
             raise ValueError(
                 "--find and --so-that go together: the input that is sought, and what it is to give"
@@ -208,7 +208,7 @@ def run_command(
 
 
 def _folded(brake: BrakeType[Any], answer: Answer) -> Sequence[tuple[str, Callable[[], str]]]:
-    """Return title and HTML of each further drawing of an answer, for a report."""
+    """Return title and HTML of each additional drawing of an answer, for a report."""
     from beamdyn.common.screens.screens import FoldedPart
 
     folded = (FoldedPart.of_drawings(*each) for each in brake.more.items())

@@ -1,1 +1,1 @@
-"""What all brakes share: their loads, self-locking, energy and heat of a stop, and inverse questions."""
+"""Base of all brakes: loads, self-locking, energy and heat of a stop, and inverse questions."""

@@ -26,8 +26,8 @@ from brakes.common.solutions import Gap, Piece, Solutions, WholeSolutions, step
 
 _EPS = np.finfo(float).eps
 _SURE = 1e-13  # relative difference from the wanted value that counts as rounding
-# Part of an answer's change over the bracket of a root, by which a continuous answer may differ from the
-# wanted value there.
+# Fraction of an answer's change over the bracket of a root by which a continuous answer may differ from the
+# wanted value at the root.
 _JUMP = 1e-6
 # Relative width of the bracket of a turning point; in a narrower one rounding hides the turning point.
 _TURN = 1e-9
@@ -173,7 +173,7 @@ def find_whole(
 
 @dataclass(frozen=True)
 class _Answers:
-    """The function whose answers are asked for, with its refusals turned into nan and a reason."""
+    """The given function, with its refusals converted to nan and a reason."""
 
     answer: Answer
     reason: Callable[[float], str] | None
@@ -183,7 +183,7 @@ class _Answers:
         return self._with_refusals(x)[0]
 
     def there(self, x: np.ndarray) -> np.ndarray:
-        """Tell for inputs of shape (n,) which of them have an answer."""
+        """Return for inputs of shape (n,) whether each of them has an answer."""
         return np.isfinite(self(x))
 
     def why(self, x: float) -> str:
@@ -212,7 +212,7 @@ class _Run:
 
 
 def _settle(answers: _Answers, x: np.ndarray) -> tuple[Curve, bool]:
-    """Double the samples until the pieces stay the same; return the curve, and whether the pieces did."""
+    """Double the samples until the pieces stay the same; return the curve, and whether they settled."""
     y, settled = answers(x), False
     for _ in range(_DOUBLED):
         between, courses = (x[1:] + x[:-1]) / 2, _courses(y)
@@ -240,7 +240,7 @@ def _finite(y: np.ndarray) -> list[slice]:
 
 
 def _courses_of_run(y: np.ndarray) -> list[tuple[float, int]]:
-    """Find the pieces of one run of answers: sign of each (1 rises, 0 level, -1 falls) and its last index.
+    """Find the pieces of one run of answers: sign (1 rises, 0 level, -1 falls) and last index of each.
 
     A single level step counts as part of the piece before it: a turning point may lie within.
     """
@@ -264,14 +264,14 @@ def _piece(curve: Curve) -> Piece:
 
 
 def _run_as_it_is(x: np.ndarray, y: np.ndarray, run: slice) -> _Run:
-    """Make a run of whole numbers, whose ends need no search: they are samples."""
+    """Make a run of whole numbers; its ends are samples and need no search."""
     before = float(x[run.start - 1]) if run.start else None
     after = float(x[run.stop]) if run.stop < len(x) else None
     return _Run(x[run], y[run], before, after)
 
 
 def _runs(answers: _Answers, x: np.ndarray, y: np.ndarray) -> Iterator[_Run]:
-    """Yield the runs of inputs that have answers, each extended to the last input that has one."""
+    """Yield the runs of inputs with answers, each extended to the exact ends of its range."""
     for run in _finite(y):
         first, last = run.start, run.stop - 1
         low = _edge(answers.there, x[first], x[first - 1]) if first > 0 else (x[first], None)
@@ -281,7 +281,7 @@ def _runs(answers: _Answers, x: np.ndarray, y: np.ndarray) -> Iterator[_Run]:
 
 
 def _edge(holds: Callable[[np.ndarray], Any], inside: Any, outside: Any) -> tuple[float, float]:
-    """Bracket the end of a condition between an input where it holds and one where it does not."""
+    """Bracket the end of a condition between an input that meets it and one that does not."""
     width = _EDGE * max(abs(inside), abs(outside))
     while abs(outside - inside) > width:
         grid = np.linspace(inside, outside, _FEW_PARTS + 1)
@@ -300,7 +300,7 @@ def _gaps(answers: _Answers, x: np.ndarray, runs: Sequence[_Run]) -> Iterator[Ga
 
 
 def _pieces(answers: _Answers, run: _Run) -> Iterator[Curve]:
-    """Cut a run of samples at its turning points and at the ends of its level parts."""
+    """Divide a run of samples at turning points and at the ends of level pieces."""
     x, y = run.x, run.y
     cuts = [
         _turn(answers, x[last - 1], x[last + 1], sign)
@@ -314,9 +314,10 @@ def _pieces(answers: _Answers, run: _Run) -> Iterator[Curve]:
 
 
 def _level_edge(answers: _Answers, level: float, inside: float, outside: float) -> float:
-    """Find the input at which a level part of the answer begins or ends.
+    """Find the input at which a level piece of the answer begins or ends.
 
-    Half of the rounding that counts as level is allowed, so that the piece is level from its other end, too.
+    The answer may deviate by half of the rounding that counts as level, so that the piece is level between
+    any two of its points.
     """
     return _edge(lambda x: step(level, answers(x), 0.5) == 0, inside, outside)[0]
 
@@ -335,9 +336,9 @@ def _turn(answers: _Answers, low: float, high: float, sign: float) -> float:
 
 
 def _unrounded(pieces: Sequence[Curve], target: float, rounding: float) -> float:
-    """Return the constant answer over a range of inputs of which the wanted value may be a rounding.
+    """Return the answer of a level piece that equals the wanted value within its rounding [answer's unit].
 
-    That is the nearest such answer within the rounding; without one, the wanted value itself.
+    The nearest such answer is returned; if there is none, the wanted value.
     """
     heights = [float(y[0]) for _, y in pieces if step(y[0], y[-1]) == 0]
     nearest = min(heights, key=lambda height: abs(height - target), default=target)
@@ -357,7 +358,7 @@ def _solve(
     found, jumps = list[float](), list[float]()
     for x, y in pieces:
         past = y - target
-        # A turning point as near to the wanted value as rounding counts as touching it.
+        # A turning point that differs from the wanted value only by rounding counts as a solution.
         steps = {0: y[1] - y[0], -1: y[-1] - y[-2]}
         ends = [x[i] for i, way in steps.items() if abs(past[i]) <= _SURE * max(abs(target), abs(way))]
         if not ends and past[0] * past[-1] < 0:
@@ -367,18 +368,18 @@ def _solve(
             )
             (jumps if jumped else found).append(root)
         found += ends
-    # `near` is the uncertainty of the ends of ranges.
+    # The ends of ranges are uncertain by `near`.
     alone, near = np.unique(found), 2 * _EDGE * np.abs(ranges)
     low, high = (ranges + near * np.array([-1, 1])).T[..., None]
     return alone[~np.any((alone >= low) & (alone <= high), axis=0)], np.unique(jumps)
 
 
 def _root(answers: _Answers, target: float, bracket: dict[float, float]) -> tuple[float, bool]:
-    """Find where the answer passes the wanted value between two inputs, and whether it jumps there.
+    """Find the input at which the answer passes the wanted value in a bracket, and whether it jumps there.
 
-    The differences at both ends are given: computed one by one they may round to another sign.
+    The differences at both ends are given: computed again they may have another sign due to rounding.
     """
-    from scipy.optimize import toms748  # imported here, as only an inverse question needs it
+    from scipy.optimize import toms748  # imported here, because only inverse questions use it
 
     def difference(x: float) -> float:
         return float(bracket[x] if x in bracket else answers(np.array([x]))[0] - target)

@@ -1,6 +1,6 @@
 """Temperatures of a brake in repeated stops, and the fading of its lining.
 
-A stop turns kinetic energy, and the work of a driving load, into heat of the mass with the heat capacity
+A stop converts kinetic energy, and the work of a driving load, to heat of a mass with the heat capacity
 C = m c. It has one temperature T and cools between the stops only. With the torque M(T) at a constant
 actuating force, an angle dq of rotation heats it by C dT = M dq. So energy alone decides how hot a stop ends,
 
@@ -34,14 +34,14 @@ from beamdyn.common.results.result import Result
 
 _NODES = 20  # nodes of the quadrature between two temperatures of the curve
 _FEWER = 12  # nodes of the coarser quadrature that estimates the error of the finer one
-# A bracket is divided into _PARTS for at most _MOST_AT_ONCE cases, else halved.
+# A bracket is divided into _PARTS intervals for at most _MOST_AT_ONCE cases, else halved.
 _PARTS, _MOST_AT_ONCE = 16, 1000
 _EPS = np.finfo(float).eps
 
 
 @dataclass(frozen=True)
 class FrictionCurve(Described):
-    """Description of a curve of friction over temperature, which a file gives as a list of rows."""
+    """Description of a curve of friction over temperature; in files it is a list of rows."""
 
 
 @dataclass(frozen=True)
@@ -221,14 +221,14 @@ class Fade(Result):
 
     @property
     def refusals(self) -> tuple[str, ...]:
-        """Why a stop has no answer: it does not end, or gets hotter than the friction curve goes."""
+        """Reasons why a stop has no answer: it does not end, or is hotter than the friction curve."""
         if np.ndim(self.status) == 0:
             return tuple(self.messages_of_cases(1).values())
         found = [(status, words) for status, words in _WORDS.items() if np.any(self.status == status)]
         return tuple(f"{words}, in {np.sum(self.status == status)} cases" for status, words in found)
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """Tell by the index of a case which stop has no answer, and why; `count` is the number of cases."""
+        """Return by case index which stop has no answer, and why; `count` is the number of cases."""
         status, stops = (np.broadcast_to(x, (count,)) for x in (self.status, self.duty.stops))
         ended = np.isfinite(self.end).reshape(len(self.end), -1)
         first = np.broadcast_to(1 + ended.argmin(axis=0), (count,))
@@ -308,7 +308,7 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     count = np.broadcast_to(duty.stops, status.shape).astype(int)
 
     def at_last(each: np.ndarray) -> np.ndarray:
-        """Pick the value of the last stop of each case."""
+        """Return the value of the last stop of each case."""
         return np.take_along_axis(each, count[None] - 1, axis=0)[0]
 
     heat, kept = duty.capacity * (ended - begun), np.asarray(duty.kept)
@@ -344,7 +344,7 @@ def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndar
     high = np.where(np.isfinite(path.last), path.last, most)
 
     def over(end: np.ndarray) -> np.ndarray:
-        """Tell whether the stop ends, or its torque fades to that of the load, below a temperature [K]."""
+        """Return whether the stop ends, or the torque fades to the load's, below a temperature [K]."""
         return path.stopped(start, end) | (path.least(start, end) <= load)
 
     # Without a curve the stop ends at `most`, which rounding may put just past `high`.
@@ -353,7 +353,7 @@ def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndar
     parts = _PARTS if start.size <= _MOST_AT_ONCE else 2
     while np.any(high - low > 2 * _EPS * high):
         grid = np.linspace(low, high, parts + 1)
-        grid[-1] = high  # linspace may round its last point
+        grid[-1] = high  # numpy's linspace may round the last point
         ended = np.concatenate([over(grid[1:-1]), np.full((1, *start.shape), True)])
         first = ended.argmax(axis=0)[None]
         low, high = (np.take_along_axis(grid, k, axis=0)[0] for k in (first, first + 1))
@@ -369,7 +369,7 @@ def _gauss(nodes: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 class _Warming:
-    """Friction and torque of a brake as functions of the temperature, and the angle of a stop."""
+    """Friction and torque of a brake as functions of temperature, and the angle of rotation of a stop."""
 
     def __init__(self, duty: Duty, friction: Numbers, torque_at: TorqueAt) -> None:
         self.duty, self.given, self.torque_at = duty, friction, torque_at
@@ -401,11 +401,11 @@ class _Warming:
         """Compute the coefficient of friction at temperatures [K]."""
         if self.knots is None:
             return self.given + 0 * np.asarray(temperature)
-        # Adding 0 times the temperature keeps nan.
+        # 0 times the temperature is added to keep nan.
         return np.interp(temperature, *self.knots.T) + 0 * np.asarray(temperature)
 
     def least(self, start: Numbers, end: Numbers | None = None) -> np.ndarray:
-        """Compute the least torque [N m] between two temperatures: at either, or at a knot between them."""
+        """Compute the least torque [N m] between two temperatures: at an end, or a point of the curve."""
         ends = (start,) if end is None else (start, end)
         found = [self.friction(each) for each in ends]
         if self.knots is not None and end is not None:
@@ -428,6 +428,6 @@ class _Warming:
         return self.duty.capacity * (np.tensordot(weights, slowness, 1) * half).sum(axis=0)
 
     def stopped(self, start: Numbers, end: Numbers) -> np.ndarray:
-        """Tell whether the heat up to a temperature is at least the energy of the whole stop."""
+        """Return whether the heat up to a temperature [K] is at least the energy of the whole stop."""
         driven = self.duty.load_torque * self.angle(start, end) / self.duty.capacity
         return end - start >= self.duty.rise_of_a_stop + driven - 4 * _EPS * np.abs(end)

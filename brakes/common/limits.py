@@ -9,7 +9,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers
 
 EDGE = 1e-9  # relative excess of a value over its limit that counts as rounding
-LIMITS = MappingProxyType(  # largest force [N], and who states it, by what presses
+LIMITS = MappingProxyType(  # largest force [N], and its source, by limb and control
     {
         "foot": (450.0, "ISO 6292:2020, 4.5.2"),
         "hand": (300.0, "ISO 6292:2020, 4.5.4"),
@@ -20,7 +20,7 @@ LIMITS = MappingProxyType(  # largest force [N], and who states it, by what pres
 
 
 def passes(limb: str, force: Numbers) -> bool:
-    """Tell whether a force [N], or any of many, is above the limit of a limb, a key of `LIMITS`."""
+    """Return whether a force [N], or any of many, exceeds the limit of a limb, a key of `LIMITS`."""
     return bool(np.max(force) > LIMITS[limb][0] * (1 + EDGE))
 
 

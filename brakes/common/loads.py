@@ -10,12 +10,12 @@ UNITS = {"force": "N", "peak_pressure": "Pa", "torque": "N m"}
 
 
 def take_load(**given: Numbers | None) -> tuple[str, Numbers]:
-    """Return name and checked value of the one load that is given: force, peak_pressure or torque.
+    """Return name and checked value of the given load: force, peak_pressure or torque.
 
     Raises
     ------
     ValueError
-        Unless it is exactly one, above zero.
+        Unless exactly one load is given, above zero.
     """
     present = {name: value for name, value in given.items() if value is not None}
     if len(present) != 1:

@@ -11,7 +11,7 @@ from beamdyn.common.results.result import Result
 
 # Relative distance from self-locking within which a brake without an equilibrium counts as locked
 _NEAR = 1e-9
-LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that counts as zero
+LEAST_MARGIN = 5e-13  # relative margin to self-locking that counts as zero
 
 
 class SlidesOrLocks(Result):
@@ -30,7 +30,7 @@ class SlidesOrLocks(Result):
 
     @property
     def message(self) -> str:
-        """One sentence that tells whether the brake slides or locks, and why."""
+        """One sentence stating whether the brake slides or locks, and why."""
         locked = np.asarray(self.locked)
         if not locked.any():
             return "slides: the friction is below self-locking"
@@ -52,7 +52,7 @@ def _say_locked(grips: str, friction: np.ndarray, locking: np.ndarray, where: st
         for values in (friction, locking)
     )
     if np.all(friction < locking * (1 - _NEAR)):
-        slides = f"nothing holds the {grips}, which slides off its abutment"
+        slides = f"the {grips} is not in equilibrium, and slides off its abutment"
         return f"no equilibrium{where}: at friction {mu} {slides}"
     return (
         f"locked{where}: friction {mu} is at or past self-locking, {least}; "

@@ -152,7 +152,7 @@ class Solutions(Result):
 
     @property
     def _target(self) -> str:
-        """Text of the wanted value, as it was given and in the answer's unit."""
+        """Text of the wanted value, as given by the user and in the answer's unit."""
         target = self._output(self.target)
         return f"{self.wanted} ({target})" if self.wanted else target
 
@@ -202,7 +202,7 @@ class Solutions(Result):
         return f"{value:.6g} {self.output_unit}".rstrip()
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the answer over the input, with the wanted value and the solutions."""
+        """Plot the answer over the input, with the wanted value and the solutions."""
         from beamdyn.common.plots.axes_and_lines import set_up_axes
 
         labels = (f"{name} [{unit}]" if unit else name for name, unit in self.named)
@@ -214,7 +214,7 @@ class Solutions(Result):
 
     @property
     def named(self) -> tuple[tuple[str, str], tuple[str, str]]:
-        """Name and unit of the input, and name and unit of the answer."""
+        """Labels of input and answer, each a name with a unit."""
         return (self.input, self.unit), (self.output, self.output_unit)
 
 
@@ -243,7 +243,7 @@ class WholeSolutions(Solutions):
         return "; ".join((*said, *map(self._passing, self.values[~meets])))
 
     def _passing(self, value: float) -> str:
-        """Return the values of the answer between which it jumps over the wanted number."""
+        """Return the answers of the two neighbouring numbers between which the wanted value lies."""
         k = int(np.searchsorted(self.samples, value))
         (before, now), (first, last) = self.samples[k - 1 : k + 1], self.answers[k - 1 : k + 1]
         steps = f"{self._input(before)} ({self._output(first)}) to {self._input(now)} ({self._output(last)})"

@@ -1,4 +1,4 @@
-"""Input files of named calipers: dimensions, from which the mechanism is made, stroke and stop."""
+"""Input files of named calipers: dimensions that determine the mechanism, stroke, and stop."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SHORT_TEXTS = ConfigDict(str_max_length=200)  # limit of titles and names, which
 # Kinds of values ----------------------------------------------------------------------------------
 
 
-_FARTHEST = 1e6  # largest coordinate of a mechanism [m]: beyond any real one, far from overflow
+_FARTHEST = 1e6  # largest coordinate of a mechanism [m], larger than any real one
 
 
 class PointQuantity(Quantity):
@@ -50,7 +50,7 @@ class DirectionQuantity(Quantity):
 
 
 class Angle(float):
-    """A travel that was given as an angle, in [rad]."""
+    """A travel that is an angle [rad]."""
 
 
 class TravelQuantity(Quantity):
@@ -81,7 +81,7 @@ _Loss = Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least
 
 
 class RunInput(Section):
-    """Table [run] of a file: the stroke, the finger's force, and what else is to be computed."""
+    """Table [run] of a file: the stroke, the finger's force, and further quantities to compute."""
 
     finger: Annotated[float, Quantity("N", "P", "force of the finger on the hand lever", above=0)] = 40.0
     driver: Annotated[
@@ -101,7 +101,7 @@ class _StopInput(CoreSection):
 
     @cached_property
     def core(self) -> StoppingDistance:
-        """The stop without pad force, whose computation checks the inputs."""
+        """The stop without pad force, computed to check the inputs."""
         return self.with_force(0.0)
 
     def with_force(self, pad_force: float) -> StoppingDistance:
@@ -124,7 +124,7 @@ else:
 
 
 class DimensionsInput(MadeSection):
-    """Table [dimensions] of a named caliper, with the lengths that differ from the usual ones."""
+    """Table [dimensions] of a named caliper, with the lengths that differ from the usual values."""
 
     @cached_property
     def core(self) -> Caliper:
@@ -133,7 +133,7 @@ class DimensionsInput(MadeSection):
 
 
 class CaliperInput(Section):
-    """File of a named caliper: its name, and dimensions that differ from the usual ones."""
+    """File of a named caliper: name, and dimensions that differ from the usual values."""
 
     model_config = SHORT_TEXTS
 

@@ -99,7 +99,7 @@ class DrumInput(CoreSection):
     def core(self) -> DrumBrake:
         """The brake of these shoes."""
         given = {key: value for key, value in self.second_shoe or () if value is not None}
-        try:  # the second shoe has what [second_shoe] gives, and is like the first one in all else
+        try:  # inputs that [second_shoe] leaves out are those of the first shoe
             second = _Shoe.model_construct(**dict(self.shoe) | given).core if self.second_shoe else None
         except InvalidValue as error:
             between = ": " if " " in error.field else "."  # a text with a space is not a key

@@ -22,7 +22,7 @@ class RubbingInput(Section):
 
 
 class LoadInput(Section):
-    """Table [load] of a file: actuating force, or the torque or pressure that the brake is to give."""
+    """Table [load] of a file: actuating force, or the wanted torque or pressure."""
 
     force: Annotated[
         float | None,

@@ -15,7 +15,7 @@ from brakes.machines import Machine, MachineResult, solve_brake
 
 
 class MachineInput(CoreSection):
-    """File of a brake; a table named after the brake, made from its class, has the dimensions."""
+    """File of a brake; the table of dimensions has the brake's name and is made from the brake's class."""
 
     table: ClassVar[str]
     title: ClassVar[str]

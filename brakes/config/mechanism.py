@@ -112,14 +112,14 @@ class MechanismInput(CoreSection):
 
     @cached_property
     def core(self) -> Caliper | Mechanism:
-        """The caliper, or the mechanism if the file does not tell which loads are cable and pads."""
+        """The caliper, or the mechanism if the file does not name cable and pads among the loads."""
         joints, loads = (
             [table.core for part in parts for table in getattr(self, part.key())] for parts in (JOINTS, LOADS)
         )
         self._check_run({load.name: load for load in loads})
         if self.caliper is None:
             friction = self.run.friction
-            try:  # [run] has the friction of the pins that have none of their own
+            try:  # pins without a friction coefficient have that of [run]
                 joints = [joint.with_pivot(0.0, friction) for joint in joints] if friction else joints
             except ValueError as error:
                 bound = f"it is that of every pin; {error}"
@@ -171,7 +171,7 @@ CompleteMechanismInput = create_model(
 
 
 def _with_points(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Replace the names of points in tables by the coordinates in [points]."""
+    """Replace names of points in tables by coordinates from [points]."""
     points = data.get("points")
     known = points if isinstance(points, dict) else {}
 

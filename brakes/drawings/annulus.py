@@ -21,7 +21,7 @@ def draw_disc(result: MachineResult) -> Drawing:
     """Draw the disc from the front, with the friction of both pads together; for a single case."""
     disc = result.brake
     assert isinstance(disc, DiscBrake)
-    # `sense` is the direction along x of the friction at the top of the disc.
+    # `sense` is the x direction (+1 or -1) of the friction at the top of the disc.
     r, sense = float(disc.reference_radius), 1.0 if result.reverse else -1.0
     drag = float(result.torque) / r
     arrows = ForceArrows(0.8 * r / drag if drag else 0.0)
@@ -53,7 +53,7 @@ def draw_cone(result: MachineResult) -> Drawing:
 
 
 def _with_force(arrows: ForceArrows, result: MachineResult, words: str) -> Drawing:
-    """Finish the drawing of a section: add the actuating force along its axis, title and key."""
+    """Complete the drawing of a section: add the actuating force along the axis, title and key."""
     arrows.add((0.0, 0.0), np.array([float(result.force), 0.0]), "P", "load", ends_here=True)
     title = f"Pressed by {float(result.force):.5g} N; torque {float(result.torque):.5g} N m"
     return arrows.drawing(title, words, {"load": "actuating force P"})
@@ -116,7 +116,7 @@ def disc_sketch() -> Rows:
 
 
 def _radii(s: Sketch, low: float, high: float) -> None:
-    """Add inner and outer radius to a sketch, from the centre."""
+    """Add inner and outer radius, measured from the centre, to a sketch."""
     for symbol, radius, angle in (("r_i", low, -0.5), ("r_o", high, -2.4)):
         tip = radius * np.array([np.cos(angle), np.sin(angle)])
         s.add(Disc((0, 0), radius, "axis", 0.8, (4.0, 2.5)))

@@ -11,12 +11,12 @@ import numpy as np
 from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, arc
 
 _FORCES = 3  # priority of the labels of forces
-_HEAD = 12  # points of an arc of 41 that its arrow's head covers
+_HEAD = 12  # number of points, of 41 along an arc, that the arrowhead covers
 
 
 @dataclass(eq=False)
 class ForceArrows:
-    """A drawing under construction, to which forces are added as arrows to one scale.
+    """A drawing under construction, to which forces are added as arrows drawn to one scale.
 
     Parameters
     ----------

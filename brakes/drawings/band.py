@@ -14,8 +14,8 @@ from brakes.machines import Band, MachineResult
 def draw_band(result: MachineResult) -> Drawing:
     """Draw the drum, its band and the lever, with the forces on the lever to one scale; for a single case.
 
-    The arms of the lever are to scale. Its distance from the drum, and so the direction of the band's free
-    ends, is not given: the lever is drawn near the drum.
+    The arms of the lever are to scale. The lever's distance from the drum, and so the direction of the band's
+    free ends, is not given: the lever is drawn near the drum.
     """
     band = result.brake
     assert isinstance(band, Band)
@@ -40,7 +40,7 @@ def draw_band(result: MachineResult) -> Drawing:
 
 
 def _places(band: Band) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
-    """Return points of the band, from its second end over the top to its first, and of the lever."""
+    """Return points of the band, from the second end over the top to the first end, and of the lever."""
     r, half = float(band.drum_radius), float(band.wrap) / 2
     a, s, far = (float(arm) for arm in (band.first_arm, band.second_arm, band.force_arm))
     rim = arc((0, 0), r, np.pi / 2 + half, np.pi / 2 - half, 121)

@@ -10,7 +10,7 @@ from beamdyn.common.drawing.sketch import Sketch
 from brakes.drawings.arrows import ForceArrows, rotation
 from brakes.machines import Block, LiningResult, MachineResult
 
-# Matrices from the axes of a block to the drawing, for a block on top and for one below.
+# Matrices that transform a block's axes to the drawing, for a block above and for one below the drum.
 _SIDES = (np.eye(2), np.diag((1.0, -1.0)))
 
 
@@ -45,7 +45,7 @@ def draw_block(result: MachineResult) -> Drawing:
 def _add_forces(
     arrows: ForceArrows, block: Block, lining: LiningResult, placed: np.ndarray, index: str, leads: bool
 ) -> None:
-    """Add the resultants of pressure and friction where their lines cross, and the force of the fulcrum."""
+    """Add resultants of pressure and friction where their lines of action cross, and the fulcrum's force."""
     c, s, q = (float(each) for each in block.integrals())
     way = np.array([s, c]) / np.hypot(s, c)
     at = float(block.drum_radius) * q / np.hypot(s, c) * way
@@ -72,7 +72,7 @@ def _add_drum(shapes: list[DrawnShape], r: float, *, reverse: bool) -> None:
 
 
 def _add_lever(shapes: list[DrawnShape], block: Block, placed: np.ndarray) -> None:
-    """Add a block with its lever; the matrix `placed` transforms its own axes to the drawing."""
+    """Add a block with its lever; the matrix `placed` transforms the block's axes to the drawing."""
     face, fulcrum, end = _places(block)
     r = float(block.drum_radius)
     back = face * (1.0, 0.0) + (0.0, 1.3 * r)

@@ -73,7 +73,7 @@ def caliper_figure(
     caption : str
         A further line under the title.
     """
-    figure = new_figure(11.5, 7.6, None)  # laid out by hand: a layout engine takes twice as long
+    figure = new_figure(11.5, 7.6, None)  # no layout engine: it takes twice as long as a fixed layout
     place = float(run.cable[-1] if cable is None else cable)
     title = "\n".join(filter(None, (title_of(caliper, run, place), caption)))
     draw_in(figure, (0.005, 0.01, 0.545, 0.985), caliper_drawing(caliper, closed, title))
@@ -126,7 +126,7 @@ _LETTERS = 9.0
 
 
 def caliper_sketch(name: str) -> Rows:
-    """Sketch a named caliper with the names of its dimensions, and the vehicle; only that for other names."""
+    """Sketch a named caliper with its dimensions, and the vehicle; for other names, only the vehicle."""
     return [[_dimensions(name)], [_bicycle()]] if name in NAMED else [[_bicycle()]]
 
 
@@ -175,7 +175,7 @@ def _dimensions(name: str) -> Drawing:
 
 
 def mechanism_sketch(stops: bool) -> Rows:
-    """Sketch the symbols of joints and loads, the angles of directions and, if `stops`, the vehicle."""
+    """Sketch the symbols of joints and loads, angles of directions and, if `stops` is true, the vehicle."""
     return [[_symbols()], [_directions()], *([[_bicycle()]] if stops else [])]
 
 

@@ -78,7 +78,7 @@ def drawing_of(result: BrakeResult) -> Drawing:
 
 
 def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str, bare: bool) -> None:
-    """Add a shoe with lining and pin, and its forces unless it is bare; `placed` transforms its own axes."""
+    """Add a shoe with lining, pin and, unless `bare`, forces; `placed` transforms the shoe's axes."""
     r, shoe = float(s.shoe.drum_radius), s.shoe
     rim = _on_rim(r, np.linspace(*shoe.lining, 80)) @ placed
     pin = np.array(shoe.pivot, dtype=float) @ placed
@@ -118,7 +118,7 @@ def pressures(ax: Axes, result: BrakeResult) -> Axes:
 
 
 def pressure_chart(result: BrakeResult) -> Chart:
-    """Make the chart of the pressure over the linings, down to zero at their ends; for a single case."""
+    """Make the chart of the pressure along each lining, vertical lines to zero at its ends; a single case."""
     curves = []
     for i, shoe in enumerate(result.shoes):
         a1, a2 = (float(a) for a in shoe.shoe.lining)

@@ -80,7 +80,7 @@ def duo_servo(geometry: DuoServo, motion: ShoeMotion, progress: float, title: st
 def moved(
     points: np.ndarray, geometry: DuoServo, motion: ShoeMotion, progress: float, side: str
 ) -> np.ndarray:
-    """Compute where points of the right shoe at rest are, on either side, at a position of the motion.
+    """Compute the positions of the right shoe's points, or of the left one's, during the motion.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def free_bodies(forces: InternalForces, followed: Kinematics | None = None) -> l
 
 
 def _free_body(arrows: ForceArrows, f: InternalForces, followed: Kinematics | None, side: str) -> Drawing:
-    """Draw a shoe with its outline, if it is known, and the forces on it, or why there are none."""
+    """Draw a shoe with its outline, if known, and the forces on it, or the reason why there are none."""
     levers, leads, name = f.levers, side == "right", f"{_SIDES[side]} shoe"
     r, sense, gamma = float(levers.drum_radius), 1 if leads else -1, float(levers.gamma)
     a, alpha = map(float, (levers.a1, levers.alpha1) if leads else (levers.a2, levers.alpha2))

@@ -20,7 +20,7 @@ from brakes.forklift import InternalForces, Kinematics, Stop, Truck
 
 
 def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: InternalForces | None) -> Figure:
-    """Draw truck, both stages of the brake's motion, and its free bodies, as far as they are given."""
+    """Draw truck, both stages of the brake's motion, and free bodies of the shoes, whichever are given."""
     rows = answer_drawings(stop, followed, forces, followed)
     return figure_of(rows) if rows else Figure(figsize=(10.0, 4.0))
 
@@ -123,7 +123,7 @@ def draw_chassis(shapes: list[DrawnShape], t: Truck, turn: np.ndarray) -> None:
 
 
 def has_load(t: Truck) -> bool:
-    """Tell whether there is a load on the fork."""
+    """Return whether there is a load on the fork."""
     return bool(float(t.load_mass)) and float(t.load_cg[0]) < 0
 
 

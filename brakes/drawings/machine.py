@@ -13,7 +13,7 @@ from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartCurve, ChartMar
 from brakes.machines import MachineResult, solve_brake
 
 _POINTS = 101  # number of points of each curve
-FRICTION_SHOWN, LIMIT_SHOWN = 0.8, 1.6  # largest frictions of charts: without self-locking, and with it
+FRICTION_SHOWN, LIMIT_SHOWN = 0.8, 1.6  # largest friction in charts: without self-locking, and with it
 _SCALES = {"deg": 180 / np.pi, "mm": 1e3}
 
 
@@ -34,7 +34,7 @@ def charts_of(result: MachineResult) -> list[Chart]:
 
 
 def pressure_chart(result: MachineResult) -> Chart:
-    """Make the chart of the pressure along each lining, down to zero at its ends."""
+    """Make the chart of the pressure along each lining, with vertical lines to zero at the ends."""
     brake = result.brake
     low, high = (float(end) for end in brake.reach())
     at, scale = np.linspace(low, high, _POINTS), _SCALES[brake.place.shown]
@@ -79,7 +79,7 @@ def factor_chart(result: MachineResult) -> Chart:
 def over_friction(
     title: str, curves: Sequence[ChartCurve], marks: Sequence[ChartMark], near: float | None
 ) -> Chart:
-    """Make a chart of C* over friction; a C* without bound is drawn up to a multiple of a usual value."""
+    """Make a chart of C* over friction; an unbounded C* is cut off at a multiple of a usual value."""
     high = None if near is None else max(2.5 * near, 1.0)
     factor = ChartAxis("C* = torque / (force radius)", low=0.0, high=high)
     return Chart(title, ChartAxis("friction of the linings", low=0.0), factor, curves, marks=marks)

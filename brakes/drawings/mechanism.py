@@ -34,7 +34,7 @@ _KEY = {"tension": "tension", "compression": "compression", "load": "load", "rea
 _MM = 1e3
 _LONGEST = 0.28  # length of the longest arrow, over the size of the mechanism
 _SHORTEST = 1e-6  # arrows shorter than this are not drawn [mm]
-_ASIDE = 0.17  # distance from the middle, over the size, beyond which arrows may point inwards
+_ASIDE = 0.17  # distance from the mechanism's middle, over the size, beyond which arrows may point inwards
 _ALONG = np.array([0.55, 0.4, 0.7, 0.25, 0.85])  # fractions of a member's length at which its label may stand
 _CABLE = (5.0, 3.0)
 _SPRING = (1.5, 2.0)
@@ -80,7 +80,7 @@ def _add_mechanism(sketch: _Sketch, position: Position, equilibrium: Equilibrium
     straight = parts.two_force_bodies(position.mechanism)
     outlines = {body: parts.outline(position, body) for body in position.mechanism.bodies}
     for body, corners in outlines.items():
-        if body not in straight and len(corners):  # a body without corners has no joints or loads yet
+        if body not in straight and len(corners):  # a body without joints and loads has no corners
             sketch.shapes.append(_body(corners))
             places = np.vstack([parts.label_place(outlines, body), corners.mean(axis=0)]) * _MM
             sketch.labels.append(Label(body, places, priority=_BODIES))
@@ -138,7 +138,7 @@ def _size(position: Position) -> float:
 
 
 def force_scale(forces: Sequence[parts.OuterForce], size: float) -> float:
-    """Compute the scale of arrows [m/N] that makes the longest one a fixed fraction of a size [m]."""
+    """Compute the scale of arrows [m/N] at which the longest arrow is a fixed fraction of a size [m]."""
     known = np.array([np.linalg.norm(outer.force) for outer in forces])
     largest = float(known[np.isfinite(known)].max(initial=0.0))
     return _LONGEST * size / largest if largest else 0.0
@@ -182,11 +182,11 @@ def open_and_closed(open_: Position, closed: Equilibrium, title: str = "", rim: 
             *(Symbol("dot", at * _MM, "ghost", 4.0) for at in pins),
         ]
     _add_mechanism(sketch, closed.position, closed)
-    # labels so far: a bar or cable to the ground may already show the same force
+    # existing labels: a bar or cable to the ground may already show the same force
     said = {label.text for label in sketch.labels}
     centre = (low + high) / 2
     for outer in forces:
-        aside = outer.at[0] - centre[0]  # arrows that would cross the middle come from outside
+        aside = outer.at[0] - centre[0]  # arrows that would cross the middle of the mechanism start outside
         far = abs(aside) > _ASIDE * math.dist(low, high) and outer.force[0] * aside < 0
         pressed = outer.along_bar and outer.force @ (centre - outer.at) > 0
         _add_arrow(sketch, outer, scale, bool(outer.reaction and (far or pressed)), said)
@@ -207,7 +207,7 @@ def with_points(drawing: Drawing, points: Mapping[str, tuple[float, float]]) -> 
 
 
 def with_lock(drawing: Drawing, locked: Equilibrium, load: str) -> Drawing:
-    """Add a mark to the drawing of a mechanism that locks, at the point of the load that should move it.
+    """Add a mark to the drawing of a mechanism that locks, at the point of the driving load.
 
     Parameters
     ----------
@@ -233,9 +233,9 @@ def with_lock(drawing: Drawing, locked: Equilibrium, load: str) -> Drawing:
 def _add_arrow(
     sketch: _Sketch, outer: parts.OuterForce, scale: float, inwards: bool, said: Container[str] = ()
 ) -> None:
-    """Add an arrow to a sketch, from its point, or to it if `inwards`; none for a force of nearly 0 or nan.
+    """Add a force's arrow that starts at its point, or ends there if `inwards`; none for a force of 0 or nan.
 
-    Its label is omitted if `said` contains it.
+    The label is omitted if it is in `said`.
     """
     size, reach = float(np.linalg.norm(outer.force)), outer.force * scale * _MM
     if not np.linalg.norm(reach) > _SHORTEST:
@@ -293,7 +293,7 @@ def free_body_drawing(equilibrium: Equilibrium, body: str, scale: float, heading
                 couples.append(f"{action.name}: couple {action.couple:.4g} N m")
             continue
         towards = bool(action.force @ (corners.mean(axis=0) - action.at) > 0)
-        # a push comes from outside; a cable pulls away from the body
+        # a push points at the body from outside; a cable pulls away from the body
         inwards = towards and action.name not in pulling
         outer = parts.OuterForce(action.name, action.at, action.force, action.name not in loads)
         _add_arrow(sketch, outer, scale, inwards)
@@ -353,7 +353,7 @@ def loads_over_stroke(
     place: float,
     locked: Mapping[str, np.ndarray],
 ) -> list[Chart]:
-    """Make charts of forces and of moments over a stroke, as far as there are such loads.
+    """Make a chart of forces and a chart of moments over a stroke, each if there are such loads.
 
     Parameters
     ----------
@@ -407,12 +407,12 @@ def travel_axis(name: str, unit: str, travel: np.ndarray) -> ChartAxis:
 
 
 def named_curves(x: np.ndarray, curves: Mapping[str, np.ndarray]) -> list[ChartCurve]:
-    """Make curves by name; every other one is dashed, so that coinciding ones can be told apart."""
+    """Make curves by name; every second curve is dashed, so that coinciding curves are distinguishable."""
     return [ChartCurve(name, x, y, dashed=bool(k % 2)) for k, (name, y) in enumerate(curves.items())]
 
 
 def merged(curves: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Drop curves that are zero, and merge equal ones under their joined names."""
+    """Remove curves that are zero, and merge equal curves into one with their joined names."""
     noise = 1e-9 * max((float(np.nanmax(np.abs(y), initial=0.0)) for y in curves.values()), default=0.0)
     groups: list[tuple[list[str], np.ndarray]] = []
     for name, y in curves.items():

@@ -9,7 +9,7 @@ import numpy as np
 
 from brakes.planar import GROUND, Equilibrium, Mechanism, Position, Shape, free_body
 
-_FLAT = 1e-12  # area over the square of the size, below which three points count as being in line
+_FLAT = 1e-12  # triangle area over the square of the size, below which three points count as collinear
 
 
 class Member(NamedTuple):
@@ -21,7 +21,7 @@ class Member(NamedTuple):
 
 
 class OuterForce(NamedTuple):
-    """External force: name, point (2,) [m], components (2,) [N], whether a reaction, whether along a bar."""
+    """External force: name, point (2,) [m], components (2,) [N]; is it a reaction, is it along a bar."""
 
     name: str
     at: np.ndarray
@@ -31,7 +31,7 @@ class OuterForce(NamedTuple):
 
 
 def shapes(position: Position, style: str) -> Iterator[tuple[str, Shape, np.ndarray]]:
-    """Yield the shapes of a style: name of the joint or load, the shape, and its points (k, 2) [m]."""
+    """Yield the drawn shapes of one style: name of joint or load, shape, and points (k, 2) [m]."""
     for name, shape in position.mechanism.shapes:
         if shape.style == style:
             yield name, shape, np.array([position.point(*end) for end in shape.ends])
@@ -57,7 +57,7 @@ def _hull(points: np.ndarray) -> np.ndarray:
 
 
 def _chain(points: np.ndarray, flat: float) -> list[np.ndarray]:
-    """Find the corners of sorted points at which the hull turns left on one side, without the last corner."""
+    """Find the corners of one side of the hull of sorted points, without the last corner."""
     kept: list[np.ndarray] = []
     for point in points:
         while len(kept) > 1:
@@ -82,9 +82,9 @@ def two_force_bodies(mechanism: Mechanism) -> tuple[str, ...]:
 
 
 def label_place(outlines: Mapping[str, np.ndarray], body: str) -> np.ndarray:
-    """Find a place (2,) [m] for a body's name, toward its corner farthest from the centres of other bodies.
+    """Find a position (2,) [m] for a body's name, near the corner farthest from the other bodies' centres.
 
-    The place is within the body if its outline is convex.
+    The position is within the body if the outline is convex.
     """
     mine = outlines[body]
     others = [corners for other, corners in outlines.items() if other != body and len(corners)]

@@ -17,7 +17,7 @@ def draw_sliding(result: MachineResult) -> Drawing:
     """Draw the drum and its shoes, with the forces on each to one scale; for a single case.
 
     The leading shoe of a simplex brake is on the right, in a drum that turns clockwise. The second shoe of a
-    duplex brake, whose abutment is at the opposite end, is drawn as if it lay like the first.
+    duplex brake, whose abutment is at the opposite end, is drawn in the orientation of the first.
     """
     brake = result.brake
     assert isinstance(brake, Sliding)
@@ -74,7 +74,7 @@ def _add_forces(
     side: np.ndarray,
     i: str,
 ) -> None:
-    """Add a shoe's forces: pressure and friction where their lines cross, actuating force, abutment."""
+    """Add a shoe's forces: pressure and friction where their lines of action cross, actuation, abutment."""
     nx, ny, tx, ty, abutment = (float(each) for each in reactions.values())
     normal, psi = np.array([nx, ny]), float(brake.abutment_angle)
     at = -float(brake.drum_radius) * normal / np.hypot(*normal)

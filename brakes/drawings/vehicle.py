@@ -16,7 +16,7 @@ _WHEEL = 0.16  # radius of the drawn wheels, over the wheelbase
 
 
 def standing(found: Holding) -> Drawing:
-    """Draw the vehicle on its slope, with the forces that hold it to one scale; for a single case, in m."""
+    """Draw the vehicle on its slope, with the holding forces to one scale; for a single case, in m."""
     v, beta = found.vehicle, float(found.road.slope) * (1 if found.downhill == "rear" else -1)
     L, h, a = float(v.wheelbase), float(v.cg_height), float(v.cg_behind_front)
     turn = np.array([[np.cos(beta), -np.sin(beta)], [np.sin(beta), np.cos(beta)]])  # rotates row vectors

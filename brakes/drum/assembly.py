@@ -20,7 +20,7 @@ from brakes.drum.shoe import Shoe, ShoeResult, integrals, solve_shoe
 
 @dataclass(frozen=True)
 class DrumBrake:
-    """The shoes of one drum, each pressed by the same force.
+    """A drum brake: the shoes of one drum, all pressed by the same force.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class DrumBrake:
 
 
 def simplex(leading: Shoe, trailing: Shoe | None = None) -> DrumBrake:
-    """Assemble a simplex brake of a leading and a trailing shoe; the same shoe twice unless both are given.
+    """Assemble a simplex brake of a leading and a trailing shoe; both are equal unless two are given.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def simplex(leading: Shoe, trailing: Shoe | None = None) -> DrumBrake:
 
 
 def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
-    """Assemble a duplex brake of two shoes that lead forward; the same shoe twice unless both are given.
+    """Assemble a duplex brake of two shoes that lead forward; both are equal unless two are given.
 
     Examples
     --------
@@ -128,7 +128,7 @@ class BrakeResult(SlidesOrLocks):
     c_star, c_star_slope : ndarray
         Sum of the shoe factors, torque / (force radius), and its derivative with respect to the friction.
     locking_friction, margin, locked : ndarray
-        Locking friction, margin to it, and whether it is passed, of the shoe that locks first.
+        Of the shoe that locks first: locking friction, margin to this, and whether the shoe locks.
 
     Examples
     --------
@@ -303,5 +303,5 @@ def shoe_torque(
 
 
 def _over(function: np.ufunc, values: Sequence[Numbers]) -> Numbers:
-    """Reduce the values of the shoes, in each case, to their minimum, maximum or logical or."""
+    """Reduce the shoes' values in each case by a function such as minimum, maximum or logical or."""
     return function.reduce(np.broadcast_arrays(*values))[()]

@@ -84,7 +84,7 @@ class Shoe:
         Annotated[Numbers, Described("rad", "alpha1", _START, key="lining_start")],
         Annotated[Numbers, Described("rad", "alpha2", _END, key="lining_end")],
     ]
-    pivot: tuple[  # files give b and c for the pin at (b, -c)
+    pivot: tuple[  # b and c, as in files, for the pin at (b, -c)
         Annotated[Numbers, Described("m", "b", _OFFSET, key="pivot_offset")],
         Annotated[Numbers, Described("m", "c", _DEPTH, above=0, key="pivot_depth")],
     ]
@@ -126,7 +126,7 @@ class Shoe:
 
     @property
     def phase(self) -> Numbers:
-        """Angle delta at which the pressure vanishes [rad]."""
+        """Angle delta at which the pressure is zero [rad]."""
         return self.pin_angle if self.pressure_zero == "pivot" else 0.0 * np.asarray(self.pin_angle)
 
     def shape(self, alpha: np.ndarray) -> np.ndarray:
@@ -175,7 +175,7 @@ def integrals(shoe: Shoe) -> _Integrals:
     b, c = (0.0 * far, far) if shoe.pressure_zero == "pivot" else (b, -np.asarray(y))
     inside = (a1 <= np.pi / 2) & (a2 >= np.pi / 2)
     peak = np.where(inside | uniform, 1.0, np.maximum(np.sin(a1), np.sin(a2)))
-    # Errors of K, S and C over an arc of half width h come from the angles and from the terms of the sums.
+    # Errors of the integrals K, S, C over an arc of half width h, due to rounding of angles and of sums.
     ends = np.stack(np.broadcast_arrays(a1, a2))
     angle = _EPS * (np.abs(ends + shoe.phase).max(axis=0) + np.abs(shoe.phase))
     sines, cosines = np.abs(np.sin(ends)), np.abs(np.cos(ends))
@@ -284,7 +284,7 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeRe
     # The sum of the moments about the centre, relative to P (a + c), checks the solution.
     b, y = shoe.pivot
     left = s * torque - shoe.force_arm * force + b * pin[..., 1] - y * pin[..., 0]
-    # The largest relative error is that of dC*/dmu or of the vectors; both follow from that of n + s mu d.
+    # The largest relative error, of dC*/dmu or of the vectors, follows from the error of n + s mu d.
     arms = (np.abs(shoe.force_arm) + np.abs(shoe.pivot[1])) / shoe.moment_arm
     from_bracket = bracket_error / bracket
     slope_error = i.K_error + i.n_error / np.abs(i.n) + from_bracket

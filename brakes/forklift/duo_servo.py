@@ -128,7 +128,7 @@ class DuoServo(HasLevers):
         outside = np.hypot(*tip) >= self.drum_radius * (1 - LEAST_MARGIN)
         bound = "larger than the drum allows: the shoe's tip would leave it before the lining touches"
         refuse(outside, "clearance", c, "m", bound, advice)
-        # The turn psi of stage 2 pushes the right piston to its bottom.
+        # The rotation psi of stage 2 pushes the right piston to its bottom.
         lowest = (self.piston_position(*self.tip) - self.piston_bottom) * np.cos(self.face_tilt)
         psi = _arccos(lowest / np.hypot(*tip)) - self.face_tilt - np.arctan2(tip[1], tip[0])
         bound = "larger than the drum allows: the piston does not reach its bottom"
@@ -146,7 +146,7 @@ class DuoServo(HasLevers):
         return x - y * np.tan(self.face_tilt)
 
     def _seating_turn(self, c: Numbers) -> np.ndarray:
-        """Find the clockwise turn [rad] of a shoe about its adjuster pin until contact; nan if none."""
+        """Find the clockwise rotation [rad] of a shoe about its adjuster pin until contact; nan if none."""
         r, (hx, hy) = self.drum_radius, self.adjuster
         vx, vy = (r - c) * np.cos(self.contact_angle) - hx, (r - c) * np.sin(self.contact_angle) - hy
         along, across = hx * vx + hy * vy, hx * vy - hy * vx
@@ -165,7 +165,7 @@ class DuoServo(HasLevers):
         """Make the result from the turns of both stages and the position of the right tip after stage 1."""
         (x, y), rest = tip, self.piston_position(*self.tip)
         right, left = _turned(x, y, psi), _turned(-x, y, psi)
-        # A lining that is concentric at rest may enter the drum: find the largest depth and its angle.
+        # A lining that is concentric at rest may penetrate the drum: find the largest depth and its angle.
         ox, oy = self._after_seating(turn, 0.0, 0.0)  # centre of the lining's circle
         ends = np.arctan2(self.adjuster[1], self.adjuster[0]), np.arctan2(self.tip[1], self.tip[0])
         where = np.clip(np.arctan2(oy, ox) + turn, *ends)
@@ -285,7 +285,7 @@ class ShoeMotion(HasLevers, Result):
 
     @property
     def residual(self) -> Numbers:
-        """Residual at the end: distance of contact point from drum, or of piston from its bottom, over r."""
+        """Residual at the end of each stage: gap of contact point, or of piston to its bottom, over r."""
         brake, r = self.geometry, self.geometry.drum_radius
         x, y = _turned(r - self.clearance, 0.0, brake.contact_angle)
         seated = np.hypot(*brake._after_seating(np.asarray(self.seating_turn), x, y)) - r
@@ -331,11 +331,11 @@ def _turned(x: Numbers, y: Numbers, angle: Numbers) -> tuple[np.ndarray, np.ndar
 
 
 def _error_of_arccos(error: np.ndarray, sine: np.ndarray) -> np.ndarray:
-    """Compute the error of an arc cosine [rad] from the cosine's error and the sine; its root at sine 0."""
+    """Compute the error of an arc cosine [rad] from the error of its argument and the sine of the angle."""
     return error / np.sqrt(sine**2 + error)
 
 
 def _arccos(value: Numbers) -> np.ndarray:
-    """Compute the arc cosine [rad]; nan where it does not exist, as far as rounding can tell."""
+    """Compute the arc cosine [rad]; nan for arguments outside [-1, 1] by more than rounding."""
     value = np.asarray(value)
     return np.arccos(np.where(np.abs(value) <= 1 - LEAST_MARGIN, value, np.nan))

@@ -34,7 +34,7 @@ from brakes.common.locking import LEAST_MARGIN
 from brakes.forklift.levers import HasLevers, Levers
 from brakes.vehicle.axles import ROUNDING
 
-_STEPS = 200  # largest number of iterations for the trailing shoe's share; bisection alone needs about 60
+_STEPS = 200  # largest number of iterations for the trailing shoe's share; bisection needs about 60
 _ARMS_DIFFER = 1e-9  # relative difference of b1 and b2 above which there is a warning
 _FRICTION_DIFFERS = 0.01  # relative difference of needed and given friction above which there is a warning
 
@@ -211,9 +211,9 @@ def internal_forces(
 
 
 def _locks(levers: Levers, mu: Numbers, rounding: Numbers) -> np.ndarray:
-    """Tell whether the friction is past self-locking, or at it within rounding."""
+    """Return whether the friction is at self-locking (within rounding) or past it."""
     s = levers.drum_radius * np.asarray(mu) / np.hypot(1.0, mu)
-    margin = 1 - s / np.minimum(levers.a1, levers.b2)  # the margin of the shoe that locks first
+    margin = 1 - s / np.minimum(levers.a1, levers.b2)  # margin to self-locking of the shoe that locks first
     return margin <= np.maximum(LEAST_MARGIN / (1 + np.square(mu)), rounding)
 
 
@@ -237,7 +237,7 @@ def _solve_from_torque(
 
 
 def _forces_at_share(levers: Levers, P_T: Numbers, T: Numbers, u: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Compute Q, P_L, R_L and R_T [N] of this module from the trailing shoe's share u of the torque."""
+    """Compute the forces Q, P_L, R_L, R_T [N] (see module) from the trailing shoe's share u of the torque."""
     Q = (P_T * levers.a2 + T * u) / levers.b2
     P_L = (T * (1 - u) + Q * levers.b1) / levers.a1
     return Q, P_L, _resultant(P_L, Q, levers.phi1), _resultant(P_T, Q, levers.phi2)
@@ -293,7 +293,7 @@ def _solve_from_friction(levers: Levers, P_T: Numbers, mu: Numbers, rounding: Nu
 
 
 def _force_across_shoe(P: Numbers, a: Numbers, b: Numbers, phi: Numbers, s: Numbers) -> np.ndarray:
-    """Solve X b - P a = s |P + X| for the force X [N] at a shoe's other end, at an angle phi to P."""
+    """Solve X b - P a = s |P + X| for the force X [N] at a shoe's other end; phi is the angle from P."""
     half = a * b + s**2 * np.cos(phi)
     root = s * np.sqrt(a**2 + b**2 + 2 * a * b * np.cos(phi) - (s * np.sin(phi)) ** 2)
     return P * (half + root) / (b**2 - s**2)
@@ -417,7 +417,7 @@ def _c_star_slope(levers: Levers, P_T: Numbers, mu: np.ndarray, P_L: np.ndarray,
 
 
 def _vector(angle: Numbers, sign: int, size: np.ndarray) -> np.ndarray:
-    """Make vectors of a magnitude at an angle [rad] above (sign +1) or below (sign -1) the horizontal."""
+    """Make vectors of magnitude `size` at an angle [rad] above (sign 1) or below (sign -1) the horizontal."""
     return np.stack(np.broadcast_arrays(size * np.cos(angle), sign * size * np.sin(angle)), axis=-1)
 
 

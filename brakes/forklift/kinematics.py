@@ -220,7 +220,7 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
 def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "right") -> Mechanism:
     """Build the mechanism of stage 1 of one side, ``"right"`` or ``"left"``.
 
-    Its loads have zero magnitude: they measure the piston's travel and drive the clearance to zero.
+    The loads have zero magnitude: they measure the piston's travel and close the clearance.
 
     References
     ----------
@@ -273,7 +273,7 @@ def build_turning_mechanism(geometry: DuoServo, right_tip: Point, left_tip: Poin
 
 
 def _piston_side(geometry: DuoServo, side: str, tip: Point) -> tuple[Joint, ...]:
-    """Make one side's joints from shoe to cylinder: tip pin, slide on the tilted face and in the cylinder."""
+    """Make one side's joints from shoe to cylinder: tip pin, sliders on tilted face and in cylinder."""
     tilt, dummy, piston = geometry.face_tilt, f"{side} dummy", f"{side} piston"
     face = _on_side(side, (np.sin(tilt), np.cos(tilt)))
     return (
@@ -291,7 +291,7 @@ def _measure(side: str, tip: Point) -> Force:
 
 
 def _on_side(side: str, p: Point) -> Point:
-    """Move a point of the right side to a side: mirror it for the left one."""
+    """Return a point of the right side, or for the left side its mirror image."""
     return (float(p[0]), float(p[1])) if side == "right" else (-float(p[0]), float(p[1]))
 
 
@@ -302,7 +302,7 @@ def _contact(geometry: DuoServo, c: float) -> Point:
 
 
 def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the rank of the constraints at each position, and how near they are to losing it.
+    """Compute the rank of the constraints at each position, and their smallest singular value.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from brakes.common.locking import LEAST_MARGIN
 
 
 class HasLevers:
-    """Base of descriptions that give lever arms to `internal_forces`, at a clearance if they need one."""
+    """Base of the brake descriptions that `internal_forces` accepts: they give lever arms."""
 
     def find_levers(self, clearance: Numbers | None = None) -> Levers:
         """Find the lever arms at the end of the shoes' motion.
@@ -98,7 +98,7 @@ class Levers(HasLevers):
 
     @property
     def in_radii(self) -> Levers:
-        """Copy with all lengths divided by the drum's radius."""
+        """Return a copy with all lengths divided by the drum's radius."""
         arms = {name: getattr(self, name) / self.drum_radius for name in ("a1", "a2", "b1", "b2")}
         return replace(self, drum_radius=1.0, **arms)
 

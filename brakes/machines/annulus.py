@@ -69,7 +69,7 @@ class Ring(Machine):
 
     @property
     def rubbing_radius(self) -> Numbers:
-        """Radius of the largest pressure times radius [m]: the inner one under wear, else the outer one."""
+        """Radius of the largest pressure times radius [m]: inner radius under wear, else outer radius."""
         return self.inner_radius if self.law == "wear" else self.outer_radius
 
     def reach(self) -> tuple[Numbers, Numbers]:
@@ -159,7 +159,7 @@ class Plates(Ring):
     inner_radius, outer_radius : float or ndarray
         Radii of the linings [m].
     faces : float or ndarray
-        Number of pairs of rubbing faces; each carries the whole force: friction in the splines is neglected.
+        Number of pairs of rubbing faces; each carries the full force: friction in the splines is neglected.
     pressure_law : {"wear", "pressure"}
         Uniform wear, or uniform pressure.
 

@@ -116,7 +116,7 @@ class Band(Machine):
         }
 
     def _held(self, first: Numbers, second: Numbers, force: Numbers) -> dict[str, Numbers]:
-        """Compute the forces on the fulcrum and on the drum's bearing; lever force along the symmetry axis.
+        """Compute the forces on fulcrum and drum bearing, for a lever force along the symmetry axis.
 
         The band's ends leave the drum at an angle of (phi - 180 deg) / 2 to that axis.
         """

@@ -107,7 +107,7 @@ class Block(Machine):
         return self.drum_radius + np.asarray(self.offset)
 
     def check(self) -> None:
-        """Check that the whole block presses, under the pressure law of wear."""
+        """Check that all of the block presses on the drum, under the pressure law of wear."""
         one_of("blocks", self.blocks, ("single", "double"))
         most = np.pi - 2 * np.abs(np.arctan2(self.height, self.block_arm))
         bad = (np.asarray(self.block_angle) >= most) & (self.law == "wear")

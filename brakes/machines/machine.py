@@ -23,7 +23,7 @@ from brakes.common.loads import take_load
 from brakes.common.locking import LEAST_MARGIN, SlidesOrLocks
 
 _EPS = np.finfo(float).eps
-# Imaginary part of the friction for complex-step derivatives, which take no difference of values.
+# Imaginary part of the friction for complex-step derivatives, which do not cancel digits.
 _STEP = 1e-30
 _ROUNDINGS = 16.0  # number of rounding errors that add up in a lining's force
 
@@ -57,10 +57,10 @@ class Lining:
 
 
 class Machine(ABC):
-    """Base of brakes whose linings are pressed by one force: frozen dataclasses of described numbers.
+    """Base of brakes whose linings are pressed by one force: frozen dataclasses of the brake's inputs.
 
-    A subclass has a field for each input, overrides the class attributes below, and gives its linings. If its
-    pressure may follow several laws, it has a field `pressure_law`, the name of one of its `laws`.
+    A subclass has a field for each input, overrides the class attributes below, and defines `linings`. If
+    several pressure laws are possible, it has a field `pressure_law`, the name of one of its `laws`.
 
     Attributes
     ----------
@@ -98,11 +98,11 @@ class Machine(ABC):
 
     @abstractmethod
     def check(self) -> None:
-        """Raise ValueError if inputs contradict each other; each one's own bounds are already checked."""
+        """Raise ValueError if inputs contradict each other; bounds of each input are already checked."""
 
     @abstractmethod
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
-        """Compute the linings by name.
+        """Compute torque and forces of each lining at a largest pressure of 1 Pa, by name.
 
         The friction may be complex: no branches depend on it, and no absolute value is taken of it.
         """
@@ -114,7 +114,7 @@ class Machine(ABC):
 
     @property
     def rubbing_radius(self) -> Numbers:
-        """Radius [m] that multiplies the largest pressure in the largest product of pressure and radius."""
+        """Radius [m] at which the product of pressure and radius, over the largest pressure, is largest."""
         return self.reference_radius
 
     @abstractmethod
@@ -130,7 +130,7 @@ class Machine(ABC):
         return self.pressure(at, friction)
 
     def remarks(self, friction: Numbers, reverse: bool) -> Sequence[str]:
-        """Return sentences on what else a designer must know at a friction, forward or in reverse."""
+        """Return sentences of advice to the designer, for a friction and forward or reverse rotation."""
         return ()
 
     def with_law(self, law: str) -> Machine:
@@ -313,7 +313,7 @@ def solve_brake(
 
 
 def _locks(lining: Lining) -> Numbers:
-    """Tell for each case whether a lining locks, or is so near to it that rounding would decide."""
+    """Return for each case whether a lining locks, or is within rounding of locking."""
     return lining.force <= max(LEAST_MARGIN, _ROUNDINGS * _EPS) * lining.size
 
 
@@ -321,7 +321,7 @@ def _torque_per_force(brake: Machine, mu: Numbers, reverse: bool, locked: Number
     """Compute torque per actuating force, and its derivative by friction [m]; nan if the brake locks."""
     stepped = brake.linings(np.asarray(mu) + 1j * _STEP, reverse).values()
     gain = sum(each.share * each.torque / np.where(locked, 1.0, each.force) for each in stepped)
-    # Without friction only the rounding of the imaginary step would be left.
+    # Without friction the result would be only rounding error of the complex step.
     torque = np.where(np.asarray(mu) == 0, 0.0, gain.real)
     return np.where(locked, np.nan, torque), np.where(locked, np.nan, gain.imag / _STEP)
 

@@ -32,8 +32,8 @@ from brakes.machines.machine import Lining, Machine
 
 _HALVINGS = 56  # number of bisections, which reduce an angle below 2 pi to its rounding
 _FRICTIONS = np.linspace(0.0, 3.0, 61)  # friction coefficients among which self-locking is sought
-# Angle of contact [rad] below which the lining counts as touching at its edge only, where no pressure
-# balances the shoe.
+# Angle of contact [rad] below which the lining counts as touching only at its edge, where the shoe has no
+# equilibrium.
 _LEAST_CONTACT = 1e-3
 _TURN_STEP = 1e-30  # imaginary part of an angle, for complex-step derivatives
 _SHOES = "single: one shoe, which leads forward; simplex: one leads, one trails; duplex: both lead forward"
@@ -132,7 +132,7 @@ class Sliding(Machine):
         return self.lining_start, self.lining_end
 
     def leads(self, reverse: bool) -> tuple[bool, ...]:
-        """Tell for each shoe whether it leads, forward or in reverse."""
+        """Return for each shoe whether it leads, forward or in reverse."""
         return tuple(leads is not reverse for leads in _LEADS[self.shoes])
 
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
@@ -149,7 +149,7 @@ class Sliding(Machine):
         return self._pressure(at, friction, self.leads(reverse)[index])
 
     def remarks(self, friction: Numbers, reverse: bool) -> Sequence[str]:
-        """Say where the lining of a shoe touches if a part of it lifts; only for a single case."""
+        """Return sentences on linings that lift in part, with the contact angles; for a single case only."""
         said = []
         for leads in dict.fromkeys(self.leads(reverse)):
             delta = self.zero(np.asarray(friction), leads)
@@ -162,7 +162,7 @@ class Sliding(Machine):
         return said
 
     def zero(self, friction: Numbers, leads: bool) -> np.ndarray:
-        """Find the angle delta at which the pressure is 0 [rad]; nan where no pressure balances the shoe."""
+        """Find the angle delta of zero pressure [rad]; nan where the shoe has no equilibrium."""
         mu, s = np.real(friction), -1.0 if leads else 1.0
         first, last = self._weight(self.lining_start, mu, s), self._weight(self.lining_end, mu, s)
         low = self.lining_start - np.pi + 0 * first
@@ -203,7 +203,7 @@ class Sliding(Machine):
         return np.where(free.all(axis=0), np.inf, high)
 
     def _force(self, mu: np.ndarray, leads: bool) -> np.ndarray:
-        """Compute the actuating force over w r times the scale p0 of the pressure [-]; nan without balance.
+        """Compute the actuating force divided by w r p0, with the pressure scale p0; nan without equilibrium.
 
         There is no balance where no distribution of pressure keeps the shoe in equilibrium.
         """
@@ -213,7 +213,7 @@ class Sliding(Machine):
     def _shoe(self, mu: Numbers, leads: bool) -> Lining:
         """Make the lining of one shoe.
 
-        One Newton step on the zero of the pressure carries its complex-step derivative.
+        One Newton step for the angle of zero pressure adds the angle's complex-step derivative.
         """
         s, delta = -1.0 if leads else 1.0, self.zero(mu, leads)
         held = np.isfinite(delta)
@@ -225,13 +225,13 @@ class Sliding(Machine):
         force = area * self._moment(found, mu, s) / self.arm
         b, c, r = self.abutment_offset, self.abutment_depth, self.drum_radius
         far = np.abs(b) + c
-        # The size also bounds the rounding of the terms of the integrals.
+        # This sum of absolute terms also bounds the rounding of the integrals.
         size = 2 * area / self.arm * (far + np.abs(mu) * (r + far))
         nx, ny, tx, ty = -area * S, area * C, s * mu * area * C, s * mu * area * S
         psi = self.abutment_angle
         abutment = -(force + nx + tx) * np.cos(psi) - (ny + ty) * np.sin(psi)
         forces = {"normal_x": nx, "normal_y": ny, "friction_x": tx, "friction_y": ty, "abutment": abutment}
-        # A shoe that no pressure balances has no numbers; a negative force marks it as locked.
+        # Without a pressure in equilibrium, results are nan; a negative force marks the shoe as locked.
         force = np.where(held, force, -1.0)
         torque, size = np.where(held, mu * area * r * K, np.nan), np.where(held, np.real(size), 1.0)
         return Lining(torque, force, size, self.locking[leads] + 0 * np.real(delta), forces)
@@ -252,7 +252,7 @@ class Sliding(Machine):
         return np.where(inside, 1.0, np.maximum(np.sin(first), np.sin(last)))
 
     def _integrals(self, delta: np.ndarray) -> tuple[Any, Any, Any]:
-        """Integrate the pressure's shape sin(x - delta), alone and times sin x or cos x, over the contact."""
+        """Integrate sin(x - delta), also times sin x and times cos x, over the contact; x is the angle."""
         e1, e2 = self._contact(delta)
         wide = (np.sin(2 * e2 - delta) - np.sin(2 * e1 - delta)) / 2
         high = (np.cos(2 * e2 - delta) - np.cos(2 * e1 - delta)) / 2

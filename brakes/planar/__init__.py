@@ -1,4 +1,4 @@
-"""Statics of planar mechanisms, with a diagnosis of what is loose and of what is statically undetermined.
+"""Statics of planar mechanisms, with a diagnosis of loose bodies and statically undetermined forces.
 
 `JOINTS` and `LOADS` list all kinds; files, forms and drawings are made from these lists.  The docstrings of
 `Joint` and `Load` tell how to write a new one.

@@ -19,8 +19,8 @@ _SETTLED = 1e-6
 # Ratio of the forces with friction to those without, above which the mechanism counts as jammed.
 _JAMMED = 1e9
 _TINY = np.finfo(float).tiny
-_UNPRESSED = 1e-7  # force relative to the largest, up to which a joint counts as pressing with none
-_NOTHING = 1e-12  # force relative to the largest, below which its direction is rounding
+_UNPRESSED = 1e-7  # pressing force of a joint, relative to the largest force, below which it counts as zero
+_NOTHING = 1e-12  # force relative to the largest, below which the force's direction is only rounding
 _DISTURBANCE = 1e-3  # couple that disturbs a body, over the largest force and the length of the mechanism
 
 
@@ -53,7 +53,7 @@ class FrictionalEquilibrium:
 
     @property
     def ways(self) -> dict[str, Equilibrium]:
-        """The three equilibria by name: "without friction", "squeezing", "releasing"."""
+        """Three equilibria by name: "without friction", "squeezing", "releasing"."""
         return {"without friction": self.without, "squeezing": self.squeeze, "releasing": self.release}
 
 
@@ -135,11 +135,11 @@ def _branch(
     # A load that is not zero without friction may act in the opposite direction with friction: it locks.
     zero = rank_tolerance(system.rounding) * np.maximum(*(np.abs(x).max(axis=1) for x in (start, multiplier)))
     reversed_ = (np.abs(start[:, load]) > zero) & (multiplier[:, load] * np.sign(start[:, load]) < -zero)
-    multiplier[jammed] = start[jammed]  # finite placeholders, replaced by nan in the result
+    multiplier[jammed] = start[jammed]  # finite placeholders, which the result replaces by nan
     forces = decompose(balance.matrix, system.rounding)
     regularity = decompose(_friction(system, balance, multiplier, law)[1], system.rounding).s
     kept = regularity[:, -1] / regularity[:, 0]
-    jammed |= kept <= rank_tolerance(system.rounding)  # nearer to singular than this, rounding would decide
+    jammed |= kept <= rank_tolerance(system.rounding)  # so nearly singular that rounding would decide
     multiplier[jammed] = start[jammed]
     result = collect_result(position, balance, forces, multiplier, jammed, kept)
     if (jams & ~jammed).any():
@@ -159,7 +159,7 @@ def _branch(
         )
     if not words:
         return result
-    # A cable that would have to push back is the locking load itself: it is not reported again.
+    # A cable that would have to push is the locking load, which is already reported.
     if set(result.open_or_slack) - {name}:
         return replace(result, message=joined("; ", (result.message, *words)))
     return replace(result, status="self-locking", message="; ".join(words))
@@ -172,7 +172,7 @@ def _jams_when_disturbed(
 
     If loads act exactly in line, a joint may press with no force, whose direction is then only rounding.
     There can be two equilibria: without pressure, and jammed.  The jammed one needs a disturbance, however
-    small, such as an offset of a load. It is modelled by a couple on each body in turn, in either sense.
+    small, such as an offset of a load. It is modelled by a couple on one body after another, in either sense.
     """
     small = _pressing(system, start) <= _UNPRESSED
     multiplier, jammed = _newton(system, balance, start, np.where(small, 0.0, law))
@@ -188,7 +188,7 @@ def _jams_when_disturbed(
             offset[:, [coordinate]] = sense * size
             without = _newton(system, balance, multiplier, np.where(unpressed, 0.0, law), offset)[0]
             pressed = unpressed & (_pressing(system, without) > _UNPRESSED)
-            if pressed.any():  # the pressing force of all other joints has no direction but rounding
+            if pressed.any():  # all other pressing forces are 0, their directions rounding
                 rubbing = np.where(unpressed & ~pressed, 0.0, law)
                 jams |= pressed.any(axis=1) & _newton(system, balance, multiplier, rubbing, offset)[1]
     return unpressed & (jams[:, None] | (force <= _rounding(system))), jams
@@ -203,7 +203,7 @@ def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:
 
 
 def _rounding(system: System) -> float:
-    """Return the force, relative to the largest, up to which a force counts as rounding."""
+    """Return the force, relative to the largest force, below which a force counts as rounding."""
     return max(_NOTHING, 100 * system.rounding)
 
 

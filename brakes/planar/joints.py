@@ -43,7 +43,7 @@ from brakes.planar.rows import (
 )
 
 _NORMAL = 0.9999  # least cosine of the angle between the normal of a round face and the line to its centre
-_TURNS = 0.1  # turn of a straight face over a stroke above which there is a warning [deg]
+_TURNS = 0.1  # rotation of a straight face over a stroke above which there is a warning [deg]
 SLACK = OneWay("cable", "push", "cable slackens", "it is slack; remove it, or reverse the loads")
 
 
@@ -56,10 +56,9 @@ class Pin(OnTwoBodies, Joint):
     name, body, other : str
         Name of the pin, and the two bodies, of which `other` may be `GROUND`.
     at : tuple of 2 floats
-        Place of the pin on the body, in the drawing [m].
+        Position of the pin on the body, in the drawing [m].
     at_other : tuple of 2 floats, optional
-        Place of the pin on the other body, if it differs in the drawing [m]; `assemble` brings the two
-        together.
+        Position of the pin on the other body, if different in the drawing [m]; `assemble` closes the gap.
     radius, friction : float
         Radius of the pivot [m] and coefficient of friction.
 
@@ -104,11 +103,11 @@ class Pin(OnTwoBodies, Joint):
         return (FrictionLaw(Turn(self.body, self.other), arm),)
 
     def with_pivot(self, radius: float, friction: float) -> Pin:
-        """Copy the pin with a radius [m] and a coefficient of friction, unless it has friction of its own."""
+        """Copy the pin with a radius [m] and a coefficient of friction, unless it already has friction."""
         return self if self.friction else replace(self, radius=self.radius or radius, friction=friction)
 
     def shapes(self) -> tuple[Shape, ...]:
-        """Return how the joint is drawn: a pin at its points."""
+        """Return the drawing of the joint: a pin at its points."""
         return (Shape("pin", self._ends),)
 
 
@@ -294,7 +293,7 @@ class Contact(OnTwoBodies, Joint):
         return (FrictionLaw(self._row(1j), self.friction),)
 
     def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:
-        """Warn of a straight face that turns: it stands for a round face at one position only."""
+        """Warn of a straight face that rotates: it represents a round face at one position only."""
         turned = np.degrees(np.ptp(angles.get(self.other, 0.0)))
         if self.centre is None and turned > _TURNS:
             yield (
@@ -385,6 +384,6 @@ class Cable(Joint):
 
 
 def _line(joint: Slot | Contact, normal: Point) -> Line:
-    """Make the row of a joint's point along a normal that turns with the other body."""
+    """Make the constraint of a joint's point along a normal that turns with the other body."""
     on = joint.at if joint.on is None else joint.on
     return Line(joint.body, joint.at, joint.other, on, joint.other, normal)

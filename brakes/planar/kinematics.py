@@ -54,7 +54,7 @@ class Toggle:
     position : Position
         Position of the bodies.
     still : tuple of str
-        Bodies that stand still at this position while others move.
+        Bodies with zero velocity at this position while others move.
     message : str
         Sentence that describes the toggle position.
 
@@ -129,7 +129,7 @@ def assemble(mechanism: Mechanism) -> Position:
     Raises
     ------
     AssemblyError
-        If they cannot be: by how much, and which joint is furthest apart.
+        If the joints cannot be assembled; the message states the largest gap and its joint.
 
     References
     ----------
@@ -172,7 +172,7 @@ def assemble(mechanism: Mechanism) -> Position:
 
 
 def _rounding(system: System) -> float:
-    """Return the gap of a joint, or distance past a toggle, that is rounding, over the mechanism's length."""
+    """Return the relative gap of a joint, or distance past a toggle, below which it counts as rounding."""
     return max(_CLOSED, 100 * system.rounding)
 
 
@@ -202,7 +202,7 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     AssemblyError
         If the joints cannot be brought together.
     OutOfReachError
-        If the driver turns back before a value: where.
+        If the driver turns back before a value; the message states where.
     ValueError
         If the mobility is not 1, or the driver does not move.
 
@@ -228,7 +228,7 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     try:
         ends = (min(0.0, target.min()), max(0.0, target.max()))
         wanted = start.value[k] + np.append(target, ends)
-        # Rounding may place a toggle position just short of a wanted value.
+        # Due to rounding a toggle position may be just before a wanted value.
         within = nodes[0].value[k], nodes[-1].value[k]
         y = solve_at_values(system, nodes, k, np.clip(wanted, *within))
     except np.linalg.LinAlgError:
@@ -342,7 +342,7 @@ def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, fl
 
 
 def _start(mechanism: Mechanism, driver: str, *measured: str) -> tuple[System, Node, int]:
-    """Return what a curve starts from: system, assembled position with growing driver, driver's load index.
+    """Return the start of a curve of positions: system, assembled position, and index of the driving load.
 
     `measured` are loads that must have a coordinate; else there is a ValueError.
     """
@@ -393,13 +393,13 @@ def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str)
 
 
 def _finish(mechanism: Mechanism, k: int, start: Node, nodes: list[Node], y: np.ndarray) -> Stroke:
-    """Make the stroke at coordinates y (S, 3 n); k is the index of the driver in the loads."""
+    """Make the stroke from coordinates y (S, 3 n); k is the driver's index among the loads."""
     system = mechanism.system
     rows, m, unit = system.rows(y), system.constraints, _units(system)
     constraints = decompose(rows.gradient[:, :m], system.rounding)
     names, index = [*system.loads], [*system.loads.values()]
     rate = times(rows.gradient[:, index], constraints.vt[:, -1])
-    # Velocities per unit of motion, and relative singular values, up to this count as zero.
+    # Limit below which velocities per unit of motion, and relative singular values, count as zero.
     still = rank_tolerance(system.rounding)
     single = (constraints.rank == system.size - 1)[:, None] & (np.abs(rate[:, [k]]) > still)
     ratio = np.divide(rate, rate[:, [k]], out=np.full_like(rate, np.nan), where=single)
@@ -457,5 +457,5 @@ def _units(system: System) -> np.ndarray:
 
 
 def _amount(mechanism: Mechanism, load: str, moved: float, digits: int = 9) -> Named:
-    """State the change of a load's coordinate, with its unit."""
+    """State the change of a load's coordinate as text, with its unit."""
     return amount(moved, unit="rad" if mechanism.load(load).is_couple else "m", digits=digits)

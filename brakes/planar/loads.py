@@ -42,7 +42,7 @@ class Force(AppliedLoad):
     direction : tuple of 2 floats
         Direction of the force in the drawing.
     magnitude : float, optional
-        Size along the direction [N]; None if unknown.
+        Magnitude along the direction [N]; None if unknown.
     follows : bool
         Whether the direction turns with the body; otherwise it is fixed in space.
 
@@ -80,7 +80,7 @@ class Force(AppliedLoad):
         return replace(self, at=(x + distance * dx, y + distance * dy))
 
     def shapes(self) -> tuple[Shape, ...]:
-        """Return how the load is drawn: an arrow at its point."""
+        """Return the drawing of the load: an arrow at its point."""
         return (Shape("force", ((self.body, self.at),)),)
 
 
@@ -93,7 +93,7 @@ class Moment(AppliedLoad):
     name, body : str
         Name of the moment, and its body.
     magnitude : float, optional
-        Size of the moment [N m]; None if unknown.
+        Magnitude of the moment [N m]; None if unknown.
     other : str
         The body that has the opposite moment.
 

@@ -86,7 +86,7 @@ class Mechanism:
 
     @cached_property
     def friction(self) -> dict[str, tuple[str, FrictionLaw]]:
-        """Joint and friction law by name: the joint's name, with the law's label if the joint has several."""
+        """Joint and friction law, by the joint's name, with the label of the law if there are several."""
         return {
             f"{joint.name} {law.label}".strip(): (joint.name, law)
             for joint in self.joints
@@ -96,13 +96,13 @@ class Mechanism:
 
     @cached_property
     def system(self) -> System:
-        """Rows of all joints and loads as arrays."""
+        """Constraints of all joints, and coordinates of all loads, as arrays."""
         joints = {joint.name: joint.rows() for joint in self.joints}
         return System(self.bodies, joints, {load.name: load.row() for load in self.loads}, self.friction)
 
     @cached_property
     def shapes(self) -> tuple[tuple[str, Shape], ...]:
-        """Name and shape of everything that is drawn for joints and loads."""
+        """Name and shape of each drawn part of joints and loads."""
         return tuple((part.name, shape) for part in self.parts for shape in part.shapes())
 
     @cached_property
@@ -115,7 +115,7 @@ class Mechanism:
 
     @cached_property
     def drawing(self) -> Position:
-        """Position of the bodies in the drawing, whether or not the joints close there."""
+        """Position of the bodies in the drawing, whether or not the joints are closed in it."""
         return Position(self, np.zeros(self.system.size))
 
     def load(self, name: str) -> Load:
@@ -166,7 +166,7 @@ class Position:
         return Position(self.mechanism, self.batch[index])
 
     def of(self, mechanism: Mechanism) -> Position:
-        """Convert the position to another mechanism with the same bodies and drawing."""
+        """Return the same position for another mechanism with the same bodies and drawing."""
         if mechanism is self.mechanism:
             return self
         if mechanism.bodies != self.mechanism.bodies:
@@ -182,7 +182,7 @@ class Position:
         return Position(mechanism, np.stack(parts, axis=-1).reshape(self.coordinates.shape))
 
     def point(self, body: str, at: Point) -> np.ndarray:
-        """Place [m], shape (2,) or (S, 2), of a body's point that is given by its place in the drawing."""
+        """Position [m], (2,) or (S, 2), of a body's point that is given by its position in the drawing."""
         place = self.mechanism.system.place(self.batch, body, at)
         return place.reshape(*self.coordinates.shape[:-1], 2)
 
@@ -194,11 +194,11 @@ class Position:
 
 # The curve of positions ------------------------------------------------------------------------------
 
-# Newton step at which the iteration ends: by quadratic convergence the next one is below rounding.
+# Newton step below which the iteration ends: with quadratic convergence the next step is below rounding.
 _SMALL_STEP = 1e-9
-# Last Newton step for nodes, which only guide: requested positions are solved to rounding.
+# Newton step below which the iteration for nodes ends; requested positions are solved to rounding.
 _GUIDING_STEP = 1e-5
-_CLOSED = 1e-14  # rounding gap of a closed joint, over the length of the mechanism
+_CLOSED = 1e-14  # gap of a closed joint due to rounding, over the length of the mechanism
 _TURN = 0.15  # largest angle between the tangents of neighbouring nodes [rad]
 _FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # step sizes along the curve, over the length of the mechanism
 _NODES = 20_000
@@ -273,7 +273,7 @@ def _advance(system: System, node: Node, step: float) -> Node | None:
 def close_joints(
     system: System, y: np.ndarray, tangent: np.ndarray, last_step: float = _SMALL_STEP
 ) -> np.ndarray:
-    """Close the joints of positions (S, 3 n) by moves in the plane normal to each one's tangent (S, 3 n)."""
+    """Close the joints of positions (S, 3 n) by motions normal to each position's tangent (S, 3 n)."""
     return newton(system, y, lambda v, g, moved: (((moved - y) * tangent).sum(axis=1), tangent), last_step)
 
 
@@ -295,7 +295,7 @@ def newton(system: System, y: np.ndarray, equation: Equation, last_step: float =
         if tries > 6 and np.abs(residual).max() < _CLOSED:  # convergence is slow near a branch point
             return y
         slope = np.concatenate((rows.gradient[:, :m], gradient[:, None]), axis=1)
-        try:  # where the matrix is singular or not square, the step of least norm is taken
+        try:  # if the matrix is singular or not square, the least-squares step of least norm is used
             step = np.linalg.solve(slope, residual[..., None])[..., 0]
         except np.linalg.LinAlgError:
             step = decompose(slope, system.rounding).solve(residual)
@@ -316,7 +316,7 @@ def find_zero(system: System, a: Node, b: Node, function: Callable[[Node], float
         middle = (low * f_high - high * f_low) / (f_high - f_low)
         try:
             y = close_joints(system, (a.y + middle * a.tangent)[None], a.tangent[None])[0]
-        except np.linalg.LinAlgError:  # Newton's method gets no nearer to a branch point
+        except np.linalg.LinAlgError:  # Newton's method fails near a branch point
             break
         node = node_at(system, y, a.tangent)
         f = function(node)
@@ -328,7 +328,7 @@ def find_zero(system: System, a: Node, b: Node, function: Callable[[Node], float
 
 
 def solve_at_values(system: System, nodes: list[Node], k: int, target: np.ndarray) -> np.ndarray:
-    """Find positions (S, 3 n) at which the k-th load's coordinate, growing along the curve, has values."""
+    """Find positions (S, 3 n) on a curve at which the k-th load's growing coordinate has target values."""
     if len(nodes) == 1:
         return np.tile(nodes[0].y, (len(target), 1))
     value, slope = (np.array([getattr(node, key)[k] for node in nodes]) for key in ("value", "rate"))

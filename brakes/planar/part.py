@@ -79,7 +79,7 @@ def check_inputs(core: object, prefix: str = "") -> None:
 
 @cache
 def _wanted(core: type) -> list[tuple[str, Any, bool, bool, Described]]:
-    """List each described input of a dataclass: name, type, whether it is a list, whether it may be None.
+    """List each described input of a dataclass: name, type, is it a list, may it be None.
 
     Cached, as studies make thousands of instances of each class.
     """
@@ -92,7 +92,7 @@ def _wanted(core: type) -> list[tuple[str, Any, bool, bool, Described]]:
 
 
 def _check(name: str, value: object, wanted: Any, described: Described) -> float | None:
-    """Refuse a value that contradicts its description; return a number as a float, anything else as None."""
+    """Refuse a value that contradicts its description; return a number as a float, else None."""
     if wanted is float:
         return described.check(name, value)
     if wanted is str:
@@ -105,7 +105,7 @@ def _check(name: str, value: object, wanted: Any, described: Described) -> float
 
 
 def is_list(hint: Any) -> bool:
-    """Tell whether an annotation is a tuple of any length."""
+    """Return whether a type annotation is a tuple of any length."""
     return Ellipsis in get_args(kinds_of(hint)[0])
 
 
@@ -164,10 +164,10 @@ class Shape(NamedTuple):
 
 
 class OneWay(NamedTuple):
-    """Words for a joint or load that acts in one direction only.
+    """Words in messages about a joint or load that acts in one direction only.
 
-    noun : what it is, such as "cable".
-    cannot : what it cannot do, such as "push".
+    noun : name of the part, such as "cable".
+    cannot : the impossible action, such as "push".
     status : status of an equilibrium in which it would have to do that.
     remedy : advice for this case.
     """
@@ -232,7 +232,7 @@ class Part:
 
     @property
     def acts_on(self) -> tuple[str, ...]:
-        """The bodies on which the joint or load acts, first the one whose force is given in results."""
+        """The bodies on which the joint or load acts; results give the force on the first one."""
         return self.rows()[0].bodies
 
     @property
@@ -248,7 +248,7 @@ class Part:
 
 @dataclass(frozen=True)
 class OnTwoBodies(Part):
-    """Base of joints and loads between a body and another one."""
+    """Base of joints and loads between two bodies."""
 
     body: Body
     other: Other
@@ -316,16 +316,16 @@ class Joint(Part):
         return ()
 
     def size(self, multiplier: np.ndarray) -> np.ndarray:
-        """Compute the size (S,) of the joint's force for multipliers (S, rows) [N, N m]."""
+        """Compute the magnitude (S,) of the joint's force for multipliers (S, rows) [N, N m]."""
         single = multiplier.shape[1] == 1
         return multiplier[:, 0] if single else np.hypot.reduce(multiplier, axis=1)
 
     def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:
-        """Yield sentences on doubtful inputs, given the angles (S,) of the bodies over a stroke [rad]."""
+        """Yield warnings of doubtful inputs, given the angles (S,) of the bodies over a stroke [rad]."""
         return iter(())
 
     def with_pivot(self, radius: float, friction: float) -> Joint:
-        """Copy the joint with a radius [m] and friction of its pivot, unless it has friction of its own.
+        """Copy the joint with a radius [m] and friction of its pivot, unless it already has friction.
 
         A joint without a pivot returns itself.
         """
@@ -356,7 +356,7 @@ class Load(Part):
         raise NotImplementedError
 
     def rows(self) -> tuple[Row, ...]:
-        """Return the row of the coordinate on which the load does its work, the only one."""
+        """Return the single row of the load: the coordinate on which the load does work."""
         return (self.row(),)
 
     @property
@@ -365,7 +365,7 @@ class Load(Part):
         return True
 
     def amplitude(self, coordinate: np.ndarray) -> np.ndarray | float | None:
-        """Compute the load's size [N, N m] at values (S,) of its coordinate [m, rad]; None if unknown."""
+        """Compute the load [N, N m] at values (S,) of the load's coordinate [m, rad]; None if unknown."""
         raise NotImplementedError
 
     def with_magnitude(self, magnitude: float | None) -> Load:
@@ -374,7 +374,7 @@ class Load(Part):
         Raises
         ------
         ValueError
-            If its size is not free to choose.
+            If the magnitude cannot be chosen, as of a spring.
         """
         raise ValueError(f"load {self.name!r} is a spring: name a force, a moment or a cable pair")
 

@@ -31,7 +31,7 @@ from beamdyn.common.words import Words, amount
 
 GROUND = "ground"
 Point = tuple[float, float]
-End = tuple[str, Point]  # a body, and a point of it given by its place in the drawing [m]
+End = tuple[str, Point]  # a body, and the drawn position of one of its points [m]
 
 
 def path_length(points: Iterable[Point]) -> float:
@@ -65,7 +65,7 @@ def check_distinct(key: str, points: Iterable[Point], remedy: str) -> None:
 
 
 def suggest(name: object, known: Iterable[str]) -> str:
-    """Compose the remedy for an unknown name: suggest the most similar known one, or list all."""
+    """Compose advice for an unknown name: suggest the most similar known name, or list all."""
     known = tuple(known)
     near = difflib.get_close_matches(str(name), known, n=1)
     return f"did you mean {near[0]!r}?" if near else f"known: {', '.join(map(repr, known))}"
@@ -74,7 +74,7 @@ def suggest(name: object, known: Iterable[str]) -> str:
 # All rows of one kind, evaluated at many positions at once ------------------------------------------------
 
 
-_TINY = 1e-200  # keeps a direction finite where two points of a path meet
+_TINY = 1e-200  # added to a length, so that a direction is finite where two points of a path coincide
 
 
 class Pose(NamedTuple):
@@ -121,7 +121,7 @@ class Place(Protocol):
 
 @dataclass(frozen=True)
 class _AtPoint(ABC):
-    """Base of rows whose force acts at a body's point, and back on another body with a line or a circle."""
+    """Base of rows whose force acts at a body's point, with a reaction on another body's line or circle."""
 
     body: str
     at: Point
@@ -166,13 +166,13 @@ class Line(_AtPoint):
         return 0.0
 
     def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
-        """Return what `add` takes, in one tuple: indices of three bodies, two arms, and the normal."""
+        """Return the arguments of `add` in a tuple: indices of three bodies, two arms, and the normal."""
         bodies = index[self.body], index[self.other], index[self.frame]
         return [(*bodies, arm(self.body, self.at), arm(self.other, self.on), complex(*self.normal))]
 
     @staticmethod
     def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
-        """Add each n.(p - o) to the value of its row, and its forces and couples to those on the bodies.
+        """Add each n.(p - o) to its row's value, and the row's forces and couples to those on the bodies.
 
         A body `frame` other than that of p also receives the couple n x (p - o), as the normal turns with it.
         """
@@ -183,7 +183,7 @@ class Line(_AtPoint):
         totals.value[row] += np.real(normal.conj() * gap)
         totals.push(row, a, arm, normal)
         totals.push(row, b, arm_other, -normal)
-        # A force that turns with its own body (frame = body) is not a gradient: it has no such couple.
+        # A force that turns with its body (frame = body) is not a gradient of a value: it has no such couple.
         totals.couple[row, frame] += np.where((frame == a)[:, None], 0.0, np.imag(normal.conj() * gap))
 
     def unit_force(self, place: Place) -> complex:
@@ -208,14 +208,14 @@ class Round(_AtPoint):
     direction: complex
 
     def constant(self, length: float) -> float:
-        """Return the constant part of the value: minus the radius over the mechanism's length, or 0.
+        """Return the constant term of the value: minus the radius over the mechanism's length, or 0.
 
         It is 0 unless the row is normal to the circle.
         """
         return -self.direction.real * self.radius / length
 
     def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
-        """Return what `add` takes, in one tuple: indices of two bodies, two arms, and the direction."""
+        """Return the arguments of `add` in a tuple: indices of two bodies, two arms, and the direction."""
         ends = arm(self.body, self.at), arm(self.other, self.on)
         return [(index[self.body], index[self.other], *ends, self.direction)]
 
@@ -260,7 +260,7 @@ class Path:
         return self.length / length
 
     def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
-        """Return what `add` takes, a tuple for each segment: two indices of bodies, two arms."""
+        """Return the arguments of `add`, a tuple for each segment: two indices of bodies, two arms."""
         return [(index[a], index[b], arm(a, p), arm(b, q)) for (a, p), (b, q) in pairwise(self.ends)]
 
     @staticmethod
@@ -274,7 +274,7 @@ class Path:
         span = pose.centre[b] + arm_other - pose.centre[a] - arm
         length = np.maximum(np.abs(span), _TINY)
         pull = span / length
-        # A path has one row for several segments: += would count only one of them.
+        # A path has one row for several segments: += with repeated indices would add only one segment.
         np.add.at(totals.value, row, -length)
         totals.push(row, a, arm, pull)
         totals.push(row, b, arm_other, -pull)
@@ -302,7 +302,7 @@ class Turn:
 
     @property
     def bodies(self) -> tuple[str, ...]:
-        """The body that turns, and the one against which it does."""
+        """The body that rotates, and the body relative to which it rotates."""
         return self.body, self.other
 
     def constant(self, length: float) -> float:
@@ -310,7 +310,7 @@ class Turn:
         return -self.offset
 
     def entries(self, index: Mapping[str, int], arm: Arm) -> list[tuple[Any, ...]]:
-        """Return what `add` takes, in one tuple: indices of two bodies, and the ratio."""
+        """Return the arguments of `add` in a tuple: indices of two bodies, and the ratio."""
         return [(index[self.body], index[self.other], self.ratio)]
 
     @staticmethod

@@ -1,4 +1,4 @@
-"""Equilibrium of a mechanism: its reactions and amplitudes, or what is loose or undetermined; free bodies."""
+"""Equilibrium of a mechanism: reactions and load magnitudes, or loose bodies and undetermined forces."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from brakes.planar.system import (
 )
 
 _BALANCED = 1e-9  # largest residual of equilibrium that counts as zero, over the largest force
-_UNDETERMINED = 1e-7  # component in a self-stress from which on a reaction counts as undetermined
+_UNDETERMINED = 1e-7  # component of a self-stress above which a reaction counts as undetermined
 _BESIDE = 1e-2  # fraction of its length by which a mechanism is moved away from a toggle position
 _WEAK = 1e-5  # relative singular value below which the result counts as ill-conditioned
 
@@ -84,7 +84,7 @@ class Equilibrium:
         Smallest singular value above the rank tolerance and largest below it, over the largest of all: a
         wide gap makes the rank certain.
     warnings : tuple of str
-        What makes the forces doubtful: positions close to a toggle position or to indeterminacy, and joints
+        Reasons to doubt the forces: positions close to a toggle position or to indeterminacy, and joints
         with friction that jam when disturbed.
     multiplier : ndarray, shape (..., R)
         Multiplier of every row of joints, loads and friction [N, N m].
@@ -122,7 +122,7 @@ class Equilibrium:
 
     @property
     def is_determined(self) -> bool:
-        """Whether statics determines every force, even if a contact has to pull or a cable to push."""
+        """Whether statics determines every force, even if a contact pulls or a cable pushes."""
         return not (self.undetermined or self.loose or np.isnan(self.multiplier).any())
 
     @property
@@ -250,7 +250,7 @@ def collect_result(
     received = [np.abs((part[:, :, -1] * multiplier).sum(axis=1)) for part in balance.rows[1:3]]
     virtual_work = np.where(constraints.rank == system.size, np.maximum(*received), work) / scale
     kept = forces.kept if regularity is None else regularity
-    missing = unbalanced | jammed | (kept == 0)  # positions without forces, or without any that are unknown
+    missing = unbalanced | jammed | (kept == 0)  # positions without forces, or without unknown forces
     error = np.maximum((system.rounding + residual) / np.where(missing, np.nan, kept), virtual_work)
     verdict = _verdict(position, constraints, forces, unbalanced, undetermined, wrong_way.values())
     weak = (
@@ -268,7 +268,7 @@ def collect_result(
         "dropped": forces.dropped,
         "multiplier": shown * system.unit,
     }
-    shape = position.coordinates.shape[:-1]  # a single position has no axis
+    shape = position.coordinates.shape[:-1]  # for a single position, results have no axis of positions
     return Equilibrium(
         position=position,
         **verdict,
@@ -298,7 +298,7 @@ def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str
 
 
 def is_answer(status: str, forces: ArrayLike) -> bool:
-    """Tell whether forces are possible: none is nan, and no part acts in a direction that it cannot.
+    """Return whether forces are possible: none is nan, no contact pulls, and no cable pushes.
 
     A self-locking mechanism moves by the given forces, so that these count as an answer.
 
@@ -323,7 +323,7 @@ def tolerance(system: System) -> float:
 def find_wrong_way(
     ways: Mapping[str, OneWay], sizes: Mapping[str, np.ndarray], least: np.ndarray
 ) -> dict[str, tuple[str, str]]:
-    """Find contacts that would have to pull and cables that would have to push: status and sentence, by name.
+    """Find contacts that would have to pull and cables that would have to push: status and message, by name.
 
     Parameters
     ----------
@@ -399,7 +399,7 @@ def _verdict(
 
 
 def _is_held_beside(position: Position, index: int, motion: np.ndarray, rank: int) -> bool:
-    """Tell whether the equilibrium matrix has a higher rank a little farther along a free motion (3 n,)."""
+    """Return whether the equilibrium matrix has a higher rank a little along a free motion (3 n,)."""
     system, y = position.mechanism.system, position.batch[[index]]
     try:
         beside = close_joints(system, y + _BESIDE * motion, motion[None])
@@ -410,7 +410,7 @@ def _is_held_beside(position: Position, index: int, motion: np.ndarray, rank: in
 
 
 def combine(found: Sequence[tuple[str, str]]) -> tuple[str, str]:
-    """Combine pairs of status and sentence, the worst first, to one status and one message."""
+    """Combine pairs of status and message, in order of decreasing severity, to one status and message."""
     if not found:
         return "determined", "every reaction and amplitude is determined"
     return found[0][0], joined("; ", (sentence for _, sentence in found))

@@ -48,7 +48,7 @@ class Decomposition(NamedTuple):
         return self.u[index, :, self.rank[index] :]
 
     def null_rows(self) -> np.ndarray:
-        """Return vt (S, n, n) with the rows outside of the null space set to zero."""
+        """Return the matrices vt (S, n, n) with all rows outside of the null space set to zero."""
         outside = np.arange(self.vt.shape[1]) < self.rank[:, None]
         return np.where(outside[:, :, None], 0.0, self.vt)
 
@@ -67,7 +67,7 @@ def times(a: np.ndarray, x: np.ndarray) -> np.ndarray:
 
 
 def rank_tolerance(rounding: float) -> float:
-    """Return the relative size up to which singular values and motions count as zero, by the rounding."""
+    """Return the relative size below which singular values and motions count as zero, given the rounding."""
     return max(RANK_TOLERANCE, 100 * rounding)
 
 
@@ -178,7 +178,7 @@ class System:
         ]
 
     def _set_scales(self, points: Sequence[tuple[int, complex]]) -> None:
-        """Set origin and length, and the bodies' centre, radius and rounding, from points (body, place)."""
+        """Set origin, length, rounding, and the bodies' centres and radii, from points (body, position)."""
         self.origin = complex(np.mean([p for _, p in points])) if points else 0j
         self.length = max((abs(p - self.origin) for _, p in points), default=0.0) or 1.0
         self.centre, self.radius = np.zeros(len(self.bodies), complex), np.ones(len(self.bodies))
@@ -211,11 +211,11 @@ class System:
         return Rows(value.T, force.transpose(2, 0, 1), couple.transpose(2, 0, 1), gradient)
 
     def place(self, y: np.ndarray, body: str, at: Point) -> np.ndarray:
-        """Compute the place [m], shape (S, 2), of a body's point at coordinates y."""
+        """Compute the position [m], shape (S, 2), of a body's point at coordinates y."""
         k = self.bodies[body]
         if 3 * k == self.size:  # the ground
             return np.tile(np.array(at, dtype=float), (len(y), 1))
-        # The displacement is added to the drawing, so that a point far from (0, 0) keeps its digits.
+        # The displacement is added to the drawn position, so that a point far from (0, 0) keeps its digits.
         shift = y[:, 3 * k] + 1j * y[:, 3 * k + 1]
         moved = (shift + self._arm(body, at) * (np.exp(1j * self.angle(y, body)) - 1)) * self.length
         return np.array(at) + moved.view(float).reshape(-1, 2)
@@ -226,7 +226,7 @@ class System:
         return y[:, 3 * k + 2] / self.radius[k] if 3 * k < self.size else np.zeros(len(y))
 
 
-# Sentences that say what is loose, undetermined or out of reach ------------------------------------------
+# Messages on loose bodies, undetermined forces and positions out of reach ---------------------------------
 
 
 _STILL = 1e-8  # size of a body's motion, over the largest of all bodies, that counts as rounding
@@ -297,7 +297,7 @@ def describe(system: System, y: np.ndarray, motions: np.ndarray) -> Words:
 
 
 def _motion(system: System, bodies: int, twist: np.ndarray) -> str:
-    """Describe the motions (2, k) of a group of bodies in words; a single one by its centre or direction."""
+    """Describe the motions (2, k) of bodies in words: a single motion by its centre or direction."""
     real = np.stack((twist[0].real, twist[0].imag, twist[1].real))
     left, size, _ = np.linalg.svd(real, full_matrices=False)
     ways = int((size > 1e-7 * size[0]).sum())
@@ -315,7 +315,7 @@ def _motion(system: System, bodies: int, twist: np.ndarray) -> str:
 
 
 def check_moves(system: System, driver: str, rates: np.ndarray) -> None:
-    """Raise a ValueError if a driver's velocity per unit of motion cannot be distinguished from zero."""
+    """Raise a ValueError if a driver's velocity per unit of motion is zero within rounding."""
     margin, least = np.abs(rates).min(), rank_tolerance(system.rounding)
     if margin < least:
         raise ValueError(

@@ -39,12 +39,12 @@ class Cell(Verdict):
 
     @property
     def agrees(self) -> bool:
-        """Whether our number rounds to the printed one."""
+        """Whether our number rounds to the printed number."""
         return abs(self.ours - float(self.printed)) <= self.step / 2 * (1 + 1e-12)
 
     @property
     def texts(self) -> list[str]:
-        """Texts of the printed number and, with one more digit, of ours and of the right one, if any."""
+        """Texts of the printed number and, with one more digit, of our number and the right one, if any."""
         decimals = max(0, 1 - round(math.log10(self.step)))
         numbers = [x for x in (self.ours, self.right) if x is not None]
         return [self.printed, *(f"{x:.{decimals}f}" if math.isfinite(x) else "never stops" for x in numbers)]
@@ -70,7 +70,7 @@ def step(printed: str, digits: int | None = None) -> float:
 
 @dataclass(frozen=True)
 class PrintedTable:
-    """A table of a paper, with its numbers beside ours.
+    """A table of a paper, with our results beside its numbers.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ class PrintedTable:
         return [cell for _, cells in self.rows for cell in cells]
 
     def shown(self) -> Group:
-        """Make the table for the console: printed number, ours, and the right one, for each quantity."""
+        """Make the table for the console: printed, our and right number of each quantity."""
         heads = [*self.inputs]
         for name, cell in zip(self.quantities, self.cells, strict=False):
             heads += [name, "ours", "corrected"][: len(cell.texts)]

@@ -1,4 +1,4 @@
-"""The drum paper's numbers, from its wrong expressions, beside the right ones, and what its errors cause.
+"""The drum paper's numbers, from its wrong equations, beside the right ones, and its errors' consequences.
 
 Vardanyan et al., The Braking Torque of the Cylinder Brake Mechanism (2019). Inputs and errata come from
 ``brakes/published/vardanyan_2019.toml``; the consequences are for the paper's longest arc, 80 degrees,
@@ -37,7 +37,7 @@ _MU, _P, _START = _INPUT["friction"], _INPUT["force"], np.radians(_INPUT["lining
 _R, _A, _C = (1e-3 * _INPUT[name] for name in ("drum_radius", "force_arm", "pivot_depth"))
 _B1, _B2 = (1e-3 * offset for offset in _INPUT["pivot_offset"])  # offsets of the two pivots [m]
 PressureZero = Literal["axis", "pivot"]
-_AXIS: PressureZero = _INPUT["pressure_zero"]  # line on which the pressure in (2) is 0
+_AXIS: PressureZero = _INPUT["pressure_zero"]  # line of zero pressure in the paper's equation (2)
 _WIDTH = 0.05  # face width of the lining [m], which the paper does not give; only the pressure depends on it
 _LONGEST = np.radians(80.0)
 
@@ -53,12 +53,12 @@ class Table1:
 
     @property
     def difference(self) -> float:
-        """Largest difference of the two torques, the paper's Delta M [N m]."""
+        """Largest difference of the shoes' torques [N m], Delta M in the paper."""
         return float(np.max(self.second_torque - self.first_torque))
 
     @property
     def total(self) -> np.ndarray:
-        """Sum of the two torques [N m]."""
+        """Sum of the torques of both shoes [N m]."""
         return self.first_torque + self.second_torque
 
 
@@ -81,7 +81,7 @@ def table_1(arc: np.ndarray | None = None) -> Table1:
 
 
 def table_arm(arc: np.ndarray | float) -> np.ndarray:
-    """Compute the effective arm [m] of Table 1 at arcs [rad]; 0.87 is cos 30 deg. (12) gives 11.9 % less."""
+    """Compute the effective arm [m] of Table 1 at arcs [rad]; the paper's equation (12) gives 11.9 % less."""
     return _R * 0.87 * (np.cos(0.5236) - np.cos(_START + np.asarray(arc))) / 1.1485
 
 
@@ -92,9 +92,9 @@ def printed_arm(arc: np.ndarray | float) -> np.ndarray:
 
 
 def _torque(rho: np.ndarray | float, b: float) -> np.ndarray:
-    """Compute the torque [N m] by (15) with the sign of b that gives the table, not the printed sign.
+    """Compute the torque [N m] by the paper's equation (15), with the sign of b that gives its Table 1.
 
-    With -b it is the torque of (16).
+    With -b the result is the torque of equation (16).
     """
     return _MU * _P * (_C + _A) * np.asarray(rho) / (_C + _MU * b - _MU * np.asarray(rho))
 

@@ -1,4 +1,4 @@
-"""Report on the eeBrake: numbers of its published analysis beside those of our reconstruction."""
+"""Report on the eeBrake, a bicycle caliper: published numbers beside those of our reconstruction."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _CABLE = 3.5e-3  # cable travel that closes the reconstruction's pads [m]
 
 
 def sections() -> dict[str, list[Comparison]]:
-    """Compare the published numbers with ours, by the titles of the tables."""
+    """Compare the published numbers with our results; return the comparisons by title of the table."""
     page, printed = "eeBrake page", values_alone(PAPER)
     statics, travel, given = (printed[name] for name in ("statics", "travel", "stop"))
     (f_t, x_work), (_, x_equal) = tangential_forces("equal work"), tangential_forces("equal force")

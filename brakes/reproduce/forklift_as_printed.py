@@ -35,7 +35,7 @@ Tables = dict[tuple[str, str], np.ndarray]  # columns by table and quantity, e.g
 
 @dataclass(frozen=True)
 class PrintedStop(Stop):
-    """A stop by the paper's equations, in which an axle can lift; in the right ones it cannot.
+    """A stop by the paper's equations, in which an axle can lift; with the right equations it cannot.
 
     If one does, the status is ``"front wheel lifts"`` or ``"rear wheel lifts"``. It is never ``"stops in the
     rise time"``: the paper begins the last phase with the full speed.
@@ -54,7 +54,7 @@ _LIFTED = {
 
 
 def stop_as_printed(truck: Truck, conditions: StopConditions) -> PrintedStop:
-    """Compute a stop by the method that reproduces the paper's Tables 2-4.
+    """Compute a truck's stop by the method that reproduces the paper's Tables 2-4.
 
     Parameters and errors are those of `brakes.forklift.stop`. Axle loads at rest and the speed gained while
     coasting are taken from its result.
@@ -86,7 +86,7 @@ def stop_as_printed(truck: Truck, conditions: StopConditions) -> PrintedStop:
 
 
 def printed_distance(acceleration: Numbers, c: StopConditions) -> Numbers:
-    """Compute the stopping distance [m] by (19)-(24), for an acceleration below 0 at full force [m/s2]."""
+    """Compute the stopping distance [m] by the paper's (19)-(24); the acceleration [m/s2] is below 0."""
     V, A, t2 = c.speed, acceleration, c.rise_time
     return V * c.reaction_time + (A * t2**2 / 6 + V * t2) - V**2 / (2 * A)
 

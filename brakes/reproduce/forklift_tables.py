@@ -52,7 +52,7 @@ _WORDS = {
 
 
 def tables() -> dict[str, PrintedTable]:
-    """Compare Tables 2-7 with our numbers; for Tables 2-4 there are the right numbers, too."""
+    """Compare Tables 2-7 with our numbers, and Tables 2-4 also with the right numbers."""
     ours, right = as_printed.tables(), as_printed.corrected_tables()
     return {name: _table(name, ours, right) for name in (*VEHICLE, *BRAKE)}
 

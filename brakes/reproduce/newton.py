@@ -1,6 +1,6 @@
 """The method of Yoo et al. 1997, for comparison: Newton-Raphson iteration on the ten equations (27)-(36).
 
-The result depends on the start: from most random ones the iteration diverges, or converges to one of the
+The result depends on the start: from most random starts the iteration diverges, or converges to one of the
 three mirror images of the solution. They satisfy the equations as well, with A x B or C x D of the wrong
 sign, or both; B and D enter the moments by their magnitudes, so that Q and P_L are positive in all four
 solutions.

@@ -7,7 +7,7 @@ b before the rear axle, a + b = L, moments about where the tyres touch the groun
     loads over W: (b + tau h) / L in front and (a - tau h) / L at the rear, if the front axle leads,
                   (b - tau h) / L in front and (a + tau h) / L at the rear, if the rear axle leads.
 
-The wheels have no mass. The leading axle is the one at the front of the motion, or the lower one at rest
+The wheels have no mass. The leading axle is the axle at the front of the motion, or the lower axle at rest
 on a slope, where tau = tan(beta). So the same formulas cover stops and parking.
 """
 

@@ -63,9 +63,9 @@ class Needed(Result):
 
 
 def needed(value: Numbers, *reasons: tuple[Any, Any]) -> Needed:
-    """Make the result: the value where no condition holds, else nan with the reason of the first that holds.
+    """Make the result: the value, or nan with a reason where one of the conditions `reasons` holds.
 
-    Each of `reasons` is a condition with its words.
+    Each of `reasons` is a condition with its description; the first that holds counts.
     """
     shapes = np.broadcast_arrays(value, *(bad for bad, _ in reasons))
     value, bad = shapes[0], list(shapes[1:])
@@ -168,7 +168,7 @@ def _friction_for(vehicle: Vehicle, ratio: Numbers, braked: Braked, leading: Axl
     """Find the tyre friction that a braking ratio needs at the braked axles."""
     share = 1.0 + 0.0 * ratio if braked == "both" else vehicle.load_share(braked, ratio, leading)
     lifted = vehicle.load_share(other(leading), ratio, leading) <= 0
-    lifted &= braked != other(leading)  # a braked upper axle slips before its load is gone
+    lifted &= braked != other(leading)  # a braked upper axle slips before its load falls to 0
     with np.errstate(divide="ignore", invalid="ignore"):
         friction = np.maximum(ratio, 0.0) / np.where(share > 0, share, np.nan)
     much = f"even a friction of {MOST_FRICTION:g}, the most that is taken, holds less"

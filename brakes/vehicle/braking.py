@@ -18,7 +18,7 @@ from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
 from brakes.vehicle.axles import Axle, Vehicle
 
-_EDGE = 1e-9  # relative difference of two limits that count as equal
+_EDGE = 1e-9  # relative difference of two limits below which they count as equal
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Braking(Result):
     largest : ndarray
         Largest braking ratio, with these shares, at which no wheel locks or lifts.
     first : str or ndarray of str
-        What limits `largest`: ``"front"`` or ``"rear"`` for the axle that locks first, ``"both"`` at once, or
+        Limit of `largest`: ``"front"`` or ``"rear"`` for the axle that locks first, ``"both"`` at once, or
         ``"pitching over"``.
 
     Examples

@@ -25,7 +25,7 @@ from beamdyn.common.results.result import Result
 from brakes.vehicle.axles import ROUNDING, Axle, Braked, Vehicle
 from brakes.vehicle.stop import STANDARD_GRAVITY, STEEPEST, SlopeAngle
 
-_EDGE = 1e-9  # difference of slopes, relative to the larger one, that is too small to decide
+_EDGE = 1e-9  # relative difference of two slopes below which the status is undecided
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Holding(Result):
     downhill : {"front", "rear"}
         The lower axle.
     status : str or ndarray of str
-        What happens on the road's slope: ``"holds"``, ``"slips"``, ``"tips"``, ``"rolls"`` (the brake is too
+        Motion on the road's slope: ``"holds"``, ``"slips"``, ``"tips"``, ``"rolls"`` (the brake is too
         weak), or ``"too near to decide"``, within 1e-9 of the largest slope.
     slipping_slope, tipping_slope, rolling_slope : ndarray
         Slopes past which the braked wheels slip, the vehicle tips over its lower axle, and the vehicle rolls
@@ -126,13 +126,13 @@ class Holding(Result):
 
     @property
     def limited_by(self) -> Any:
-        """The way in which the vehicle moves on a steeper slope: it "slips", "tips" or "rolls"."""
+        """Motion of the vehicle on a steeper slope: "slips", "tips" or "rolls"."""
         ends = np.stack(np.broadcast_arrays(self.slipping_slope, self.tipping_slope, self.rolling_slope))
         return np.array(["slips", "tips", "rolls"])[np.argmin(ends, axis=0)]
 
     @property
     def message(self) -> str:
-        """Sentence on the given slope and on what happens past the largest one; for a single case only."""
+        """Sentence on the given slope and the motion on slopes past the largest; for a single case only."""
         on, most = np.degrees(float(self.road.slope)), np.degrees(float(self.largest_slope))
         what = {"too near to decide": "it is too near to decide"}.get(str(self.status), f"it {self.status}")
         return f"{self.limited_by} past {most:.6g} deg: on {on:.6g} deg {what}"
@@ -206,7 +206,7 @@ def hold(
     kinds = [near, slope < most, ratio > pitching * (1 + _EDGE), grip <= given]
     status = np.select(kinds, ["too near to decide", "holds", "tips", "slips"], default="rolls")
     shares = [vehicle.load_share(axle, ratio, downhill) for axle in ("front", "rear")]
-    pressed = np.where(np.minimum(*shares) >= 0, pressed, np.nan)  # no equilibrium while it tips
+    pressed = np.where(np.minimum(*shares) >= 0, pressed, np.nan)  # no equilibrium while the vehicle tips
     front, rear = (pressed * each for each in shares)
     return Holding(
         vehicle=vehicle,

@@ -31,7 +31,7 @@ from brakes.vehicle.axles import Axle, Vehicle, other
 from brakes.vehicle.holding import Road
 from brakes.vehicle.rise import coast, to_rest
 
-_EDGE = 1e-9  # relative difference of two ratios or accelerations that count as equal
+_EDGE = 1e-9  # relative difference of two ratios or accelerations below which they count as equal
 _STATES = ("no wheel locks", "front wheels locked", "rear wheels locked", "all wheels locked")
 _PITCHES = "at the limit of pitching over"
 
@@ -144,7 +144,7 @@ class Slowing(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentence on a vehicle that comes to rest uphill before the brakes hold it; empty if none does."""
+        """Warning if the vehicle comes to rest uphill before the brakes act; empty otherwise."""
         a = self.approach
         since = np.asarray(self.time - a.reaction_time)
         with np.errstate(divide="ignore", invalid="ignore"):  # the rise time may be 0
@@ -259,7 +259,7 @@ def _ratio(vehicle: Vehicle, friction: Numbers, braked: dict[Axle, Any], leading
         locked.append(np.where(left > 0, held / np.where(left > 0, left, 1.0), np.inf))
     sums = np.stack(np.broadcast_arrays(rolling, *locked, friction))
     least, pitching = sums.min(axis=0), vehicle.pitching_ratio(leading)
-    # Of equal ratios, the state with fewer wheels locked is taken.
+    # If two ratios are equal, the state with fewer locked wheels is chosen.
     first = np.argmax(sums <= least * (1 + _EDGE), axis=0)
     lifts = least >= pitching * (1 - _EDGE)
     status = np.where(lifts, _PITCHES, np.array(_STATES)[first])

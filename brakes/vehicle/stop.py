@@ -325,15 +325,15 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
 
 
 def _broadcast(truck: Truck, conditions: StopConditions, strongest: Numbers) -> Sequence[np.ndarray]:
-    """Broadcast the conditions with truck and brakes, whose shapes must fit."""
-    # A sum that has the shape of the truck's numbers; its value is not used.
+    """Broadcast the arrays of conditions, truck and brakes to one shape."""
+    # This sum has the shape of the truck's numbers; its value is not used.
     one_case = truck.cg[0] + truck.cg[1] + truck.front_wheel_radius + truck.wheelbase
     together(truck=one_case, most_torque=strongest, **conditions.numbers)
     return np.broadcast_arrays(*conditions.numbers.values(), one_case, strongest)[:-2]
 
 
 def _slow_down(V: np.ndarray, A: np.ndarray, t2: np.ndarray, stops: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Slow down from V [m/s] by an acceleration that changes linearly from 0 to A [m/s2] within t2 [s].
+    """Compute a stop from the speed V [m/s]: the acceleration changes linearly from 0 to A [m/s2] in t2 [s].
 
     Returns
     -------
@@ -343,7 +343,7 @@ def _slow_down(V: np.ndarray, A: np.ndarray, t2: np.ndarray, stops: np.ndarray) 
     """
     v2 = V + A * t2 / 2
     in_rise = v2 <= LEAST_MARGIN * V
-    slowing = np.where(A < 0, A, -1.0)  # -1 avoids a division by zero, whose result is replaced below
+    slowing = np.where(A < 0, A, -1.0)  # -1 avoids a division by zero; such results are replaced below
     tau = np.sqrt(2 * V * t2 / -slowing)
     rise = np.where(in_rise, 2 / 3 * V * tau, V * t2 + A * t2**2 / 6)
     braking = np.where(in_rise, 0.0, -(v2**2) / (2 * slowing))
@@ -353,7 +353,7 @@ def _slow_down(V: np.ndarray, A: np.ndarray, t2: np.ndarray, stops: np.ndarray) 
 
 
 def _rounding(truck: Truck, conditions: StopConditions) -> Numbers:
-    """Bound the rounding error of the deceleration, relative to the terms whose difference it is."""
+    """Compute a bound of the deceleration's rounding error, relative to its terms (friction and slope)."""
     size = (1 + conditions.friction) * truck.sizes_of_coordinates / (truck.wheelbase - truck.cg[0])
     return ROUNDING * (4 + size)
 

@@ -98,7 +98,7 @@ class Truck:
 
     @property
     def sizes_of_coordinates(self) -> Numbers:
-        """Sum of the lengths in the arms of weight and friction [m], which scales their rounding errors."""
+        """Sum of the lengths in the lever arms of weight and friction [m], which scales rounding errors."""
         m, ml = self.empty_mass, self.load_mass
         empty, load = (np.abs(x) + np.abs(y) for x, y in (self.empty_cg, self.load_cg))
         return (m * empty + ml * load) / (m + ml) + self.front_wheel_radius + self.wheelbase

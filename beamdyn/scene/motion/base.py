@@ -16,7 +16,7 @@ from beamdyn.common.results.one_line import OneLine
 from beamdyn.common.words import Words
 from beamdyn.scene.names_elsewhere import REPEATING, ROLLING_WHEEL
 
-# Distance from the end of a motion, over its end time, up to which a later time counts as the end.
+# Time after the end of a motion, relative to the end time, up to which it counts as the end.
 _ROUNDING = 1e-12
 
 Kinematics = tuple[np.ndarray, np.ndarray, np.ndarray]  # angle, speed, acceleration
@@ -47,7 +47,7 @@ class MotionSample:
 
     @classmethod
     def steady(cls, speed: np.ndarray | float) -> MotionSample:
-        """Sample rotations at constant speeds [rad/s] about a fixed centre, at angle 0."""
+        """Return samples of rotations at constant speeds [rad/s] about a fixed centre, at angle 0."""
         speed = np.asarray(speed, dtype=float)
         zero = np.zeros(speed.shape)
         return cls(zero, speed, zero, np.zeros((*speed.shape, 3)))
@@ -84,14 +84,14 @@ class Motion(OneLine, ABC):
        ``Annotated[float, Described(unit, symbol, meaning, bounds)]``, from which its table in files and its
        form are made; `__post_init__` checks them.
     2. `at` takes times of any shape and returns angle, speed, acceleration and the carrier's acceleration;
-       each is the derivative of the one before.  A rotation about a fixed centre derives from `Rotation`.
+       each is the derivative of the previous one.  A rotation about a fixed centre derives from `Rotation`.
     3. `with_speed` copies it with another final speed: sweeps and loci over speed need no more.
     4. `breakpoints` lists the times at which it or a derivative jumps: steps in time end there.
        `steady_start` is the time from which the speed is constant, `end` the last time.
     5. A translation that lasts at steady speed gives `lines`, `road_multiple`, `road_acceleration` and
        `steady_acceleration`, on which the steady response and the resonance speeds rest.
     6. A motion that repeats itself gives `rates`, on which its stability rests.
-    7. To be named in files and forms, it stands in `KINDS` of `beamdyn.scene.motion`.
+    7. To be available in files and forms, it must be listed in `KINDS` of `beamdyn.scene.motion`.
 
     Examples
     --------
@@ -99,7 +99,7 @@ class Motion(OneLine, ABC):
     True
     """
 
-    no_steady_state: ClassVar[str] = ""  # why there is no steady state, and what to do; empty if there is one
+    no_steady_state: ClassVar[str] = ""  # reason for no steady state, with a remedy; empty otherwise
 
     @abstractmethod
     def at(self, t: np.ndarray) -> MotionSample:
@@ -141,7 +141,7 @@ class Motion(OneLine, ABC):
 
     @property
     def rates(self) -> tuple[float, ...]:
-        """Rates [rad/s] of the phases of which the motion is a periodic function, that of rotation first.
+        """Rates [rad/s] of the phases in which the motion is periodic, the rate of rotation first.
 
         Raises
         ------
@@ -267,8 +267,8 @@ def check_consistent(motion: Motion, t_end: float) -> None:
 
 
 def _choose_times(t_end: float, breakpoints: Sequence[float], h: float) -> np.ndarray:
-    """Choose times over the whole interval and beside each breakpoint, none within 2 h of a breakpoint."""
-    # Irregular, so that no periodic function is sampled at its zeros only.
+    """Choose times over the interval and near breakpoints, but none within 2 h [s] of a breakpoint."""
+    # The times are irregular, so that a periodic function is not sampled only at its zeros.
     k = np.arange(_SAMPLES)
     t = 2 * h + (t_end - 4 * h) * (k + k * math.e % 1) / _SAMPLES
     for jump in breakpoints:
@@ -289,7 +289,7 @@ def _check_finite(name: str, t: np.ndarray, values: np.ndarray) -> None:
 def _check_derivative(
     name: str, derivative_name: str, unit: str, t: np.ndarray, h: float, f: np.ndarray, df: np.ndarray
 ) -> None:
-    """Compare a derivative `df` at times t with the finite differences of `f` on five points t + k h."""
+    """Compare a derivative `df` at times t with finite differences of `f` at five points t + k h, step h."""
     coarse = (f[3] - f[1]) / (2 * h)
     fine = (8 * (f[3] - f[1]) - (f[4] - f[0])) / (12 * h)
     rounding = 16 * np.finfo(float).eps * abs(f).max() / h
@@ -311,7 +311,7 @@ def _check_continuous(motion: Motion, name: str, unit: str, derivative_name: str
         excess, misfit, k = _find_worst_step(t, getattr(sample, name), getattr(sample, derivative_name))
         if excess <= 0:
             return
-        t = np.linspace(t[k], t[k + 1], _SAMPLES)  # a steep rise turns out continuous when it is resolved
+        t = np.linspace(t[k], t[k + 1], _SAMPLES)  # smaller steps show a steep rise as continuous
     raise ValueError(
         f"{derivative_name} is not the derivative of {name} at t = {t[0]:.6g} s, where {name} jumps by "
         f"{misfit:.3g} {unit}; let {name} continue"
@@ -319,10 +319,10 @@ def _check_continuous(motion: Motion, name: str, unit: str, derivative_name: str
 
 
 def _find_worst_step(t: np.ndarray, f: np.ndarray, df: np.ndarray) -> tuple[float, float, int]:
-    """Find the step of f that differs most from the integral of df: excess of the misfit, misfit, index."""
+    """Find the step of f that differs most from the integral of df: misfit above tolerance, misfit, index."""
     step = np.diff(t)
     misfit = abs(np.diff(f) - step * (df[1:] + df[:-1]) / 2)
-    # Where df is monotone, the error of the trapezoidal rule is at most half of this.
+    # If df is monotone, the error of the trapezoidal rule is at most half of this value.
     rounding = 16 * np.finfo(float).eps * (abs(f).max() + t[-1] * abs(df).max())
     allowed = step * abs(np.diff(df)).max() + rounding
     k = int((misfit - allowed).argmax())

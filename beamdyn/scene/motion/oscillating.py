@@ -145,7 +145,7 @@ class ShakenCarrier(TurningMotion):
 
 # Records of an acceleration --------------------------------------------------------------------------
 
-_GAP = 1.5  # ratio of a gap to the usual interval beyond which samples are missing
+_GAP = 1.5  # ratio of an interval to the usual interval above which samples count as missing
 _AXES_OF_RECORDS = ("along_n1", "along_n2", "along_n3")
 
 BetweenSamples = Literal["linear", "cubic"]

@@ -21,7 +21,7 @@ from beamdyn.scene.motion.base import (
 )
 from beamdyn.scene.motion.rotations import Rotation, TurningMotion
 
-_MOST_WAVES = 1e12  # waves of the road per turn; with more, the phase of the road has few correct digits
+_MOST_WAVES = 1e12  # most road waves per turn; with more, the road's phase has few correct digits
 
 
 @dataclass(frozen=True)

@@ -56,7 +56,7 @@ class Rotation(Motion):
 
 @dataclass(frozen=True)
 class TurningMotion(Motion):
-    """Base class of motions whose centre moves while the carrier turns by a `Rotation`, held in a field.
+    """Base class of motions with a moving centre; a field has the carrier's `Rotation`.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class TurningMotion(Motion):
     turned_by: ClassVar[str] = "rotation"  # name of the field that holds the rotation
 
     def keep_rotation(self) -> None:
-        """Check the field that holds the rotation; replace a speed [rad/s] there by a steady rotation."""
+        """Check the field with the rotation; replace a speed [rad/s] in it by a steady rotation."""
         given = getattr(self, self.turned_by)
         if not isinstance(given, Rotation):
             speed = real(self.turned_by, given, "rad/s", "or a rotation, such as SpinUp(speed, duration)")
@@ -208,7 +208,7 @@ class SpinUp(Rotation):
     def kinematics(self, t: np.ndarray) -> Kinematics:
         """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         x = np.clip(t / self.duration, 0.0, 1.0)
-        # After the spin-up one value of the law serves all times.
+        # After the spin-up the value at its end is used for all times.
         after_its_end = x.ndim and x.size and x.min() == 1
         angle, speed, acceleration = _LAWS[self.law](np.ones(1) if after_its_end else x)
         # Time at constant speed counts from the spin-up's end: the angle is continuous to the last digit.

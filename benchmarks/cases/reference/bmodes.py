@@ -1,4 +1,4 @@
-"""Elements of BModes 3: the matrices that its source has for a straight blade, without gyroscopic terms.
+"""Elements of the program BModes 3: its matrices for a straight blade, without gyroscopic terms.
 
 Of src/bmodes/Struct.f90 and BldVib.f90 of github.com/old-NWTC/BModes @c8a0b48.  Displacements u along the
 blade (cubic), v to the leading edge and w flapwise (cubic Hermite), and the twist phi (quadratic).  Each
@@ -15,7 +15,7 @@ import scipy.linalg
 from numpy.polynomial import Polynomial
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(6)
-_ON_ELEMENT = 9  # coordinates of an element: u, v, v', w, w', phi at its node, two of u and one of phi within
+_ON_ELEMENT = 9  # coordinates of an element: u, v, v', w, w', phi at a node; inside two of u, one of phi
 _PLACES = {"u": [0, 6, 7, 9], "v": [1, 2, 10, 11], "w": [3, 4, 12, 13], "phi": [5, 8, 14]}
 _CUBIC = [
     Polynomial(c) for c in ([1, -5.5, 9, -4.5], [0, 9, -22.5, 13.5], [0, -4.5, 18, -13.5], [0, 1, -4.5, 4.5])
@@ -25,7 +25,7 @@ _HERMITE = [Polynomial(c) for c in ([1, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2],
 
 
 def frequencies(blade: Mapping[str, Any], ends: np.ndarray, speed: float, count: int) -> np.ndarray:
-    """Compute frequencies [Hz] of a published blade at a speed [rad/s], by elements between x/L."""
+    """Compute frequencies [Hz] of a published blade at a speed [rad/s], by elements with given ends x/L."""
     size = _ON_ELEMENT * (len(ends) - 1) + 6
     M, K = np.zeros((size, size)), np.zeros((size, size))
     middle, length = (ends[:-1] + ends[1:]) / 2, blade["length"]
@@ -54,7 +54,7 @@ def frequencies(blade: Mapping[str, Any], ends: np.ndarray, speed: float, count:
 
 
 def about_shear_centres(blade: Mapping[str, Any], ends: np.ndarray, speed: float, count: int) -> np.ndarray:
-    """Compute `frequencies` with centre of mass and edgewise inertia counted from the shear centre."""
+    """Compute `frequencies` with centre of mass and edgewise inertia relative to the shear centre."""
     from_shear_centre = blade["mass_offset"] - blade["shear_offset"]
     inertia = blade["edge_inertia"] + blade["mass_per_length"] * from_shear_centre**2
     read = {**blade, "mass_offset": from_shear_centre, "edge_inertia": inertia}
@@ -62,7 +62,7 @@ def about_shear_centres(blade: Mapping[str, Any], ends: np.ndarray, speed: float
 
 
 def _functions(point: float, length: float) -> dict[tuple[str, int], np.ndarray]:
-    """Evaluate functions of each displacement and their derivatives at a point of an element: (15,) each."""
+    """Evaluate shape functions of each displacement and derivatives at a point of an element: (15,) each."""
     found = {}
     for name, functions in (("u", _CUBIC), ("v", _HERMITE), ("w", _HERMITE), ("phi", _QUADRATIC)):
         slopes = [length if name in "vw" and k % 2 else 1.0 for k in range(4)]
@@ -77,10 +77,10 @@ def _functions(point: float, length: float) -> dict[tuple[str, int], np.ndarray]
 def _at_point(
     own: Mapping[str, float], turn: float, x: float, f: Mapping[tuple[str, int], np.ndarray], speed: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute mass and stiffness per length at a radius x, as the linear part of the source has them."""
+    """Compute mass and stiffness per length at a radius x, as in the linear part of BModes' source."""
     u, v, w, phi = (f[name, 0] for name in ("u", "v", "w", "phi"))
     c, s, m, spin = np.cos(turn), np.sin(turn), own["mass_per_length"], speed**2
-    cg = -own["mass_offset"]  # counted towards the leading edge
+    cg = -own["mass_offset"]  # positive towards the leading edge
     tc = own["shear_offset"] - own["tension_offset"]
     polar = own["flap_inertia"] + own["edge_inertia"]
     M = m * _product(u, u) + m * _product(v, v) + m * _product(w, w) + polar * _product(phi, phi)

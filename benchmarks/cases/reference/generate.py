@@ -43,7 +43,7 @@ SECTIONS = {
 
 
 def uniform(random: Random) -> Iterator[Case]:
-    """Yield cases: outward, inward below the critical speed, inward at any speed, and the corners."""
+    """Yield uniform beams: outward, inward below the critical speed, inward at any speed, extreme ones."""
     for _ in range(4):
         yield scene("uniform outward", random.uniform(0, 12), random.uniform(0, 5), random.uniform(0, 90))
     for _ in range(4):

@@ -16,18 +16,18 @@ from benchmarks.cases.reference.elastica.beam import Function
 
 @dataclass(frozen=True)
 class SceneAnswer:
-    """The answer of the second method.
+    """Equilibrium and frequencies of a scene by collocation (`reference.elastica`).
 
     Parameters
     ----------
     tip
-        Place of the tip from the root along b1, b2, b3 [m].
+        Position of the tip from the root along b1, b2, b3 [m].
     frequency
         The lowest frequencies [Hz], nan where a mode diverges.
     stable
         Whether no motion about the equilibrium grows.
     change
-        Of the nondimensional answer between the last two meshes.
+        Change of the nondimensional answer between the last two meshes.
     """
 
     tip: np.ndarray
@@ -39,13 +39,13 @@ class SceneAnswer:
 def answer(
     scene: bd.Scene, speed: float, count: int = 3, breakpoints: Sequence[float] | None = None
 ) -> SceneAnswer:
-    """Solve a scene on the branch continued from rest; breakpoints as in `elastica_of_scene`."""
+    """Solve a scene on the branch of equilibria from rest; breakpoints as in `elastica_of_scene`."""
     beam, unit = elastica_of_scene(scene, breakpoints)
     return _dimensional(scene, unit, converged(from_rest(beam, abs(speed) * unit), count))
 
 
 def bent_answer(scene: bd.Scene, speed: float, side: int = 1, count: int = 3) -> SceneAnswer:
-    """Solve a scene on the branch beside that from rest, with the tip on a given side."""
+    """Solve a scene on the branch that does not start at rest, with the tip on a given side."""
     beam, unit = elastica_of_scene(scene)
     return _dimensional(scene, unit, converged(bent(beam, abs(speed) * unit, side), count))
 
@@ -58,7 +58,7 @@ def _dimensional(scene: bd.Scene, unit: float, found: Answer) -> SceneAnswer:
 
 
 def elastica_of_scene(scene: bd.Scene, breakpoints: Sequence[float] | None = None) -> tuple[Elastica, float]:
-    """Return the beam in units of length, and of mass and stiffness at the root; its unit of time [s]."""
+    """Return the nondimensional beam (units: length, mass and stiffness at the root), unit of time [s]."""
     beam, mount, length, root = scene.beam, scene.mount, scene.beam.length, np.zeros(1)
     mass, stiffness = (float(p(root)[0]) for p in (beam.mass_per_length, beam.bending_stiffness))
     (along, across), (c, s) = map(_cosine_and_sine, (mount.setting_angle, mount.bending_angle))

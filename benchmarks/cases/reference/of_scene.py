@@ -27,7 +27,7 @@ def exact(scene: bd.Scene, speed: float, count: int = 3, digits: int = 30) -> li
 
 
 def exact_critical_speed(scene: bd.Scene, digits: int = 30) -> mpf:
-    """Compute the critical speed [rad/s] of such a beam; inf if a basis of 48 functions has none."""
+    """Compute the critical speed [rad/s] of a beam without breakpoints; inf if 48 functions give none."""
     with mp.workdps(_DIGITS):
         return critical_speed(**_parameters(scene), digits=digits) / _time_unit(scene.beam)
 
@@ -58,7 +58,7 @@ def relative_errors(found: bd.Modes, truth: list[mpc]) -> list[float]:
 
 
 def _cosine(angle: float) -> mpf:
-    """Compute a cosine; 0 at a quarter turn, as the scene takes it."""
+    """Compute a cosine; exactly 0 at a quarter turn, as in a scene."""
     return mpf(0) if abs(math.cos(angle)) < 2e-16 else mp.cos(mpf(angle))
 
 

@@ -1,4 +1,4 @@
-"""Frequencies of a scene by the second method: its profiles as plain functions, made nondimensional."""
+"""Frequencies of a scene by the second method, from nondimensional functions of its properties."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from benchmarks.cases.reference.twisted_beam import Blade, Body, constant, conve
 from benchmarks.cases.reference.twisted_beam.blade import Function, Pair
 from benchmarks.cases.reference.twisted_beam.coned import coned_frequencies, solve_coned
 
-_FINEST = 64  # most pieces between breakpoints
-_OF_DERIVATIVES = 1e-10  # relative convergence of the frequencies that are differenced
-_MARGIN = 4.0  # margin of their rounding, over the difference of two meshes
+_FINEST = 64  # largest number of pieces between breakpoints
+_OF_DERIVATIVES = 1e-10  # relative accuracy of frequencies from which differences are computed
+_MARGIN = 4.0  # margin for rounding of these frequencies, over the difference of two meshes
 
 
 def squared_frequencies(
     scene: bd.Scene, speed: float, count: int = 3, rtol: float = 1e-12
 ) -> tuple[np.ndarray, float]:
-    """Compute the lowest lambda^2 [1/s^2] without stretch and damping, and how far two meshes differ."""
+    """Compute the lowest lambda^2 [1/s^2], without stretch and damping, and the change on the last mesh."""
     blade, unit = blade_of_scene(scene)
     squares, change = converged(blade, speed * unit, count, rtol)
     return squares / unit**2, change
@@ -33,7 +33,7 @@ def squared_frequencies(
 def coned_frequencies_of(
     scene: bd.Scene, speed: float, count: int = 3, rtol: float = 1e-10
 ) -> tuple[np.ndarray, float]:
-    """Compute the lowest frequencies [rad/s] of a scene with precone, and how far two meshes differ."""
+    """Compute the lowest frequencies [rad/s] of a scene with precone, and the change on the last mesh."""
     blade, unit = blade_of_scene(scene)
     found, change = coned_frequencies(blade, speed * unit, count, rtol)
     return found / unit, change
@@ -48,7 +48,7 @@ def squares_on_mesh(scene: bd.Scene, speed: float, count: int, pieces: int) -> n
 
 
 def pieces_needed(scene: bd.Scene, speed: float, count: int, rtol: float) -> tuple[int, float]:
-    """Find the fewest pieces whose halving changes no lambda^2 by more than `rtol`, and the change."""
+    """Find the number of pieces whose halving changes no lambda^2 by more than `rtol`, and the change."""
     pieces, before, change = 1, squares_on_mesh(scene, speed, count, 1), math.inf
     while pieces < _FINEST:
         pieces *= 2
@@ -63,10 +63,10 @@ def pieces_needed(scene: bd.Scene, speed: float, count: int, rtol: float) -> tup
 def derivatives_by_collocation(
     scene: bd.Scene, speed: float, numbers: Sequence[SceneNumber], count: int = 3
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Compute derivatives of frequencies [Hz / unit of each number] from eight frequencies beside each.
+    """Compute derivatives of frequencies [Hz / unit of each number] by differences of eight frequencies.
 
-    The second array says what rounds them, told by a mesh twice as fine: the lowest modes of beams that are
-    far stiffer in one direction have few digits.
+    The second array is the rounding error, estimated by a mesh twice as fine: the lowest modes of beams that
+    are far stiffer in one direction have few digits.
     """
     pieces, _ = pieces_needed(scene, speed, count, _OF_DERIVATIVES)
     frequency = np.sqrt(squares_on_mesh(scene, speed, count, pieces)) / (2 * np.pi)
@@ -85,7 +85,7 @@ def derivatives_by_collocation(
 
 
 def blade_of_scene(scene: bd.Scene) -> tuple[Blade, float]:
-    """Return the blade in units of length, and of mass and stiffness at the root; its unit of time [s]."""
+    """Return the nondimensional blade (units: length, mass and stiffness at the root), unit of time [s]."""
     beam, mount, physics = scene.beam, scene.mount, scene.physics
     length, root = beam.length, np.zeros(1)
     mass, stiffness = (float(p(root)[0]) for p in (beam.mass_per_length, beam.bending_stiffness))

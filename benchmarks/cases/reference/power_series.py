@@ -56,15 +56,15 @@ class Tip:
     Parameters
     ----------
     mass
-        Over rho A(0) L.
+        Mass over rho A(0) L.
     offset
-        Of the centre of gravity beyond the tip, over L.
+        Distance of the centre of gravity beyond the tip, over L.
     inertia
-        J_n about the bending axis, over rho A(0) L^3, as are the other two.
+        Moment of inertia J_n about the bending axis, over rho A(0) L^3, like the other two.
     lateral_inertia
-        J_e about the direction of bending; J_n if not given (a slender or axisymmetric body).
+        Moment of inertia J_e about the direction of bending; J_n if not given (an axisymmetric body).
     axial_inertia
-        J_1 about the beam's axis.
+        Moment of inertia J_1 about the beam's axis.
     """
 
     mass: Number = 0
@@ -91,18 +91,18 @@ def bending_eigenvalues(
     gamma, delta
         Speed and hub radius.
     bending_angle
-        psi [rad] from the plane of rotation: 0 chordwise, pi/2 flapwise.
+        Bending angle psi [rad] from the plane of rotation: 0 chordwise, pi/2 flapwise.
     mass, stiffness
         Coefficients of rho A and EI as polynomials in x/L, lowest first.
     tip
         The body at the tip.
     count, digits
-        How many values, and to how many digits.
+        Number of values, and number of digits.
 
     Raises
     ------
     ArithmeticError
-        If the roots found are not those that Rayleigh-Ritz announces.
+        If the roots differ from those predicted by Rayleigh-Ritz.
     """
     speed_squared = float(gamma) ** 2
     beam = _beam(delta, bending_angle, mass, stiffness, tip)
@@ -156,7 +156,7 @@ def critical_speed(
     starts = [1 / mu for mu in softening[:2] if mu > 1e-8]
     if not starts:
         return mp.inf
-    starts = [*starts, 4 * starts[0]][:2]  # the second start only bounds the search for the first root
+    starts = [*starts, 4 * starts[0]][:2]  # the second start value only bounds the search for the first root
     with mp.workdps(digits + _lost_digits(beam, starts[-1], 0.0)):
         beam = _beam(delta, bending_angle, mass, stiffness, tip)
         return mp.sqrt(_roots(lambda z: _bending_determinant(beam, z, mpf(0)), starts, digits, floor=0)[0])
@@ -184,7 +184,7 @@ class _Beam:
     cos: mpf
     mass: list[mpf]
     stiffness: list[mpf]
-    load: list[mpf]  # the tension over gamma^2
+    load: list[mpf]  # polynomial of the tension over gamma^2
     tip: Tip
     steps: list[tuple[mpf, mpf]]  # (start, length) of each Taylor series
 
@@ -214,14 +214,14 @@ def _exact_tip(tip: Tip) -> Tip:
 
 
 def _load(mass: list[mpf], delta: mpf, tip: Tip) -> list[mpf]:
-    """Compute int_x^1 m(s) (delta + s) ds + m_t (delta + 1 + eps)."""
+    """Compute the tension over gamma^2: int_x^1 m(s) (delta + s) ds + m_t (delta + 1 + eps)."""
     moment = [delta * a + b for a, b in zip([*mass, 0], [0, *mass], strict=True)]
     integral = [a / k for k, a in enumerate(moment, start=1)]
     return [sum(integral) + tip.mass * (delta + 1 + tip.offset), *(-a for a in integral)]
 
 
 def _steps(stiffness: list[mpf]) -> Iterator[tuple[mpf, mpf]]:
-    """Yield steps within half the radius of convergence, which the zeros of EI limit."""
+    """Yield steps along the beam, each within half the radius of convergence of the Taylor series."""
     zeros = Polynomial([float(c) for c in stiffness]).roots()
     start = mpf(0)
     while start < 1:
@@ -265,7 +265,7 @@ def _coupled_determinant(beam: _Beam, gamma: mpf, alpha: mpf, frequency: mpf) ->
 
 
 def _shoot(beam: _Beam, gamma_squared: mpf, rates: _Rates, start: int) -> State:
-    """Compute the state (u, u', M, Q, s, F) at the tip of the solution that starts with a unit there."""
+    """Compute the state (u, u', M, Q, s, F) at the tip from a state at the root with a 1 at index `start`."""
     state: State = [mpf(i == start) for i in range(6)]
     tension = [gamma_squared * c for c in beam.load]
     for x, step in beam.steps:
@@ -285,7 +285,7 @@ def _residual(beam: _Beam, gamma_squared: mpf, eigenvalue: mpf, state: State) ->
 
 
 def _local(polynomial: list[mpf], start: mpf, step: mpf) -> list[mpf]:
-    """Compute coefficients in xi = (x - start) / step."""
+    """Compute a polynomial's coefficients in xi = (x - start) / step."""
     terms = range(len(polynomial))
     return [
         step**k * sum(mp.binomial(j, k) * start ** (j - k) * polynomial[j] for j in terms if j >= k)
@@ -296,9 +296,9 @@ def _local(polynomial: list[mpf], start: mpf, step: mpf) -> list[mpf]:
 def _advance(
     state: State, h: mpf, rates: _Rates, mass: list[mpf], stiffness: list[mpf], tension: list[mpf]
 ) -> State:
-    """Carry the state over one step by its Taylor series in xi = (x - start) / h."""
+    """Compute the state at the end of a step h by Taylor series in xi = (x - start) / h."""
     series = u, slope, moment, shear, stretch, force = [[value] for value in state]
-    slope[0] *= h  # d/dxi inside the step
+    slope[0] *= h  # derivative d/dxi inside the step
     bend: list[mpf] = []  # d^2 u / dxi^2
     window = 3 + max(map(len, (mass, stiffness, tension)))
     small = mp.eps * max(map(abs, state))
@@ -319,7 +319,7 @@ def _advance(
 
 
 def _convolved(polynomial: list[mpf], series: list[mpf], k: int, first: int = 0) -> mpf:
-    """Compute coefficient k of the product, without the polynomial's terms below `first`."""
+    """Compute coefficient k of the product of a polynomial and a series, without terms below `first`."""
     last = min(k + 1, len(polynomial))
     return mp.fdot((polynomial[j], series[k - j]) for j in range(first, last))
 
@@ -329,7 +329,7 @@ def _vanished(series: Sequence[list[mpf]], window: int, small: mpf) -> bool:
 
 
 def _lost_digits(beam: _Beam, gamma_squared: float, eigenvalue: float) -> int:
-    """Estimate the digits that series and determinant cancel: twice the solutions' growth."""
+    """Estimate the digits that cancel in series and determinant: twice those of the solutions' growth."""
     x = np.linspace(0, 1, 101)
     mass, stiffness, load = (_values(p, x) for p in (beam.mass, beam.stiffness, beam.load))
     string = gamma_squared * np.abs(load) / stiffness
@@ -343,7 +343,7 @@ def _lost_digits(beam: _Beam, gamma_squared: float, eigenvalue: float) -> int:
 def _roots(
     function: Callable[[mpf], mpf], starts: Sequence[float], digits: int, floor: float = -np.inf
 ) -> list[mpf]:
-    """Find one root near each start but the last, each alone between the midpoints."""
+    """Find one root near each start value except the last; midpoints of starts must separate the roots."""
     middles = [(a + b) / 2 for a, b in pairwise(starts)]
     edges = [mpf(e) for e in (max(floor, starts[0] - (starts[1] - starts[0]) / 2), *middles)]
     signs = [mp.sign(function(edge)) for edge in edges]
@@ -388,7 +388,7 @@ def _values(polynomial: list[mpf], x: np.ndarray) -> np.ndarray:
 
 
 def _forms(beam: _Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute quadratic forms of bending stiffness, gamma^2, and -lambda^2."""
+    """Compute Ritz matrices of bending stiffness, of terms with gamma^2, and of terms with -lambda^2."""
     x, weights, u, slope, bend = _basis()
     mass, offset, inertia, lateral, axial = map(float, vars(beam.tip).values())
     delta, cos_squared = float(beam.delta), float(beam.cos) ** 2
@@ -405,9 +405,9 @@ def _integral(weights: np.ndarray, table: np.ndarray) -> np.ndarray:
 
 
 def _lowest(stiffness: np.ndarray, mass: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the lowest eigenvalues and vectors of unit mass.
+    """Compute the lowest eigenvalues, and eigenvectors of unit mass.
 
-    Solved for 1/(eigenvalue + shift): factorising the mass matrix would lose the digits.
+    The solution is for 1/(eigenvalue + shift), as factorising the mass matrix would lose digits.
     """
     shift = _definite_shift(stiffness, mass)
     inverse, vectors = eigh(mass, stiffness + shift * mass)
@@ -416,7 +416,7 @@ def _lowest(stiffness: np.ndarray, mass: np.ndarray, count: int) -> tuple[np.nda
 
 
 def _definite_shift(stiffness: np.ndarray, mass: np.ndarray) -> float:
-    shift = 1.0  # not 0: a stiffness that is all but singular would spoil the higher modes
+    shift = 1.0  # not 0: a nearly singular stiffness would make higher modes inaccurate
     while True:
         try:
             cholesky(stiffness + shift * mass)

@@ -1,4 +1,4 @@
-"""Frequencies of a scene by the second method, and to how many digits these are known."""
+"""Frequencies of a scene by the second method, with their numerical uncertainties."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from benchmarks.cases.reference.twisted_beam import Blade, solve
 from benchmarks.cases.reference.twisted_beam.mesh import graded
 
 _ROUNDING = 2e-14  # least relative uncertainty of a squared frequency
-_FALL = 0.1  # largest ratio of changes by successive refinements: a small one may be accidental
-_FINEST = 64  # most pieces of the whole beam
-_REST = 1e-12  # rounding error of the squared frequency 0 of a free hinge, over 1 + gamma^2
-_QUOTIENT = 1.0  # largest share of the distance from the quotient that their extrapolation may leave
+_FALL = 0.1  # least ratio of successive changes that is relied on: a smaller ratio may be accidental
+_FINEST = 64  # largest number of pieces of the whole beam
+_REST = 1e-12  # rounding error of the zero squared frequency of a free hinge, over 1 + gamma^2
+_QUOTIENT = 1.0  # uncertainty of the extrapolation, over the difference of eigenvalue and energy quotient
 
 
 @dataclass(frozen=True)
 class Known:
     """Eigenvalues [1/s], by ascending squared frequency, and their relative uncertainties.
 
-    They are imaginary for modes that vibrate and positive for those that diverge.  One whose size is below
-    `zero` [1/s] is not told from 0: it is given as 0, with the uncertainty 0.
+    They are imaginary for modes that vibrate and positive for those that diverge.  An eigenvalue whose
+    magnitude is below `zero` [1/s] counts as 0, with the uncertainty 0.
     """
 
     eigenvalue: np.ndarray
@@ -33,7 +33,7 @@ class Known:
 
 
 def known_frequencies(scene: bd.Scene, speed: float, count: int) -> Known:
-    """Return the frequencies of the first mesh whose refinement changes nothing but rounding."""
+    """Return the frequencies on the first mesh whose refinement changes only rounding."""
     blade, unit = blade_of_scene(scene)
     gamma = speed * unit
     stops = graded((blade.mass, *blade.stiffness[: blade.planes]), scene.beam.breakpoints)

@@ -1,4 +1,4 @@
-"""Equilibrium and vibration of a rotating beam that bends far: a second method.
+"""Equilibrium and vibration of a rotating beam with large deflection, by an independent method.
 
 The balance of forces and moments of the inextensible elastica, collocated at Gauss points; nothing is shared
 with `beamdyn`. All quantities are nondimensional: length 1, and for example mass per length m and bending

@@ -1,4 +1,4 @@
-"""The beam of the second method, as plain functions and numbers."""
+"""Description of a beam with large deflection, by functions of x/L and numbers."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ class Elastica:
     mass, stiffness, rotary
         Mass per length, bending stiffness, second moment of mass per length.
     centre
-        Place of the axis of rotation, seen from the root: along the beam at rest, and along the direction of
-        bending.
+        Position of the axis of rotation relative to the root: along the beam at rest, and along the direction
+        of bending.
     in_plane
         1 where the beam bends in the plane of rotation, 0 where it bends out of it.
     spring

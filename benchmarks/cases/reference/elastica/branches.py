@@ -1,4 +1,4 @@
-"""Branches beside that from rest: the pitchfork of the straight beam, folds, the least frequency."""
+"""Branches of equilibria not from rest: pitchfork of the straight beam, folds, least frequency."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from benchmarks.cases.reference.elastica.vibration import frequencies
 _NEWTON = 30
 _TOLERANCE = 1e-14
 _SETTLED = 1e-11
-_FIRST_ANGLE = 0.05  # angle of the tip on leaving the pitchfork [rad]
-_BESIDE = 1e-3  # angle of the tip of a beam that is just bent [rad]
-_ENTRIES = (1.0, 1.5, 2.0, 0.5, 2.5)  # angles of the tip at which a branch with a fold may be entered [rad]
+_FIRST_ANGLE = 0.05  # first angle of the tip on the branch from the pitchfork [rad]
+_BESIDE = 1e-3  # angle of the tip of a slightly bent beam [rad]
+_ENTRIES = (1.0, 1.5, 2.0, 0.5, 2.5)  # angles of the tip, tried in turn, to find a fold's branch [rad]
 _STEP = 0.1  # step of the tip's angle along a branch [rad]
-_NEAR = 1e-2  # half the relative interval of speeds for a polynomial through the least frequency
+_NEAR = 1e-2  # half the relative interval of speeds of the polynomial for the least frequency
 _LARGEST_ANGLE = 6.0  # largest angle of the tip to which branches are followed [rad]
 
 
@@ -31,7 +31,7 @@ def critical_speed(beam: Elastica, pieces: int = 2, nodes: int = NODES) -> float
 
 
 def _pitchfork(equations: Collocation) -> tuple[float, np.ndarray]:
-    """Compute gamma^2 and the mode, with the tip's angle 1; the stiffness is linear in gamma^2."""
+    """Compute gamma^2 at buckling, and the buckling mode with a tip angle of 1."""
     if not equations.beam.is_symmetric:
         raise NotFound("the straight beam is no equilibrium")
     still = np.zeros(equations.size)
@@ -45,11 +45,11 @@ def _pitchfork(equations: Collocation) -> tuple[float, np.ndarray]:
     return 1 / float(found.max()), mode / (equations.tip_angle @ mode)
 
 
-# One equilibrium for each angle of the tip, the speed unknown ---------------------------------------
+# Equilibria at given angles of the tip, with unknown speed -------------------------------------------
 
 
 def at_tip_angle(start: State, angle: float) -> State:
-    """Find the equilibrium with an angle of the tip, near the start."""
+    """Find the equilibrium with a given angle of the tip [rad], near a start."""
     equations, q, square, before = start.equations, start.q, start.square, np.inf
     for _ in range(_NEWTON):
         residual = np.append(equations.residual(q, square), equations.tip_angle @ q - angle)
@@ -72,13 +72,13 @@ def _bordered(equations: Collocation, q: np.ndarray, square: float) -> np.ndarra
 
 
 def _tangent(state: State) -> np.ndarray:
-    """Compute the change of q and of gamma^2 per angle of the tip."""
+    """Compute the derivatives of the unknowns q and of gamma^2 by the angle of the tip."""
     right = np.append(np.zeros(state.q.size), 1.0)
     return np.linalg.solve(_bordered(state.equations, state.q, state.square), right)
 
 
 def followed(state: State, angle: float) -> State:
-    """Follow the branch of an equilibrium to another angle of the tip."""
+    """Follow the branch of an equilibrium to another angle of the tip [rad]."""
     count = max(1, int(np.ceil(abs(angle - state.tip_angle) / _STEP)))
     for goal in np.linspace(state.tip_angle, angle, count + 1)[1:]:
         step = (goal - state.tip_angle) * _tangent(state)
@@ -88,7 +88,7 @@ def followed(state: State, angle: float) -> State:
 
 
 class Branch:
-    """The equilibria of a branch by the angle of the tip; each is followed from the nearest one known."""
+    """Equilibria of a branch as a function of the tip angle, each found from the nearest known one."""
 
     def __init__(self, start: State) -> None:
         self.known = [start]
@@ -99,15 +99,15 @@ class Branch:
         return self.known[-1]
 
     def slope(self, angle: float) -> float:
-        """Compute the change of gamma^2 per angle of the tip."""
+        """Compute the derivative of gamma^2 by the angle of the tip."""
         return float(_tangent(self.at(angle))[-1])
 
 
 def branch_at(beam: Elastica, angle: float, pieces: int = 2, nodes: int = NODES, stages: int = 20) -> State:
-    """Find the equilibrium with an angle of the tip on the branch that comes from the pitchfork.
+    """Find the equilibrium with a given tip angle on the branch that starts at the pitchfork.
 
-    In a scene that is not symmetric it is reached from the symmetric one, the same with the axis of rotation
-    on the line of the beam, by moving the axis away at the same angle of the tip.
+    For a scene that is not symmetric, the search starts from a symmetric scene, with the axis of rotation
+    on the beam's line, and moves the axis to its position at constant tip angle.
     """
     aligned = replace(beam, centre=(beam.centre[0], 0.0))
     equations = Collocation(aligned, pieces, nodes)
@@ -123,14 +123,14 @@ def branch_at(beam: Elastica, angle: float, pieces: int = 2, nodes: int = NODES,
 
 
 def fold(start: State) -> State:
-    """Find the equilibrium of least speed along the branch through the start."""
+    """Find the equilibrium of least speed along the branch through a start."""
     branch, angle = Branch(start), start.tip_angle
     end = 0.0 if branch.slope(angle) > 0 else _limit(start)
     return branch.at(_root(branch.slope, angle, end))
 
 
 def fold_beside(beam: Elastica, side: int) -> State:
-    """Find the fold of the branch on one side."""
+    """Find the fold of the branch bent to one side."""
     for angle in _ENTRIES:
         try:
             return fold(branch_at(beam, side * angle))
@@ -140,7 +140,7 @@ def fold_beside(beam: Elastica, side: int) -> State:
 
 
 def equilibria_bent_to(beam: Elastica, gamma: float, side: int) -> list[State]:
-    """Find the equilibria beside the branch from rest at one speed, by ascending angle of the tip.
+    """Find the equilibria not on the branch from rest at one speed, by ascending angle of the tip.
 
     A symmetric scene has one on either side past its pitchfork; any other has two past its fold, between the
     straight beam, which the inner one approaches at high speeds, and the beam coiled up.
@@ -153,7 +153,7 @@ def equilibria_bent_to(beam: Elastica, gamma: float, side: int) -> list[State]:
 
 
 def _at_speed(branch: Branch, gamma: float, end: float) -> State:
-    """Find the equilibrium at a speed, between the start of the branch and an angle of the tip."""
+    """Find the equilibrium at a speed on a branch, up to an angle of the tip."""
 
     def excess(angle: float) -> float:
         return branch.at(angle).square - gamma**2
@@ -163,7 +163,7 @@ def _at_speed(branch: Branch, gamma: float, end: float) -> State:
 
 
 def bent(beam: Elastica, gamma: float, side: int = 1) -> State:
-    """Find the stable equilibrium of the branch beside that from rest: its outermost at this speed."""
+    """Find the stable equilibrium not on the branch from rest: the one bent farthest at this speed."""
     found = equilibria_bent_to(beam, gamma, side)
     if not found:
         raise NotFound(f"no bent equilibrium at gamma = {gamma:.6g}")
@@ -175,7 +175,7 @@ def _limit(state: State) -> float:
 
 
 def _root(function: Callable[[float], float], start: float, end: float) -> float:
-    """Find the first zero between the start and short of the end."""
+    """Find the first zero of a function between start and end."""
     count = int(np.ceil(abs(end - start) / _STEP)) + 1
     angles = np.linspace(start, end, count + 1)[:-1].tolist()
     before = function(start)
@@ -193,7 +193,7 @@ def _root(function: Callable[[float], float], start: float, end: float) -> float
 def slowest(beam: Elastica, low: float, high: float, pieces: int = 2) -> tuple[float, float]:
     """Find the gamma at which the first frequency on the branch from rest is least, and the frequency.
 
-    Brent's method finds it to half the digits; a polynomial through its neighbourhood the others.
+    Brent's method gives half of the digits, a polynomial through neighbouring speeds the others.
     """
 
     def first(gamma: float) -> float:

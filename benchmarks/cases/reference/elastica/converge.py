@@ -1,4 +1,4 @@
-"""Equilibrium and frequencies on finer and finer meshes, and how far two meshes differ."""
+"""Equilibrium and frequencies on increasingly fine meshes, and the difference of the last two meshes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from benchmarks.cases.reference.elastica.equilibrium import State, on
 from benchmarks.cases.reference.elastica.vibration import Complexes, exponents, frequencies, growth
 
 _NODES = 16
-_FINEST = 24  # most pieces of each interval between breakpoints
+_FINEST = 24  # largest number of pieces of each interval between breakpoints
 
 
 @dataclass(frozen=True)
@@ -21,15 +21,15 @@ class Answer:
     Parameters
     ----------
     tip
-        Place of the tip from the root, along the beam at rest and along the direction of bending.
+        Position of the tip relative to the root, along the beam at rest and along the direction of bending.
     frequency
-        The lowest lambda, nan for one that diverges.
+        The lowest frequencies lambda; nan for a mode that diverges.
     exponent
-        s of the lowest ones.
+        Exponents s of the lowest modes.
     growth
         Largest real part of s: 0 is stable.
     change
-        Of tip and exponents between the last two meshes, relative to 1 and to the exponents.
+        Change of tip and exponents between the last two meshes, relative to 1 and to the exponents.
     """
 
     tip: np.ndarray
@@ -40,7 +40,7 @@ class Answer:
 
 
 def converged(state: State, count: int = 3, rtol: float = 1e-12) -> Answer:
-    """Return the answer on the first mesh whose refinement changes nothing by more than `rtol`."""
+    """Return the answer on the first mesh whose refinement changes no result by more than `rtol`."""
     beam, pieces, change = state.equations.beam, 2, np.inf
     before = _answer(on(Collocation(beam, 1, _NODES), state), count, change)
     while pieces <= _FINEST:

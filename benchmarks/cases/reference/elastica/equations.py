@@ -20,10 +20,10 @@ class Shape:
 
     cos: np.ndarray
     sin: np.ndarray
-    place: np.ndarray  # (2, n + 1), from the axis of rotation
-    force: np.ndarray  # (2, n + 1), over gamma^2: H, V, at rest in the rotating frame
-    moment: np.ndarray  # (n + 1,), over gamma^2: at the root, then at the nodes
-    tip: np.ndarray  # (2,), from the root
+    place: np.ndarray  # (2, n + 1), positions from the axis of rotation
+    force: np.ndarray  # (2, n + 1), forces H, V over gamma^2, at rest in the rotating frame
+    moment: np.ndarray  # (n + 1,), bending moments over gamma^2: at the root, then at the nodes
+    tip: np.ndarray  # (2,), position of the tip from the root
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class Collocation:
         ahead, beyond = _from_root(mesh), _to_tip(mesh)
         one, zero = np.ones((x.size, 1)), np.zeros((x.size, 1))
         mass = beam.mass(x)
-        # From curvatures to slopes, from cos and sin to places, from m a to forces, from those to moments.
+        # Matrices that give slopes from curvatures, positions from cos and sin, forces from m a, and moments.
         self.turn = np.block([[one, ahead], [np.ones((1, 1)), self.weights[None]]])
         self.reach = np.block([[ahead, zero], [self.weights[None], np.full((1, 1), body.offset)]])
         self.outboard = np.block([[beyond * mass, body.mass * one], [0 * zero.T, np.full((1, 1), body.mass)]])
@@ -69,7 +69,7 @@ class Collocation:
 
     @cached_property
     def tip_angle(self) -> np.ndarray:
-        """Row of theta(1) over the unknowns q."""
+        """Derivative of the tip's slope theta(1) by the unknowns q."""
         return self.turn[-1, self.free]
 
     def shape(self, q: np.ndarray) -> Shape:
@@ -84,15 +84,15 @@ class Collocation:
         return Shape(cos, sin, seen, force, moment, tip)
 
     def moment(self, q: np.ndarray) -> np.ndarray:
-        """Compute the moment of centrifugal forces over gamma^2, beside each unknown."""
+        """Compute the moment of centrifugal forces over gamma^2, at the position of each unknown."""
         return self.shape(q).moment[self.free]
 
     def residual(self, q: np.ndarray, square: float) -> np.ndarray:
-        """Compute B kappa - M at a squared gamma."""
+        """Compute the residual B kappa - M at a given gamma^2."""
         return self.bending[self.free] * q - square * self.moment(q)
 
     def stiffness(self, q: np.ndarray, square: float) -> np.ndarray:
-        """Compute the derivative of the residual."""
+        """Compute the derivative of the residual by the unknowns q."""
         shape, turn = self.shape(q), self.turn
         along, across = self._moves(shape)
         force = self.outboard @ along, self.beam.in_plane * self.outboard @ across
@@ -116,7 +116,7 @@ class Collocation:
         )
 
     def _moves(self, shape: Shape) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the changes of X and Y by those of the unknowns."""
+        """Compute the derivatives of positions X and Y by the unknowns q."""
         return -self.reach @ (shape.sin[:, None] * self.turn), self.reach @ (shape.cos[:, None] * self.turn)
 
     def _moment_of(self, shape: Shape, horizontal: np.ndarray, vertical: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Equilibria: Newton's method, and continuation from rest in the speed."""
+"""Equilibria of the elastica: Newton's method, and continuation in speed from rest."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ import numpy as np
 from benchmarks.cases.reference.elastica.beam import Elastica
 from benchmarks.cases.reference.elastica.equations import NODES, Collocation
 
-_TOLERANCE = 3e-15  # tolerance of curvatures, over the largest of them and 1
-_SETTLED = 1e-11  # change of curvatures that may be rounding
+_TOLERANCE = 3e-15  # tolerance of curvatures, over the larger of 1 and the largest curvature
+_SETTLED = 1e-11  # change of curvatures below which it may be rounding
 _STEPS = 30
 _LARGEST_TURN = 0.15  # largest change of a slope in one step of continuation [rad]
-_LARGEST_CORRECTION = 0.03  # largest distance of a slope from where the tangent leads [rad]
+_LARGEST_CORRECTION = 0.03  # largest difference of a slope from its prediction along the tangent [rad]
 _LEAST_STEP = 1e-9
 
 
 class NotFound(ArithmeticError):
-    """Raised if there is no such equilibrium near the start."""
+    """Raised if no equilibrium is found near the start."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,9 @@ class State:
     Parameters
     ----------
     equations
-        The collocated equations it satisfies.
+        The collocated equations that the equilibrium satisfies.
     q
-        Their unknowns.
+        Values of the unknowns of the equations.
     square
         gamma^2.
     """
@@ -45,7 +45,7 @@ class State:
 
     @property
     def tip(self) -> np.ndarray:
-        """Place of the tip from the root, along the beam at rest and along the direction of bending."""
+        """Position of the tip from the root, along the beam at rest and along the direction of bending."""
         return self.equations.shape(self.q).tip
 
     @property
@@ -58,7 +58,7 @@ class State:
 
     @property
     def downhill(self) -> int:
-        """Number of directions in which the energy falls, which changes at folds and pitchforks.
+        """Number of negative eigenvalues of the stiffness, which changes at folds and pitchforks.
 
         The stiffness is the second derivative of the energy, but for the weights of the nodes.
         """
@@ -99,10 +99,10 @@ def _interpolated(state: State, x: np.ndarray) -> np.ndarray:
 
 
 def from_rest(beam: Elastica, gamma: float, pieces: int = 3, nodes: int = NODES) -> State:
-    """Continue the equilibrium from the straight beam at rest in gamma^2.
+    """Follow the equilibrium from the straight beam at rest, in steps of gamma^2.
 
-    A step is halved until Newton's method ends close to where the tangent led, and the energy falls in as
-    many directions as before; only the straight beam of a symmetric scene may pass its pitchfork.
+    A step is halved until Newton's method converges near the prediction by the tangent, and the number of
+    negative eigenvalues is unchanged; only the straight beam of a symmetric scene may pass its pitchfork.
     """
     equations = Collocation(beam, pieces, nodes)
     state = State(equations, np.zeros(equations.size), 0.0)
@@ -122,7 +122,7 @@ def from_rest(beam: Elastica, gamma: float, pieces: int = 3, nodes: int = NODES)
 
 
 def _advanced(state: State, step: float) -> State:
-    """Return the next equilibrium, if it is clearly one of the same branch."""
+    """Return the next equilibrium, if it clearly belongs to the same branch."""
     equations = state.equations
     tangent = np.linalg.solve(state.stiffness, equations.moment(state.q))
     turn = equations.turn[:, equations.free]

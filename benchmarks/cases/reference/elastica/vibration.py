@@ -12,7 +12,7 @@ from benchmarks.cases.reference.elastica.equilibrium import State
 
 Complexes = np.ndarray[Any, np.dtype[np.complex128]]
 
-_STILL = 1e-7  # real part over modulus that is rounding: s^2 is real but for 1e-14
+_STILL = 1e-7  # ratio of real part to modulus below which the real part is rounding: s^2 is real to 1e-14
 _SWEEPS = 4
 
 
@@ -32,7 +32,7 @@ def exponents(state: State, count: int = 3) -> Complexes:
 
 
 def _one_of_each_pair(inverse: Complexes) -> np.ndarray:
-    """Return indices by falling modulus of 1/s, one of each pair; Im s > 0 means Im 1/s < 0."""
+    """Return indices by descending modulus of 1/s, one for each pair +-s; Im s > 0 means Im 1/s < 0."""
     least = _STILL * np.abs(inverse)
     upper = (inverse.imag < -least) | ((np.abs(inverse.imag) <= least) & (inverse.real > 0))
     chosen = np.flatnonzero(upper)
@@ -58,7 +58,7 @@ def frequencies(state: State, count: int = 3) -> np.ndarray:
 
 
 def growth(state: State, count: int = 8) -> float:
-    """Compute the largest real part of the lowest exponents, of either sign of s; 0 means stable."""
+    """Compute the largest real part of the lowest exponents +-s; 0 means stable."""
     found = exponents(state, count)
     real = np.where(np.abs(found.real) > _STILL * np.abs(found), np.abs(found.real), 0.0)
     return float(real.max())

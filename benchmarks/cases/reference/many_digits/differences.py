@@ -15,19 +15,19 @@ from benchmarks.cases.reference.many_digits.energies import Space
 from benchmarks.cases.reference.many_digits.fixed import DIGITS
 from benchmarks.cases.reference.many_digits.numbers import Numbers
 
-_BESIDE = mpf(10) ** -18  # change of a number in a difference, over its size
-_MESHES = (  # numbers of functions on each segment, and of its pieces
+_BESIDE = mpf(10) ** -18  # change of a number for a difference quotient, relative to its magnitude
+_MESHES = (  # numbers of trial functions on each segment, and of pieces of each segment
     (10, 1), (14, 1), (20, 1), (28, 1), (40, 1), (28, 2), (40, 2), (28, 4),
 )  # fmt: skip
-# Numbers on which the modes at rest depend.
+# Numbers of a scene that change the modes at rest.
 _AT_REST = "beam.", "mount.root_stiffness", "mount.second_root_stiffness"
-_LARGEST = 700  # most functions of all fields together
+_LARGEST = 700  # largest number of trial functions of all fields together
 _RTOL = 1e-11  # largest change of frequencies by a finer mesh
 
 
 @dataclass(frozen=True)
 class Number:
-    """A number: its name in scene files, value and size, which is not 0."""
+    """A number of a scene: name in scene files, value, and nonzero typical magnitude."""
 
     name: str
     value: float
@@ -37,7 +37,7 @@ class Number:
 def frequency_derivatives(
     scene: bd.Scene, speed: float, modes: int, numbers: Sequence[Number]
 ) -> tuple[list[float], np.ndarray, np.ndarray]:
-    """Compute frequencies [Hz], derivatives [Hz / unit of each number], and their change by another mesh.
+    """Compute frequencies [Hz], derivatives [Hz / unit of each number], and the change on another mesh.
 
     Arrays have the shape (numbers, modes).
     """
@@ -49,7 +49,7 @@ def frequency_derivatives(
 
 
 def _meshes(scene: bd.Scene, speed: float, modes: int) -> tuple[Pencil, Pencil]:
-    """Return the first two meshes between which the frequencies settle."""
+    """Return the first two successive meshes whose frequencies agree."""
     before: tuple[Pencil, np.ndarray] | None = None
     for functions, pieces in _MESHES:
         pencil = Pencil.of(Numbers(scene, speed, functions, pieces))
@@ -72,7 +72,7 @@ def _rough(pencil: Pencil, modes: int) -> np.ndarray:
 
 
 def _derivatives(pencil: Pencil, modes: int, of: Sequence[Number]) -> tuple[list[Mode], np.ndarray]:
-    """Compute modes of a scene, and the differences of their frequencies."""
+    """Compute modes of a scene, and derivatives of their frequencies by differences."""
     if pencil.numbers.ratios(1):
         pencil = replace(pencil, damping=AtRest.of(pencil))
     found = [replace(mode, s=pencil.quotient(mode)) for mode in modes_of(pencil, modes)]
@@ -81,7 +81,7 @@ def _derivatives(pencil: Pencil, modes: int, of: Sequence[Number]) -> tuple[list
 
 
 def _by_number(pencil: Pencil, modes: Sequence[Mode], number: Number) -> list[float]:
-    """Compute differences by a number; eigenvalues beside have an error of the square of the change."""
+    """Compute difference quotients by a number; changed eigenvalues have an error of second order."""
     change = _BESIDE * mpf(number.size)
     beside = _changed(pencil, number, change)
     return [float(mp.im(beside.quotient(mode) - mode.s) / change / (2 * mp.pi)) for mode in modes]

@@ -20,9 +20,9 @@ from benchmarks.cases.reference.many_digits.fixed import BITS, dot, fixed, from_
 from benchmarks.cases.reference.many_digits.numbers import Numbers
 
 DIGITS = 40
-_STEPS = 12  # most steps of refinement
-_LOST = 1e-13  # size of eigenvalues, over the largest, that double precision loses
-_OF_DOUBLES = 3  # number of steps that each double the digits of the modes at rest
+_STEPS = 12  # largest number of refinement steps
+_LOST = 1e-13  # eigenvalue, relative to the largest, below which double precision has no correct digits
+_OF_DOUBLES = 3  # number of steps for modes at rest, each of which doubles the digits
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Pencil:
         return self.space.collect(form.times(quantities)) if form.parts else np.zeros_like(v)
 
     def _summed(self, mass: Any, still: Any, spin: Any, gyroscopic: Any, damper: Any) -> tuple[Any, Any, Any]:
-        """Compute the factors of s^2, s and 1 from those of the forms."""
+        """Compute the factors of s^2, s and 1 in P(s) v from the products of each form with v."""
         n = self.numbers
         rates = _scaled(gyroscopic, n.omega) + _scaled(mass, n.mass_factor())
         rates = rates + _scaled(still, n.stiffness_factor()) + _scaled(damper, n.tip_damper())
@@ -61,7 +61,7 @@ class Pencil:
     def quotient(self, mode: Mode) -> mpc:
         """Compute the root of left^T P(s) right near s [1/s] of a mode with nearly the vectors of this scene.
 
-        Its error is of the square of theirs.
+        The error of the root is quadratic in the error of the vectors.
         """
         e, tau = self.energies, self.numbers.time
         left, right = self.space.known(mode.left), self.space.known(mode.right)
@@ -80,7 +80,7 @@ class Pencil:
 
 
 def _between(form: Form, left: Rows, right: Rows) -> np.ndarray:
-    """Compute a form of the real and imaginary parts of two vectors, shape (2, 2)."""
+    """Compute a bilinear form of the real and imaginary parts of two vectors: shape (2, 2)."""
     found = np.zeros((2, 2), dtype=object)
     for key, values in form.times(right).items():
         found = found + dot(left[key].T, values)
@@ -110,7 +110,7 @@ class AtRest:
 
     @classmethod
     def of(cls, pencil: Pencil, near: np.ndarray | None = None) -> AtRest:
-        """Compute all modes at rest from approximate ones: of double precision, or of a scene close by."""
+        """Compute all modes at rest from approximate ones: in double precision, or of a similar scene."""
         M, K = (_dense(pencil, form) for form in (pencil.energies.mass, pencil.energies.still))
         X = _modes_of_doubles(M, K) if near is None else near
         for _ in range(_OF_DOUBLES if near is None else 1):
@@ -184,7 +184,7 @@ def modes_of(pencil: Pencil, count: int) -> list[Mode]:
 
 @dataclass(frozen=True)
 class _Doubles:
-    """The matrices in double precision, by powers of s."""
+    """The matrices of P(s) in double precision, by powers of s."""
 
     M: np.ndarray
     D: np.ndarray
@@ -214,7 +214,7 @@ class _Doubles:
             inverse, V = scipy.linalg.eigh(self.M, self.K + shift * self.M)
             squares = 1 / inverse[::-1] - shift
             return [(complex(0, np.sqrt(squares[k])), V[:, -1 - k].astype(complex)) for k in range(count)]
-        inverse, X = scipy.linalg.eigh(self.M, self.rest + self.M)  # few modes at rest: a small companion
+        inverse, X = scipy.linalg.eigh(self.M, self.rest + self.M)  # few modes: a small companion matrix
         kept = np.flatnonzero(inverse > _LOST * inverse[-1])[-60:]
         X = X[:, kept] / np.sqrt(inverse[kept])
         D, K = X.T @ self.D @ X, X.T @ self.K @ X
@@ -246,7 +246,7 @@ def _is_even(doubles: _Doubles) -> bool:
 
 
 def _bordered(doubles: _Doubles, s: complex, v: np.ndarray, scale: np.ndarray) -> tuple:
-    """Factorize the bordered matrix, in scaled coordinates of unit vectors."""
+    """Factorize the bordered matrix [P, P' v; l, 0], in scaled coordinates."""
     P = doubles.at(s) * np.outer(scale, scale)
     x = v / scale
     x = x / np.linalg.norm(x)
@@ -268,7 +268,7 @@ def _converged_in_doubles(doubles: _Doubles, s: complex, v: np.ndarray, scale: n
 def _corrected(
     pencil: Pencil, doubles: _Doubles, s: mpc, v: np.ndarray, scale: np.ndarray
 ) -> tuple[mpc, np.ndarray]:
-    """Correct a mode by Newton's method with exact residuals and these factors."""
+    """Correct a mode by Newton's method, with exact residuals and factors in double precision."""
     factors, weight, _ = _bordered(doubles, complex(s), v, scale)
     vector, before = from_complex(v), mp.inf
     for _ in range(_STEPS):
@@ -277,7 +277,7 @@ def _corrected(
         size = max(abs(int(value)) for value in residual.flat)
         if size == 0:
             break
-        shift = max(size.bit_length() - 60, 0)  # only the leading digits of the residual count
+        shift = max(size.bit_length() - 60, 0)  # only the leading digits of the residual are used
         leading = np.array([[int(x) >> shift for x in row] for row in residual], dtype=float)
         change = scipy.linalg.lu_solve(factors, np.append(-scale * (leading[:, 0] + 1j * leading[:, 1]), 0))
         vector = vector + _shifted(scale * change[:-1], shift)
@@ -294,7 +294,7 @@ def _corrected(
 
 
 def _left_in_doubles(doubles: _Doubles, s: complex, scale: np.ndarray) -> np.ndarray:
-    """Compute the left vector in double precision; quotients with an exact right one do not need more."""
+    """Compute the left eigenvector in double precision, which suffices with an exact right one."""
     P = (doubles.at(s) * np.outer(scale, scale)).T
     return scale * scipy.linalg.svd(P)[2][-1].conj()
 
@@ -303,12 +303,12 @@ def _left_in_doubles(doubles: _Doubles, s: complex, scale: np.ndarray) -> np.nda
 
 
 def from_complex(v: np.ndarray) -> np.ndarray:
-    """Return columns of the real and the imaginary part."""
+    """Return columns of the real and the imaginary part of complex numbers."""
     return np.stack([from_float(v.real), from_float(v.imag)], axis=1)
 
 
 def _shifted(v: np.ndarray, shift: int) -> np.ndarray:
-    """Return double-precision numbers in units of 2^(shift - BITS), as columns."""
+    """Convert columns of whole numbers to double precision, in units of 2^(shift - BITS)."""
     both = np.stack([v.real, v.imag], axis=1)
     flat = [int(mp.ldexp(mpf(float(x)), shift)) for x in both.flat]
     return np.array(flat, dtype=object).reshape(both.shape)
@@ -326,7 +326,7 @@ def _complex_times(v: np.ndarray, factor: mpc) -> np.ndarray:
 
 
 def _inner(left: np.ndarray, right: np.ndarray) -> mpc:
-    """Compute left^T right, without conjugation."""
+    """Compute left^T right of two complex vectors, without conjugation."""
     return _without_conjugate(dot(left.T, right))
 
 

@@ -1,4 +1,4 @@
-"""The forms of motion and stored energy: what multiplies each pair of kinematic quantities at each point.
+"""Bilinear forms of kinetic and stored energy: coefficients of pairs of kinematic quantities at each point.
 
 Quantities are named by field, plane and derivative: ("b", 0, 1) is the slope of bending along e1, "s" the
 deflection by shear, "e" the stretch.  The notation of the comments is that of `docs/conventions.md`.
@@ -35,13 +35,13 @@ class Form:
                 self.parts[a, b] = self.parts.get((a, b), 0) + factors
 
     def add_at(self, point: int, left: Iterable[Quantity], right: Iterable[Quantity], factor: mpf) -> None:
-        """Add a factor at one point."""
+        """Add a factor of two quantities at one point of the mesh."""
         factors = np.zeros(self.points, dtype=object)
         factors[point] = fixed([factor])[0]
         self.add(left, right, factors)
 
     def times(self, quantities: Rows) -> Rows:
-        """Compute the factors of each quantity of the other vectors, shape (points, ...)."""
+        """Multiply right vectors' quantities by coefficients: factors of left quantities (points, ...)."""
         found: Rows = {}
         for (a, b), factors in self.parts.items():
             shape = (-1, *[1] * (quantities[b].ndim - 1))
@@ -51,7 +51,7 @@ class Form:
 
 @dataclass(frozen=True)
 class Space:
-    """Trial functions of all fields, by blocks.
+    """Trial functions of all fields, in blocks by field.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Space:
 
     @cached_property
     def blocks(self) -> dict[tuple[str, int], slice]:
-        """Places of the functions of each field among all functions."""
+        """Slice of each field's functions among all functions."""
         starts, found = 0, {}
         for kind, i in self.fields:
             size = self.rows[kind, i, 0].shape[1]
@@ -93,13 +93,13 @@ class Space:
         return max(block.stop for block in self.blocks.values())
 
     def quantities(self, vectors: np.ndarray) -> Rows:
-        """Compute the quantities of vectors (size, k), each of shape (points, k)."""
+        """Compute the kinematic quantities of k coordinate vectors (size, k): shape (points, k) each."""
         return {key: dot(rows, vectors[self.blocks[key[:2]]]) for key, rows in self.rows.items()}
 
     def known(self, vectors: np.ndarray) -> Rows:
-        """Return the quantities of vectors that are asked for repeatedly, which are those of the modes."""
+        """Return the cached quantities of vectors that are used repeatedly (those of the modes)."""
         if id(vectors) not in self._known:
-            # Kept, so that no other object gets the id.
+            # The vectors are kept, so that no other object gets their id.
             self._known[id(vectors)] = vectors, self.quantities(vectors)
         return self._known[id(vectors)][1]
 
@@ -108,7 +108,7 @@ class Space:
         return {}
 
     def collect(self, factors: Rows) -> np.ndarray:
-        """Collect the vectors (size, k) of a form from its factors of the other vectors' quantities."""
+        """Sum up a form's products with vectors, (size, k), from the factors of each quantity."""
         width = next(iter(factors.values())).shape[1]
         found = np.zeros((self.size, width), dtype=object)
         for key, values in factors.items():
@@ -133,7 +133,7 @@ class Space:
 
 @dataclass(frozen=True)
 class Energies:
-    """Forms of mass, stiffness at rest, spin over squared speed, gyroscopic over speed, damper over c."""
+    """Forms of mass, stiffness at rest, spin (per speed squared), gyroscopic terms (per speed), damper."""
 
     mass: Form
     still: Form
@@ -174,10 +174,10 @@ class _Builder:
             self.damper.add_at(self.last, self.u(i), self.u(i), mpf(1))
         return Energies(*self.forms)
 
-    # quantities
+    # kinematic quantities
 
     def u(self, i: int, order: int = 0) -> list[tuple[str, int, int]]:
-        """Return the quantities that add up to a deflection, or a slope of the beam's line."""
+        """Return the quantities that add up to a deflection, or to a slope of the beam's axis."""
         return [(kind, i, order) for kind in ("b", "s")[: 1 + self.shears]]
 
     def over(self, values: np.ndarray) -> np.ndarray:
@@ -187,14 +187,14 @@ class _Builder:
     # terms
 
     def _translation(self) -> None:
-        """Add all mass on the axis: rho A and point masses."""
+        """Add the forms of all mass on the axis: mass per length and point masses."""
         masses = self.over(self.n.mass)
         for at, mass in self.n.point_masses():
             masses[at] += fixed([mass])[0]
         self._moving(masses, self.u, [("e", 0, 0)] if self.stretches else [])
 
     def _moving(self, masses: np.ndarray, u: Side, stretch: list[Quantity]) -> None:
-        """Add mass that moves with deflections u(i) and stretch."""
+        """Add the forms of mass that moves with deflections u(i) and stretch."""
         self._pair(masses, u, u)
         self._with_stretch(masses, u, stretch)
         self._stretching(masses, stretch)
@@ -235,7 +235,7 @@ class _Builder:
             self.still.add([("e", 0, 1)], [("e", 0, 1)], self.over(axial))
 
     def _tension(self) -> None:
-        """Add the tension C^2 N_B - C cos(phi) r N_A by all mass outboard."""
+        """Add the stiffness by the tension C^2 N_B - C cos(phi) r N_A of all mass outboard."""
         mesh = self.n.mesh
         at = fixed(mesh.places)
         masses = fixed(self.n.mass)
@@ -310,7 +310,7 @@ class _Builder:
         self.spin.add(stretch, stretch, -_scaled(masses, self.C**2))
 
     def _with_stretch(self, masses: np.ndarray, u: Side, stretch: list[Quantity]) -> None:
-        """Add what couples deflections with stretch: the Coriolis force, and precone."""
+        """Add the coupling of deflections with stretch, by the Coriolis force and by precone."""
         for i in self.planes:
             self.gyroscopic.add(u(i), stretch, _scaled(masses, -2 * self.d[i] * self.C))
             self.gyroscopic.add(stretch, u(i), _scaled(masses, 2 * self.d[i] * self.C))

@@ -14,23 +14,23 @@ from mpmath import mp, mpf
 
 from benchmarks.cases.reference.many_digits.fixed import DIGITS, ONE, dot, fixed, times
 
-_MORE = 8  # Gauss points beyond the number of functions, as properties vary, too
+_MORE = 8  # number of Gauss points beyond the number of functions, because properties vary, too
 
 
 @dataclass(frozen=True)
 class Rule:
-    """Gauss points of [-1, 1] and its right end, for polynomials of degree < n on a segment.
+    """Gauss points of [-1, 1] followed by the end 1, for polynomials of degree < n on a segment.
 
     Parameters
     ----------
     t : list of mpf
         The q points, then 1.
     weights : list of mpf
-        Their weights, then 0.
+        Quadrature weights, then 0.
     tables : tuple of ndarray, shape (q + 1, n)
         P_k, its integral from -1, and the integral of that.
     outboard : ndarray, shape (q + 1, q)
-        Integral from a point to 1 of what has given values at the q points.
+        Integral from each point to 1 of the polynomial with given values at the q points.
     """
 
     t: list[mpf]
@@ -96,14 +96,14 @@ def _second_integral(row: list[mpf], k: int) -> mpf:
 
 @dataclass(frozen=True)
 class Mesh:
-    """Points of all segments: the root, then of each segment its Gauss points and its right end.
+    """Points of all segments: the root, then the Gauss points and the right end of each segment.
 
     Parameters
     ----------
     ends : list of mpf
         Ends of the segments x/L, from 0 to 1.
     functions : int
-        Polynomials on each segment.
+        Number of polynomials on each segment.
     """
 
     ends: list[mpf]
@@ -153,7 +153,7 @@ class Mesh:
         return found
 
     def once(self) -> tuple[np.ndarray, np.ndarray]:
-        """Compute values and first derivatives of functions given by the latter, (points, segments n)."""
+        """Compute values and derivatives of functions with polynomial derivative: (points, segments n)."""
         slope, value = self._empty(1), self._empty(1)
         size, n = len(self.rule.t), self.functions
         for k, h in enumerate(self.lengths):
@@ -165,9 +165,9 @@ class Mesh:
         return value, slope
 
     def twice(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute values and two derivatives of functions.
+        """Compute values and two derivatives of functions with polynomial second derivative.
 
-        The last is x/L, shape (points, segments n + 1).
+        The last function is x/L; shape (points, segments n + 1).
         """
         bend, slope, value = self._empty(), self._empty(), self._empty()
         size, n, places = len(self.rule.t), self.functions, fixed(self.places)

@@ -19,8 +19,8 @@ import beamdyn as bd
 from beamdyn.scene.profile import Profile
 from benchmarks.cases.reference.many_digits.mesh import Mesh
 
-_QUARTER = 2e-16  # size of cosines below which a quarter turn is meant
-_SAME = 1e-12  # difference of x/L below which two points are one
+_QUARTER = 2e-16  # cosine below which the angle counts as a quarter turn
+_SAME = 1e-12  # difference of x/L below which two points are the same
 # Powers of the sides and of the material of a rectangular section in its properties.
 _AREA = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
 _EASY, _STIFF = ("bending_stiffness", "rotary_inertia"), ("second_bending_stiffness", "second_rotary_inertia")
@@ -49,7 +49,7 @@ class Numbers:
     name : str
         Name of the number that is changed; none if empty.
     value, change : mpf
-        Its value and the change, in its unit.
+        Value and change of that number, in the number's unit.
     """
 
     scene: bd.Scene
@@ -61,7 +61,7 @@ class Numbers:
     change: mpf = mpf(0)
 
     def of(self, name: str, value: float) -> mpf:
-        """Return a number, with the change if it is the one that changes."""
+        """Return the value of a number, with the change added if this number is changed."""
         return mpf(value) + (self.change if name == self.name else 0)
 
     @cached_property
@@ -70,12 +70,12 @@ class Numbers:
 
     @cached_property
     def root_mass(self) -> mpf:
-        """Unit of mass per length."""
+        """Unit of mass per length: that at the root."""
         return self._root("mass_per_length")
 
     @cached_property
     def root_stiffness(self) -> mpf:
-        """Unit of bending stiffness."""
+        """Unit of bending stiffness: that at the root."""
         return self._root("bending_stiffness")
 
     @cached_property
@@ -85,7 +85,7 @@ class Numbers:
 
     @cached_property
     def omega(self) -> mpf:
-        """Speed in 1 / unit of time."""
+        """Nondimensional speed, in 1 / unit of time."""
         return self.of("speed", self.speed) * self.time
 
     def _root(self, name: str) -> mpf:
@@ -107,7 +107,7 @@ class Numbers:
 
     @cached_property
     def mesh(self) -> Mesh:
-        """Segments between all breakpoints and points, in a number of pieces each."""
+        """Mesh of segments between all breakpoints and points, each divided into pieces."""
         points = [self.place(kind, k) for kind, k in self._points]
         plain = [mpf(xi) for xi in self.scene.modelled_beam.breakpoints]
         ends = sorted([*points, *(xi for xi in plain if all(abs(xi - at) > _SAME for at in points))])
@@ -139,7 +139,7 @@ class Numbers:
         )
 
     def along(self, name: str, unit: mpf) -> np.ndarray | None:
-        """Return a property at the points of the mesh, over a unit; None if it is not modelled."""
+        """Return a property at the points of the mesh, divided by a unit; None if it is not modelled."""
         profile = getattr(self.scene.modelled_beam, name)
         if profile is None:
             return None
@@ -223,14 +223,14 @@ class Numbers:
         }  # fmt: skip
 
     def point_masses(self) -> list[tuple[int, mpf]]:
-        """Return the point of the mesh and the mass of each."""
+        """Return the mesh point and the mass of each point mass."""
         return [
             (self.point("point_mass", k), self.of(f"beam.point_mass[{k}].mass", each.mass) / self._mass_unit)
             for k, each in enumerate(self.scene.beam.point_masses)
         ]
 
     def point_springs(self) -> list[tuple[int, int, mpf]]:
-        """Return the point of the mesh, plane and stiffness of each."""
+        """Return the mesh point, plane and stiffness of each point spring."""
         unit = self.root_stiffness / self.length**3
         return [
             (
@@ -273,7 +273,7 @@ def turned(first: np.ndarray, second: np.ndarray, angle: np.ndarray) -> list[lis
 
 
 def values_at(profile: Profile, mesh: Mesh) -> np.ndarray:
-    """Evaluate a piecewise polynomial at the points of a mesh, each by its segment's polynomial."""
+    """Evaluate a piecewise polynomial at mesh points, each by the polynomial of the point's segment."""
     ends = [float(e) for e in mesh.ends]
     middles = [(a + b) / 2 for a, b in pairwise(ends)]
     parts = np.searchsorted(profile.breakpoints[1:-1], middles, side="right").tolist()

@@ -1,4 +1,4 @@
-"""Frequencies of a rotating beam that bends in two planes, with twist and shear: a second method.
+"""Frequencies of a rotating beam that bends in two planes, with twist and shear, by an independent method.
 
 The differential equations in first-order form, solved by Gauss collocation; nothing is shared with
 `beamdyn`. All quantities are nondimensional: length 1, and for example mass per length and bending

@@ -1,4 +1,4 @@
-"""The beam of the second method, as plain functions and numbers."""
+"""Description of a twisted beam on a hub, by functions of x/L and numbers."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ _ONE, _NONE = constant(1), constant(0)
 
 @dataclass(frozen=True)
 class Body:
-    """A rigid body at the tip, its axes those of the tip's section (angle psi(1)).
+    """A rigid body at the tip, in the axes of the section at the tip (angle psi(1)).
 
     Parameters
     ----------
     mass, offset
         Mass, and distance of its centre of gravity beyond the tip along the normal of the last section.
     inertia, transverse, axial
-        Moments of inertia about the axis of the first bending, about its direction, about the beam axis.
+        Moments of inertia about the axis of the first bending, the direction of that bending, the beam axis.
     """
 
     mass: float = 0.0
@@ -38,7 +38,7 @@ class Body:
     axial: float = 0.0
 
     def moments(self, psi: float) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the kinetic matrix J_t of the rates of p, and the matrix W_t of the spin."""
+        """Compute the inertia matrix J_t of the rotation p, and the matrix W_t by the speed."""
         c, s = math.cos(psi), math.sin(psi)
         about_2 = self.transverse * c**2 + self.inertia * s**2
         about_3 = self.transverse * s**2 + self.inertia * c**2
@@ -63,22 +63,22 @@ class Blade:
     Parameters
     ----------
     mass, stiffness
-        Mass per length; bending stiffnesses.
+        Mass per length; bending stiffnesses in both directions.
     twist
-        Of the section, added to `bending_angle` [rad].
+        Twist of the section, added to `bending_angle` [rad].
     flexibility
-        1/(kappa G A): 0 is a beam that does not shear.
+        Shear flexibility 1/(kappa G A); 0 without shear deformation.
     rotary
         Second moments of mass per length, rho I.
     springs
         Stiffness of the root's rotation springs along e1 and e2: infinite is clamped, 0 a hinge.
     planes
-        1: bends along e1 only, and has no twist.
+        Number of planes; with 1 the beam bends along e1 only, and has no twist.
     precone
         Angle of the axis out of the plane of rotation, towards b3 [rad]; `hub` stays the distance of the root
         from the axis of rotation.
     breakpoints
-        Where properties may jump or have a kink, or where a fast change is to be resolved.
+        Positions x/L where properties may jump, have a kink, or change fast.
     """
 
     mass: Function = _ONE

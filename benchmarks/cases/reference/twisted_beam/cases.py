@@ -1,4 +1,4 @@
-"""Twenty cases for the second method, and the file of their frequencies."""
+"""Twenty cases for collocation of the twisted beam, and the file of their frequencies."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ HEADER = """\
 #   frequency    the four lowest, 12 digits
 """
 
-# Properties, then scenes; each case names what it adds to a uniform clamped beam of two planes.
+# Properties, then scenes; each case lists its additions to a uniform clamped beam with two planes.
 ROUND = {"mass_per_length": [1.0], "bending_stiffness": [1.0], "second_bending_stiffness": [4.0]}
 SHEAR = {"shear_stiffness": [250.0], "second_shear_stiffness": [400.0]}
 ROTARY = {"rotary_inertia": [0.0012], "second_rotary_inertia": [0.0048]}
@@ -192,7 +192,7 @@ def _case(
 
 
 def blade_of(case: Case) -> Blade:
-    """Return the blade of a case; it has the length 1."""
+    """Return the blade of a case, with unit length."""
     stops = case.get("breakpoints", ())
 
     def function(name: str, default: float) -> Function:
@@ -224,12 +224,12 @@ def body_of(tip: Case) -> Body:
 
 
 def _hub(radius: float, setting: float) -> float:
-    """Compute -r cos(phi); 0 at a quarter turn."""
+    """Compute the hub radius -r cos(phi) from radius r and setting angle phi; 0 at a quarter turn."""
     return 0.0 if setting % 180 == 90 else -radius * math.cos(math.radians(setting))
 
 
 def piecewise(coefficients: Sequence[Any], stops: Sequence[float] = ()) -> Function:
-    """Return the polynomial in x/L, or the function of the polynomials between the stops."""
+    """Return a polynomial in x/L, or a piecewise one with given polynomials between stops."""
     if not isinstance(coefficients[0], Sequence):
         return Polynomial(coefficients)
     pieces = [Polynomial(c) for c in coefficients]
@@ -242,7 +242,7 @@ def piecewise(coefficients: Sequence[Any], stops: Sequence[float] = ()) -> Funct
 
 
 def solved(case: Case) -> tuple[Case, float]:
-    """Return the case with its frequencies, and the change of their squares by half the pieces."""
+    """Return the case with frequencies, and the change of their squares on a mesh of half the pieces."""
     squares, change = converged(blade_of(case), case["gamma"], MODES)
     return case | {"frequency": [f"{value:#.12g}" for value in np.sqrt(squares)]}, change
 

@@ -1,4 +1,4 @@
-"""Eigenvalues by collocation at Gauss points."""
+"""Eigenvalues of the twisted beam's equations by collocation at Gauss points."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from benchmarks.cases.reference.twisted_beam.equations import (
 from benchmarks.cases.reference.twisted_beam.mesh import Mesh
 
 _NODES = 12
-_AGREEMENT = 1e-11  # largest relative difference of eigenvalues and quotients
-_FINEST = 64  # most pieces of each interval between breakpoints
+_AGREEMENT = 1e-11  # largest relative difference of eigenvalues and energy quotients
+_FINEST = 64  # largest number of pieces of each interval between breakpoints
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,9 @@ def solve(blade: Blade, gamma: float, count: int = 4, pieces: int = 4, nodes: in
     Parameters
     ----------
     pieces
-        Of each interval between breakpoints.
+        Number of pieces of each interval between breakpoints.
     nodes
-        Gauss points in each piece.
+        Number of Gauss points in each piece.
     """
     mesh = Mesh.make(blade.breakpoints, pieces, nodes)
     section = sections_at(blade, mesh)
@@ -57,9 +57,9 @@ def solve(blade: Blade, gamma: float, count: int = 4, pieces: int = 4, nodes: in
 
 
 def converged(blade: Blade, gamma: float, count: int = 4, rtol: float = 1e-12) -> tuple[np.ndarray, float]:
-    """Return the lowest lambda^2 on the first mesh that changes none by more than `rtol`, and the change.
+    """Return the lowest lambda^2 on the first mesh that changes all by less than `rtol`, and the change.
 
-    They are the quotients of the energies; the eigenvalues themselves agree with them to 1e-11.
+    The values are quotients of energies, which agree with the eigenvalues to 1e-11.
     """
     before, pieces, least = solve(blade, gamma, count, 1).quotients, 2, math.inf
     while pieces <= _FINEST:
@@ -73,7 +73,7 @@ def converged(blade: Blade, gamma: float, count: int = 4, rtol: float = 1e-12) -
 
 
 def _places(mesh: Mesh, planes: int) -> np.ndarray:
-    """Return the places of the states at the nodes among all unknowns: shape (pieces, nodes, 4 d)."""
+    """Return the indices of the states at the nodes among all unknowns: shape (pieces, nodes, 4 d)."""
     size = 4 * planes
     pieces, nodes = mesh.x.shape
     whole = np.arange(pieces * (nodes + 1) * size).reshape(pieces, nodes + 1, size)
@@ -96,7 +96,7 @@ def assemble(
     """Assemble A and B from rates (pieces, nodes, 4 d, 4 d) and conditions at the tip."""
     pieces, nodes = mesh.x.shape
     d = 4 * blade.planes
-    to_nodes = np.vstack([mesh.inner, mesh.weights])  # the last row integrates to the end of the piece
+    to_nodes = np.vstack([mesh.inner, mesh.weights])  # the last row integrates over the whole piece
     identity = np.hstack([np.tile(-np.eye(d), (nodes + 1, 1)), np.eye((nodes + 1) * d)])
     wide = pieces * (nodes + 1) * d + d
     left, right = sp.lil_array((wide, wide)), sp.lil_array((wide, wide))
@@ -121,7 +121,7 @@ def _weighted(weights: np.ndarray, rates: np.ndarray) -> np.ndarray:
 
 
 def _lowest(left: sp.csc_array, right: sp.csc_array, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Compute lowest eigenvalues and vectors by Arnoldi's method on the inverse, shifted off hinges' 0."""
+    """Compute lowest eigenvalues and vectors by inverse Arnoldi iteration, shifted as hinges have 0."""
     shift = -1.0
     inverse = splu(sp.csc_matrix(left - shift * right))
     operator = LinearOperator(left.shape, matvec=lambda y: inverse.solve(right @ y), dtype=float)
@@ -139,7 +139,7 @@ def _lowest(left: sp.csc_array, right: sp.csc_array, count: int) -> tuple[np.nda
 def _refined(
     left: sp.csc_array, right: sp.csc_array, value: float, vector: np.ndarray
 ) -> tuple[float, np.ndarray]:
-    """Refine by inverse iteration beside the value, as Arnoldi's rounding is that of the lowest value."""
+    """Refine an eigenpair by inverse iteration: Arnoldi's method is accurate for the lowest value only."""
     shift = value + 1e-6 * max(1.0, abs(value))
     inverse = splu(sp.csc_matrix(left - shift * right))
     for _ in range(2):

@@ -27,13 +27,13 @@ from benchmarks.cases.reference.twisted_beam.equations import coriolis, rates, s
 from benchmarks.cases.reference.twisted_beam.mesh import Mesh
 
 _NODES = 12
-_FINEST = 64  # most pieces of each interval between breakpoints
+_FINEST = 64  # largest number of pieces of each interval between breakpoints
 
 
 def coned_frequencies(
     blade: Blade, gamma: float, count: int = 4, rtol: float = 1e-10
 ) -> tuple[np.ndarray, float]:
-    """Return the lowest lambda on the first mesh that changes none by more than `rtol`, and the change."""
+    """Return the lowest lambda on the first mesh that changes all by less than `rtol`, and the change."""
     before, pieces, change = solve_coned(blade, gamma, count, 1), 2, np.inf
     while pieces <= _FINEST:
         found = solve_coned(blade, gamma, count, pieces)

@@ -14,14 +14,14 @@ from benchmarks.cases.reference.twisted_beam.mesh import Mesh
 
 @dataclass(frozen=True)
 class Deflection:
-    """Of the nodes, each of shape (pieces, nodes, d), and u, p at the tip, shape (2 d,).
+    """Deflection at the nodes, each of shape (pieces, nodes, d), and u, p at the tip, shape (2 d,).
 
     Parameters
     ----------
     u, slope
-        The centre line's deflection and u'.
+        Deflection u of the centre line, and u'.
     p, bend
-        The sections' rotation and p'.
+        Rotation p of the sections, and p'.
     """
 
     u: np.ndarray
@@ -40,7 +40,7 @@ def quotient(
     first: np.ndarray,
     last: np.ndarray,
 ) -> float:
-    """Compute the energy of bending, shear, springs and spin over that of the motion, for one mode."""
+    """Compute the quotient of stored energy (bending, shear, springs, spin) and kinetic energy of a mode."""
     d = blade.planes
     form = Forms(mesh)
     u, p, moment, total = (states[..., i * d : (i + 1) * d] for i in range(4))

@@ -11,7 +11,7 @@ from scipy.linalg import block_diag
 from benchmarks.cases.reference.twisted_beam.blade import Blade
 from benchmarks.cases.reference.twisted_beam.mesh import Mesh
 
-_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # J
+_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # matrix J: J p = (-p3, p2)
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,9 @@ class Section:
     compliance: np.ndarray
     flexibility: np.ndarray
     rotary: np.ndarray
-    in_plane: np.ndarray  # m P
-    spin: np.ndarray  # W
-    twisting: np.ndarray  # G J / 2
+    in_plane: np.ndarray  # m P: mass per length, in the direction away from the axis of rotation
+    spin: np.ndarray  # W: the stiffness by rotation of a section's rotary inertia, over gamma^2
+    twisting: np.ndarray  # G J / 2, with the outboard integral G of the product of inertia
     tension: np.ndarray  # N / gamma^2, shape (pieces, nodes)
 
 
@@ -60,7 +60,7 @@ def sections_at(blade: Blade, mesh: Mesh) -> Section:
 
 
 def _pushed(blade: Blade) -> np.ndarray:
-    """Return P, by which a deflection takes a point away from the axis of rotation."""
+    """Return the matrix P of the deflection's component away from the axis of rotation."""
     return np.diag([1.0, math.sin(blade.precone) ** 2])
 
 
@@ -90,7 +90,7 @@ def _blocks(rows: list[list[np.ndarray]]) -> np.ndarray:
 
 
 def root_conditions(blade: Blade) -> np.ndarray:
-    """Compute C of C y(0) = 0: shape (2 d, 4 d)."""
+    """Compute the matrix C of the root conditions C y(0) = 0: shape (2 d, 4 d)."""
     basis, d = blade.basis, blade.planes
     c, s = math.cos(blade.bending_angle), math.sin(blade.bending_angle)
     rows = [np.hstack([np.eye(d), np.zeros((d, 3 * d))])]
@@ -102,26 +102,26 @@ def root_conditions(blade: Blade) -> np.ndarray:
 
 
 def tip_conditions(blade: Blade, gamma: float) -> tuple[np.ndarray, np.ndarray]:
-    """Compute C0, C1 of (C0 - lambda^2 C1) y(1) = 0: shapes (2 d, 4 d)."""
+    """Compute C0, C1 of the tip conditions (C0 - lambda^2 C1) y(1) = 0: shapes (2 d, 4 d)."""
     body, basis, d = blade.body, blade.basis, blade.planes
     kinetic, flat = body.moments(blade.tip_angle)
     c, s = math.cos(blade.precone), math.sin(blade.precone)
     tilted = c**2 * flat - s**2 * (2 * body.along * np.eye(2) - kinetic)
     inertia, spin = (basis.T @ a @ basis for a in (kinetic, tilted))
     one, eps = np.eye(d), body.offset
-    follower = np.vstack([one, eps * one])  # the forces on u and p of one that acts on t = u + eps p
+    follower = np.vstack([one, eps * one])  # forces on u and p by a force on t = u + eps p
     translation = body.mass * follower @ follower.T
     push = body.mass * follower @ basis.T @ _pushed(blade) @ basis @ follower.T
     pull = body.mass * c * (blade.hub + c * (1 + eps)) * eps * one
     by_deflection = gamma**2 * (block_diag(0 * one, spin + pull) - push)
-    by_force = np.kron(np.array([[0.0, 1.0], [1.0, 0.0]]), one)  # Q with u, M with p
+    by_force = np.kron(np.array([[0.0, 1.0], [1.0, 0.0]]), one)  # pairs force Q with u, and moment M with p
     still = np.hstack([by_deflection, by_force])
     moving = np.hstack([translation + block_diag(0 * one, inertia), np.zeros((2 * d, 2 * d))])
     return still, moving
 
 
 def coriolis(blade: Blade, section: Section, gamma: float) -> tuple[np.ndarray, np.ndarray]:
-    """Compute what precone adds to rates (pieces, nodes, 4 d, 4 d) and tip conditions, times s [1/s].
+    """Compute the terms by precone in rates (pieces, nodes, 4 d, 4 d) and tip conditions, factors of s.
 
     With the velocity v, the Coriolis force on a mass m is -2 gamma sin(precone) m T v in Q.
     """

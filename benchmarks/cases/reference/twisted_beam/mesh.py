@@ -15,7 +15,7 @@ class Mesh:
 
     ends: np.ndarray
     x: np.ndarray  # (pieces, nodes)
-    weights: np.ndarray  # (nodes,), of a piece of length 1
+    weights: np.ndarray  # (nodes,), quadrature weights of a piece of length 1
     inner: np.ndarray  # (nodes, nodes): integral from the start to each node, of a piece of length 1
 
     @classmethod
@@ -32,19 +32,19 @@ class Mesh:
         return np.diff(self.ends)
 
     def outboard(self, values: np.ndarray) -> np.ndarray:
-        """Integrate from each node to the tip."""
+        """Integrate a function with given values at the nodes from each node to the tip."""
         whole = self.steps * (values @ self.weights)
         beyond = np.append(np.cumsum(whole[::-1])[::-1], 0.0)
         return beyond[:-1, None] - self.steps[:, None] * (values @ self.inner.T)
 
 
 _RATIO = 4.0  # ratio of a property at the ends of a piece, above which the piece is halved
-_WITHIN = 1e-10  # share of a piece at which its ends are read, beside jumps
+_WITHIN = 1e-10  # fraction of a piece, from its ends, at which properties are evaluated, to be beside jumps
 _HALVINGS = 50
 
 
 def graded(functions: Iterable[Callable[[np.ndarray], np.ndarray]], stops: Sequence[float]) -> list[float]:
-    """Add further stops between stops, so that no positive function changes fast between two.
+    """Add stops, so that no positive function changes by a large factor between two stops.
 
     The reciprocal of a stiffness that falls linearly by a factor r has a pole at 1/(r - 1) of the segment's
     length beyond its end: polynomials over the whole segment resolve that slowly.
