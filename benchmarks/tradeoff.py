@@ -154,8 +154,8 @@ def measure_choices(name: str, scene: bd.Scene, speed: float, count: int) -> Ite
     for tolerance in TOLERANCES:
         needed = 1 + max((n for n, e in errors.items() if e > max(tolerance, floor)), default=MODES - 1)
         result = call_beamdyn(scene, speeds, tolerance)
-        # The basis size over many speeds is stated only in the sentence about the method.
-        chosen = int(result.provenance.method.split("functions=")[1].split(",")[0])
+        # The size of a locus' basis stands only in the sentence about its method.
+        chosen = int(result.provenance.method.split(" with ")[1].split()[0])
         yield Choice(
             scene=name,
             speeds=count,

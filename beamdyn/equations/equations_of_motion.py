@@ -20,7 +20,7 @@ from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.equations.circuit import BLOCK, Circuit, Voltage, charge_terms, flux_terms
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.fields.field import Deflection, Load, SectionFunctions, Term
-from beamdyn.equations.root_motion import UNIT_SPEED, Quantity, RootMotion, root_motion
+from beamdyn.equations.root_motion import Quantity, RootMotion, root_at_unit_speed, root_motion
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 
@@ -282,7 +282,7 @@ class Equations:
 
     @cached_property
     def _steady(self) -> SteadyPencil:
-        rotating, parts = root_motion(self.mount, UNIT_SPEED), []
+        rotating, parts = root_at_unit_speed(self.mount), []
         nothing = np.zeros((self.size, self.size))
         # Constant matrix, and the sum of the matrices added by steady rotation.
         for of_order in self.matrices:

@@ -101,8 +101,8 @@ class Ritz:
         return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
-        """Return a smaller basis; the distance to its results exceeds the truncation error of this one."""
-        return replace(self, functions=self.fewer)
+        """Return a smaller basis, whose distance from this one exceeds the truncation error of this one."""
+        return Ritz(self.fewer, self.basis)
 
     @property
     def fewer(self) -> int:

@@ -337,11 +337,12 @@ def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | N
     return vectors / (larger / np.abs(larger))
 
 
+_STATUS = np.array(["overdamped", "stable", "divergence", "flutter", "neutral"])
+
+
 def status_of(s: np.ndarray) -> np.ndarray:
     """Name the status of modes, such as "stable" or "flutter", from eigenvalues [1/s] of any shape."""
-    growing, oscillating = np.real(s) > 0, np.imag(s) != 0
-    without_growth = np.where(oscillating, "stable", np.where(s == 0, "neutral", "overdamped"))
-    return np.where(growing, np.where(oscillating, "flutter", "divergence"), without_growth)
+    return _STATUS[np.where(s == 0, 4, 2 * (np.real(s) > 0) + (np.imag(s) != 0))]
 
 
 def frequency_of(s: np.ndarray) -> np.ndarray:

@@ -67,7 +67,7 @@ import numpy as np
 
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.equations.fields.transverse import plane_components
-from beamdyn.equations.root_motion import UNIT_SPEED, root_motion
+from beamdyn.equations.root_motion import root_at_unit_speed
 from beamdyn.modes.flexibility import bound_on_cells, bound_traces
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.ritz_part import CoupledRitzPart, PlaneRitzPart
@@ -222,7 +222,7 @@ class PlaneEnclosure(Enclosure):
         # Coefficients of the forms, and the absolute values of their terms.
         tip, psi = scene.beam.tip or TipMass(0.0), scene.mount.bending_angle
         tension, turning = (v**2 for v in exact_cos_sin(scene.mount.precone))
-        root = float(root_motion(scene.mount, UNIT_SPEED).root_axial)
+        root = float(root_at_unit_speed(scene.mount).root_axial)
         out = tension * sin(psi) ** 2 - turning
         tilt = out * np.array([tip.inertia_about_bending_direction, -tip.axial_inertia])
         pull = tip.mass * tip.offset * np.array([tension, tension * tip.offset, -root])
@@ -301,7 +301,7 @@ class CoupledEnclosure(Enclosure):
         self.part = CoupledRitzPart(scene.beam, moments, flexibility)
         self.stiffness, self.mass = self.part.stiffness, np.array([0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0])
         beam, tip, (d, n) = scene.beam, scene.beam.tip or TipMass(0.0), np.array(plane_components(scene))
-        root = float(root_motion(scene.mount, UNIT_SPEED).root_axial)
+        root = float(root_at_unit_speed(scene.mount).root_axial)
         tilting, body = tip_inertia(tip, beam.tip_twist)
         self.spin = np.array([1.0, -root, 0.0, -1.0, 1.0, 0.0, -float(d @ body @ n)])
         # Tensors T (2, 2) of the slope at the tip, per squared speed and per -z, and their absolute terms.

@@ -15,7 +15,7 @@ from numpy.polynomial import Polynomial
 from scipy.sparse.linalg import ArpackNoConvergence
 
 import beamdyn as bd
-from beamdyn.modes.modal import solvers
+from beamdyn.modes.modal import large_parts
 from benchmarks.cases.random_physics import random_still_scene
 from benchmarks.cases.reference.resolved import known_frequencies
 from benchmarks.stated_physics_errors import Answer, answer, cases, measure
@@ -89,7 +89,7 @@ def test_an_iteration_that_does_not_converge_is_replaced(monkeypatch: pytest.Mon
 
     scene = twisted(30.0, (math.inf, math.inf))
     iterated = bd.natural_modes(scene, 5.0, 5, bd.Ritz(70))
-    monkeypatch.setattr(solvers, "eigsh", fail)
+    monkeypatch.setattr(large_parts, "eigsh", fail)
     dense = bd.natural_modes(scene, 5.0, 5, bd.Ritz(70))
     assert (dense.eigenvalue != iterated.eigenvalue).any()
     np.testing.assert_allclose(dense.eigenvalue, iterated.eigenvalue, rtol=1e-11)  # both errors

@@ -15,7 +15,7 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.modes import buckling, setting_angles
-from beamdyn.modes.modal import eigenproblem, solvers
+from beamdyn.modes.modal import eigenproblem, large_parts
 from benchmarks.cases.scenes import ROLLING
 
 STIFFNESS = bd.Table((0, 0.4, 1), (2e-3, 1.5e-3, 1e-3))
@@ -47,7 +47,7 @@ FACTORIZATIONS: dict[ModuleType, tuple[str, ...]] = {  # by the module in which 
     scipy.linalg: ("eigh", "eig", "cho_factor"),
     setting_angles: ("eigh",),
     buckling: ("eigh",),
-    solvers: ("cho_factor", "solve_lower", "solve_lower_transposed"),
+    large_parts: ("cho_factor", "solve_lower", "solve_lower_transposed"),
     eigenproblem: ("solve_lower", "solve_lower_transposed"),
 }
 

@@ -12,9 +12,15 @@ ROOT = Path(__file__).parents[2]
 HEAVY = {"matplotlib", "pydantic", "skfem", "pint", "meshio"}
 
 
-def loaded_by(statement):
-    """Top-level packages in a fresh interpreter after the statement."""
-    code = f"{statement}; import sys; print(*{{name.partition('.')[0] for name in sys.modules}})"
+FIRST_ANSWER = """
+import beamdyn as bd
+bd.natural_modes(bd.Scene(bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0), bd.Mount(0.215)), 50.0)
+"""
+
+
+def loaded_by(statement, names="name.partition('.')[0]"):
+    """Top-level packages, or other parts of names, in a fresh interpreter after the statement."""
+    code = f"{statement}\nimport sys; print(*{{{names} for name in sys.modules}})"
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
     )
@@ -24,6 +30,10 @@ def loaded_by(statement):
 
 def test_import_loads_nothing_heavy():
     assert loaded_by("import beamdyn") & HEAVY == set()
+
+
+def test_first_answer_loads_no_sparse_matrices():
+    assert not any(name.startswith("scipy.sparse") for name in loaded_by(FIRST_ANSWER, "name"))
 
 
 @pytest.mark.parametrize("package", sorted(HEAVY))

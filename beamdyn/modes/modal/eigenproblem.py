@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 from scipy.linalg.lapack import dpotrf, dsyevd, dsyevr
@@ -39,6 +40,9 @@ from beamdyn.modes.modal.quadratic_eigenproblem import (
 )
 
 _EPS = np.finfo(float).eps
+
+# Cholesky factor L (n, n) of a stiffness, and the mass in its coordinates, L^-1 M L^-T.
+Factored: TypeAlias = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -150,6 +154,8 @@ class Solver(Eigensolver):
     matrix.
     """
 
+    _factored: tuple[float, Factored | None] = np.nan, None  # the last speed [rad/s] with its factorization
+
     @cached_property
     def _at_rest(self) -> np.ndarray:
         """Cholesky factor (n, n) of the stiffness at rest, including the shift."""
@@ -191,16 +197,21 @@ class Solver(Eigensolver):
         lowest, lost = -float(growth[0]), 2 * BACKWARD * np.abs(growth).max()
         return (lowest, float(lost / lowest)) if lowest > lost else (0.0, np.inf)
 
-    def factor(self, speeds: np.ndarray) -> np.ndarray | None:
-        """Factorize the stiffness of conservative equations at one speed [rad/s]: Cholesky factor L (n, n).
+    def factor(self, speeds: np.ndarray) -> Factored | None:
+        """Factor the stiffness of conservative equations at one speed [rad/s]: L and L^-1 M L^-T, (n, n).
 
         Returns None for more speeds, or if the stiffness is below `LEAST_STIFFNESS` times that at rest.
         """
         if len(speeds) > 1 or self.pencil.shift or not self.pencil.conservative:
             return None
-        K0, spin = self.pencil.K0, speeds[0] ** 2 * self.pencil.K2
-        upper, failed = dpotrf((K0 + spin).T)
-        return None if failed or dpotrf(((1 - LEAST_STIFFNESS) * K0 + spin).T)[1] else upper.T
+        last, found = self._factored
+        if last != speeds[0]:
+            K0, spin = self.pencil.K0, speeds[0] ** 2 * self.pencil.K2
+            upper, failed = dpotrf((K0 + spin).T)
+            unsafe = failed or dpotrf(((1 - LEAST_STIFFNESS) * K0 + spin).T)[1]
+            found = None if unsafe else (upper.T, transformed(upper.T, self.pencil.M))
+            self._factored = speeds[0], found
+        return found
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
         """Compute the `count` lowest modes; of conservative equations at all speeds at once."""
@@ -208,9 +219,9 @@ class Solver(Eigensolver):
             if not self.pencil.conservative:
                 modes = [self._solve_coupled(speed, count) for speed in speeds]
                 return Eigen(*(np.array(values) for values in zip(*modes, strict=True)))
-            if (L := self.factor(speeds)) is None:
+            if (factored := self.factor(speeds)) is None:
                 return self._solve_diagonal(speeds, count)
-            A = transformed(L, self.pencil.M)
+            L, A = factored
             mu, y, _, _, failed = dsyevr(A, range="I", il=self.size - count + 1, iu=self.size)
             if failed:
                 raise np.linalg.LinAlgError
@@ -222,9 +233,9 @@ class Solver(Eigensolver):
             return Eigen(1j * np.sqrt(squared)[None], v[None], rounding)
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Compute the eigenvalues at each speed, without eigenvectors if the equations are conservative."""
-        if (L := self.factor(speeds)) is not None:
-            mu, _, failed = dsyevd(transformed(L, self.pencil.M), compute_v=0)
+        """Compute the eigenvalues at each speed, without vectors where conservative equations allow it."""
+        if (factored := self.factor(speeds)) is not None:
+            mu, _, failed = dsyevd(factored[1], compute_v=0)
             if failed:
                 raise np.linalg.LinAlgError
             return 1j / np.sqrt(above_rounding(mu[: -count - 1 : -1]))[None]
@@ -242,8 +253,8 @@ class Solver(Eigensolver):
         """
         if self.pencil.shift:
             return np.array([springs.solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
-        if (L := self.factor(speeds)) is not None:
-            load = speeds[0] ** 2 * self.pencil.f2
+        if (factored := self.factor(speeds)) is not None:
+            L, load = factored[0], speeds[0] ** 2 * self.pencil.f2
             return (outputs @ solve_lower_transposed(L, solve_lower(L, load[:, None]))[:, 0])[None]
         growth, basis, _ = self._diagonal
         stiffness = 1 + speeds[:, None] ** 2 * growth
@@ -319,6 +330,31 @@ class Solver(Eigensolver):
         norm = np.sqrt(np.einsum("nk,nm,mk->k", z.conj(), M, z).real)
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
         return s, basis @ (z / norm), rounding
+
+
+class LeadingSolver(Solver):
+    """Eigensolver of the first coordinates of a solver, the others held at 0: by blocks of its factors.
+
+    Parameters
+    ----------
+    whole : Solver
+        Eigensolver of all coordinates.
+    size : int
+        Number of coordinates that are kept.
+    """
+
+    def __init__(self, whole: Solver, size: int) -> None:
+        self._whole, self.size = whole, size
+
+    @cached_property
+    def pencil(self) -> SteadyPencil:
+        """Equations at steady speed of the coordinates that are kept."""
+        return self._whole.pencil.part(np.arange(self.size))
+
+    def factor(self, speeds: np.ndarray) -> Factored | None:
+        """Take the leading blocks of the factors of all coordinates: see `Solver.factor`."""
+        factored, n = self._whole.factor(speeds), self.size
+        return factored and (factored[0][:n, :n], factored[1][:n, :n])
 
 
 class LoadedSolver(Solver):

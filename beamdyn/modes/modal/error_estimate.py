@@ -122,19 +122,19 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         else:
             truncation = _basis_error(model, fine, squared, distance)
     error = truncation + ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
-    # Comparisons with nan are False, so nan counts as unresolved.
-    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)
-    # A hinged root may rotate freely at rest, or if it lies on the rotation axis: a frequency within rounding
-    # of 0 then counts as 0.
-    free = 0.0 in mount.root_stiffnesses[: scene.physics.planes]
-    neutral = (s == 0) & (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
-    resolved |= neutral
+    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # this is False for nan, too
+    # A root without a spring may turn freely at rest, or if it lies on the axis: a frequency within rounding
+    # of 0 is then taken as 0.
+    if (neutral := s == 0).any():
+        free = 0.0 in mount.root_stiffnesses[: scene.physics.planes]
+        neutral &= (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
+        resolved |= neutral
     if not resolved.all():
         resolved &= ~_may_be_passed(squared, distance, resolved)
     resolved &= model.exceeds_coarser
-    stated = np.where(resolved, np.where(neutral, 0.0, error), np.inf)
-    lacking = np.full((len(speeds), modes - compared), np.inf)
-    return EstimatedModes(model, fine, np.concatenate([stated, lacking], axis=1))
+    stated = np.full((len(speeds), modes), np.inf)
+    stated[:, :compared][resolved] = np.where(neutral, 0.0, error)[resolved]
+    return EstimatedModes(model, fine, stated)
 
 
 def _mesh_error(
@@ -174,8 +174,13 @@ def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.nd
     """Estimate the relative truncation error (S, k) of squared eigenvalues from a smaller basis."""
     # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
-    are_above = np.abs(squared).min() >= _ABOVE * ((stiffness / mass).min() + model.equations.shift)
-    lowest = np.asarray(0.0 if are_above else model.solver.lowest_at_rest)
+    size, bound = np.abs(squared), (stiffness / mass).min() + model.equations.shift
+    # It matters only if a mode below it has the largest relative distance.
+    if is_needed := size.min() < _ABOVE * bound:
+        relative, below = np.abs(distance) / size, size < bound
+        of_below, of_others = (np.where(each, relative, 0.0).max(axis=1) for each in (below, ~below))
+        is_needed = not (of_below <= of_others).all()
+    lowest = np.asarray(model.solver.lowest_at_rest if is_needed else 0.0)
     is_slender = model.scene.is_slender_beam_in_one_plane
     margin = SLOW_BASES.factor if is_slender or model.lacks_one else BASES_OF_FIELDS.factor
     parts = _BY_ONE if model.lacks_one else parts_of_distances(model.scene, model.discretization)

@@ -27,7 +27,7 @@ from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
 from beamdyn.equations.ritz import Ritz
-from beamdyn.modes.modal.eigenproblem import Eigensolver, Solver
+from beamdyn.modes.modal.eigenproblem import Eigensolver, LeadingSolver, Solver
 from beamdyn.modes.modal.solvers import solver_of
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import RIGHT_ANGLE
@@ -100,9 +100,12 @@ class Model(FieldsOnly):
         """Eigensolver of the coarser model that error estimates use for comparison."""
         if self.scene.physics.large_deflection:
             return self.deflected.guiding(self.compared.bent)
-        if self.equations.coarse is None:
+        coarse = self.equations.coarse
+        if coarse is None:
             return self.coarser.solver
-        return solver_of(self.equations, self.equations.coarse)
+        if type(self.solver) is Solver and coarse[-1] + 1 == len(coarse):
+            return LeadingSolver(self.solver, len(coarse))
+        return solver_of(self.equations, coarse)
 
     @property
     def exceeds_coarser(self) -> bool:
@@ -185,7 +188,7 @@ def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
     The energy of other fields, such as stretch, is not counted: the sum is 1, or 0 without deflection.
     """
     if equations.planes == 1:
-        return np.stack([np.ones(vectors[:, 0].shape), np.zeros(vectors[:, 0].shape)], axis=2)
+        return np.full((*vectors[:, 0].shape, 2), (1.0, 0.0))
     energy, planes = kinetic_energy(equations, vectors), [[], []]
     for name in equations.deflecting:
         planes[equations.deflections[name].direction].append(name)
