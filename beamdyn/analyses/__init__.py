@@ -1,4 +1,4 @@
-"""Descriptions of the analyses of a scene, from which commands, their help, reports and screens are made."""
+"""Descriptions of the analyses of a scene; commands, help texts, reports and screens are made from them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from beamdyn.analyses.analysis import Analysis
 
-# Modules of the commands, in the order of the manual: a command imports only the module that describes it.
+# Modules of the commands, in the order of the manual: a command imports only the module with its analysis.
 _COMMANDS = (
     ("about_modes", "equilibrium branches modes locus critical limits"),
     ("about_linear_models", "matrices response random"),

@@ -1,4 +1,4 @@
-"""The Campbell diagram of one scene, and the reading of options of all Campbell diagrams."""
+"""The Campbell diagram of one scene, and the reading of options for Campbell diagrams."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from beamdyn.common.edge.units import unit_as_written
 from beamdyn.studies.campbell.diagram import Campbell
 
 _SPEEDS = 301
-_SPEEDS_OF_BENT = 61  # number of speeds with large deflection: each needs an equilibrium
+_SPEEDS_OF_BENT = 61  # number of speeds if deflections are large: each speed needs an equilibrium
 
 
 @analysis('beamdyn campbell examples/rolling_harvester.toml --top-speed "150 rad/s"', screen="Campbell")
@@ -53,11 +53,11 @@ def campbell(
     )  # fmt: skip
 
 
-# Values of options -----------------------------------------------------------------------------------
+# Reading of options ----------------------------------------------------------------------------------
 
 
 def parse_top(text: str, scene: bd.Scene | None, bent: bool) -> tuple[Any, str]:
-    """Return speeds [rad/s] up to the top one, fewer with large deflection (`bent`), and their unit."""
+    """Return speeds [rad/s] up to the top speed, fewer for large deflections (`bent`), and their unit."""
     top = parse_positive("--top-speed", text, "rad/s", scene)
     unit, _ = unit_as_written(text, "rad/s")
     count = _SPEEDS_OF_BENT if bent else _SPEEDS
@@ -67,7 +67,7 @@ def parse_top(text: str, scene: bd.Scene | None, bent: bool) -> tuple[Any, str]:
 def parse_operation(
     rated: str | None, operating: str | None, top_text: str, top: float, scene: bd.Scene | None
 ) -> tuple[float | None, tuple[float, float] | None]:
-    """Read the rated speed, and the lowest and highest operating speed [rad/s], within the top speed."""
+    """Read the rated speed and the operating range [rad/s]; raise an error if they exceed the top speed."""
 
     def up_to_top(speed: float, words: str) -> float:
         if speed > top * (1 + 1e-12):
@@ -92,7 +92,7 @@ def parse_operation(
 
 
 def parse_orders(text: str) -> Sequence[int]:
-    """Read the orders of the per-rev lines: 1 to n for a number n, n alone for "nP", or those of a list."""
+    """Read the orders of per-rev lines: 1 to n for "n", only n for "nP", or the orders in a list."""
     if alone := re.fullmatch(r"\s*([1-9]\d*)\s*P\s*", text, re.IGNORECASE):
         return [int(alone[1])]
     parts = [part.strip() for part in text.split(",")]

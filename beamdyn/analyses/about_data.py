@@ -1,4 +1,4 @@
-"""Analyses of measured data: comparison with a scene, and numbers of the scene identified from them."""
+"""Analyses of measured data: comparison with a scene, and identification of the scene's parameters."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Data = Annotated[
     READ_SECOND,
     Parameter(
         name="DATA.csv",
-        help='Measured values, by the heads of their columns: "speed [rpm], frequency 1 [Hz]", '
+        help='Measured values, by the headings of their columns: "speed [rpm], frequency 1 [Hz]", '
         '"time [s], tip [mm]", "speed [rpm], from [s], to [s], largest tip [mm]", '
         '"position [m], moment [N m]", "frequency [Hz], tip by tip force [mm/N]" or '
         '"position [mm], shape at 62.1 Hz"; lists of ANSYS, output of FAST, universal files.',
@@ -81,8 +81,8 @@ def _beside(
     columns: Sequence[str] = (),
     **_: Any,
 ) -> bd.FrequencyComparison | bd.CurveComparison:
-    """Compare measured values with those of the scene as it is: nothing is fitted."""
-    from beamdyn.studies.beside_data.compare import beside  # its solvers take a second, and help needs none
+    """Compare measured values with those computed for the unchanged scene."""
+    from beamdyn.studies.beside_data.compare import beside  # slow import, not needed for help texts
 
     given = _data(data, measured, speeds, uncertainty, columns)
     if isinstance(given, MeasuredCurves):
@@ -107,7 +107,7 @@ def compare(
     uncertainty: Uncertainty = None,
     columns: ColumnsOfFile = (),
 ) -> bd.FrequencyComparison | bd.CurveComparison:
-    """Measured values beside those of the scene: what agrees, and what explains the rest."""
+    """Measured values compared with those of the scene: which agree, and what may explain deviations."""
     given = _data(data, measured, speeds, uncertainty, columns)
     unit = "" if isinstance(given, MeasuredCurves) else given.speed_unit
     source = data.path if isinstance(data, DataText) else data
@@ -134,24 +134,24 @@ def identify(
     write: Annotated[Path | None, WRITTEN] = None,
     file: Path | None = None,
 ) -> Answer:
-    """Numbers of the scene found from measured natural frequencies, with their intervals.
+    """Unknown inputs of the scene, found from measured natural frequencies, with their intervals.
 
     Parameters
     ----------
     free
-        The unknown numbers by their names in the file, a comma between them, each with bounds or
-        without: "beam.thickness=0.1:0.3 mm, mount.root_stiffness".
+        Names of the unknown inputs in the file, separated by commas, each with or without bounds:
+        "beam.thickness=0.1:0.3 mm, mount.root_stiffness".
     starts
-        Largest number of starts of the search, from the places that are nearest to the data.
+        Largest number of starting points of the search: those that fit the data best.
     seed
-        Seed of the random places.
+        Seed of the random starting points.
     write
-        Write the scene with the numbers found into this file, with where they come from.
+        Write the scene with the values found, and comments on their origin, into this file.
     """
     given = _data(data, measured, speeds, uncertainty)
     if isinstance(given, MeasuredCurves):
         source = data.path if isinstance(data, DataText) else data
-        raise ValueError(f"{source}: identify takes natural frequencies; this file is for compare")
+        raise ValueError(f"{source}: identify takes natural frequencies; use this file with compare")
     found = bd.identify(in_unit_of(scene, f"0 {given.speed_unit}"), given, parse_free(free), starts, seed)
     if write is not None and file is not None:
         _write(found, file, write, given.source)
@@ -159,7 +159,7 @@ def identify(
 
 
 def _untold(found: bd.Identification) -> str:
-    """Say which numbers the data do not determine; empty if they determine all."""
+    """Name the parameters that the data do not determine; empty if the data determine all of them."""
     lost = [name for name, value in zip(found.names, found.value, strict=True) if np.isnan(value)]
     return f"the data do not tell {' and '.join(lost)}: see what would help" if lost else ""
 
@@ -172,12 +172,12 @@ def _write(found: bd.Identification, scene: Path, to: Path, source: str) -> None
         f"beginning with {scene.name}.",
         f"95 % intervals: {ranges}; remaining deviation {100 * found.scatter:.2g} %.",
     ]
-    # A scene with a number that the data do not determine has been refused above.
+    # An error was raised above for a scene with a parameter that the data do not determine.
     assert found.scene_found is not None
     write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))
 
 
-# Values of options --------------------------------------------------------------------------------
+# Reading of options -------------------------------------------------------------------------------
 
 
 def _data(
@@ -187,12 +187,12 @@ def _data(
     uncertainty: str | None,
     columns: Sequence[str] = (),
 ) -> bd.MeasuredFrequencies | MeasuredCurves:
-    """Read measured data from a file, or from the text of ``--measured``."""
+    """Read measured data from a file, or from the text of the option ``--measured``."""
     if (file is None) == (measured is None):
         raise ValueError('give either a file, such as measured.csv, or --measured "62.1, 389, 1090 Hz"')
     if file is None and columns:
         raise ValueError(
-            f'--columns = "{"; ".join(columns)}": it names columns of a file, and none is given; leave it out'
+            f'--columns = "{"; ".join(columns)}": it names columns of a file, but none is given; leave it out'
         )
     named = _columns("; ".join(columns)) if columns else None
     if isinstance(file, DataText):
@@ -205,7 +205,7 @@ def _data(
 
 
 def _columns(text: str) -> dict[str, str]:
-    """Read ``--columns``: names that the program knows, with the heads of the file that mean them."""
+    """Read the option ``--columns``: for each known heading, the heading of the column in the file."""
     parts = [part.partition("=") for part in text.split(";") if part.strip()]
     if not parts or not all(head.strip() and source.strip() for head, _, source in parts):
         raise ValueError(f'--columns = "{text}": give e.g. "tip = TipDxb1; root moment = RootMyb1"')
@@ -213,7 +213,7 @@ def _columns(text: str) -> dict[str, str]:
 
 
 def _in_words(text: str, speeds: np.ndarray | None) -> bd.MeasuredFrequencies:
-    """Read the frequencies of ``--measured``, all at one speed."""
+    """Read the frequencies in the option ``--measured``, all at one speed."""
     values, written = parse_amounts("--measured", text, Frequency("Hz"), "62.1, 389, 1090 Hz")
     if speeds is not None and len(speeds) != 1:
         raise ValueError(f"--speeds: give one speed with --measured, or a file; there are {len(speeds)}")
@@ -225,9 +225,9 @@ def _in_words(text: str, speeds: np.ndarray | None) -> bd.MeasuredFrequencies:
 def _with_uncertainty(
     data: bd.MeasuredFrequencies | MeasuredCurves, text: str
 ) -> bd.MeasuredFrequencies | MeasuredCurves:
-    """Add the uncertainty of ``--uncertainty`` to data that have none.
+    """Add the uncertainty in the option ``--uncertainty`` to data without uncertainties.
 
-    A share is that of each frequency, and of the largest value of each other column.
+    A percentage refers to each frequency, or to the largest value of any other column.
     """
     share = text.strip().endswith("%")
     if isinstance(data, MeasuredCurves):
@@ -250,22 +250,22 @@ def _with_uncertainty(
 
 
 def parse_free(text: str) -> dict[str, tuple[float, float] | None]:
-    """Read the unknown numbers of ``--free``, each with its bounds [SI] or None.
+    """Read the unknown parameters in the option ``--free``, each with bounds [SI units] or None.
 
     Raises
     ------
     ValueError
-        If a name is not known, or bounds are not two values with a unit.
+        If a name is unknown, or the bounds are not two values with a unit.
     """
     found: dict[str, tuple[float, float] | None] = {}
     known = {entry.path: entry for entry in numbers(describe(SceneInput))}
     for part in filter(None, (each.strip() for each in text.split(","))):
         words = f'--free = "{part}"'
         key, _, bounds = (each.strip() for each in part.partition("="))
-        if is_speed(key):  # the speed, which each analysis refuses in its own words
+        if is_speed(key):  # the name "speed": each analysis checks it separately
             found[key] = None
             continue
-        of_beam = f"beam.{key}"  # a name without a table means the beam before its layers
+        of_beam = f"beam.{key}"  # a name without a table is a property of the beam without its layers
         entry = known[of_beam] if of_beam in known else find_input([*known.values()], key, words)
         found[entry.path] = _bounds(bounds, entry.quantity.unit, words) if bounds else None
     if not found:

@@ -1,4 +1,4 @@
-"""Sensitivities, and studies: answers over combinations of inputs, or their ranges over tolerances."""
+"""Sensitivities, and studies: results over combinations of inputs, or their ranges over tolerances."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 Derived = Literal["frequencies", "critical_speed", "crossings"]
-_OPTIONS = {  # options that each kind of answer depends on
+_OPTIONS = {  # options that affect each kind of result
     "frequencies": ("speed", "modes", "tolerance"),
     "critical_speed": ("tolerance",),
     "crossings": ("speed", "modes", "order"),
@@ -58,7 +58,7 @@ def sensitivities(
     discretization: Discretization = "ritz",
     tolerance: float | None = None,
 ) -> Answer:
-    """Derivatives of frequencies, of the critical speed or of resonance speeds by the numbers of the scene.
+    """Derivatives of frequencies, critical speed or resonance speeds with respect to a scene's inputs.
 
     Parameters
     ----------
@@ -74,8 +74,8 @@ def sensitivities(
         Order of crossings: 1, the default: resonances with the load; more: also combination
         resonances by the periodic coefficients.
     inputs
-        Numbers by their names in the file, such as beam.thickness, or speed, the option once for
-        each; all if not given.
+        Inputs by their names in the file, such as beam.thickness, or speed; give the option once for each
+        input; default: all.
     tolerance
         Largest relative error of a frequency or critical speed: the cheapest discretization that
         meets it is chosen; if not given, 1e-11, or 1e-4 where a rectangular section cambers or twists.
@@ -123,7 +123,8 @@ def study(
 ) -> Answer:
     """Frequencies, critical or resonance speeds, amplitudes or peaks over all combinations of inputs.
 
-    Or their ranges over tolerances, and the input that matters most. At most a million designs are answered.
+    With tolerances: the ranges of these results, and the most influential input. At most a million designs
+    are computed.
 
     Parameters
     ----------
@@ -163,7 +164,7 @@ def study(
 
 
 def _study(scene: bd.Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[str, Any]) -> Answer:
-    """Answer all designs of the axes, with a progress bar."""
+    """Compute all combinations of the varied inputs, with a progress bar."""
     inputs = {axis.input.path: axis.values for axis in axes}
     with at_work("designs") as progress:
         result = bd.study(scene, inputs, combine=varying.combine, progress=progress, **how)
@@ -177,7 +178,7 @@ def _study(scene: bd.Scene, axes: Sequence[Axis], varying: VaryOptions, how: dic
 
 
 def _spread(scene: bd.Scene, inputs: list[Input], spreading: SpreadOptions, how: dict[str, Any]) -> Answer:
-    """Compute the ranges of the answer over tolerances, with a progress bar."""
+    """Compute the ranges of the results over tolerances, with a progress bar."""
 
     def nominal(entry: Input) -> tuple[float, str]:
         return nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path) or ""
@@ -190,11 +191,11 @@ def _spread(scene: bd.Scene, inputs: list[Input], spreading: SpreadOptions, how:
     return Answer(result, none if (result.scatter.no_answer == 1).all() else "")
 
 
-# Values as they were given ------------------------------------------------------------------------
+# Values as the user gave them ---------------------------------------------------------------------
 
 
 def _speed_of(scene: bd.Scene, what: str, speed: str | None, axes: Sequence[Axis]) -> float | None:
-    """Return the speed of the option [rad/s], or the scene's where the answer needs one; else None."""
+    """Return the speed in the option [rad/s], or the scene's speed if the result needs one; else None."""
     varied = any(axis.input.path == SPEED for axis in axes)
     needed = "speed" in KINDS[what].options and not varied
     if speed is not None:
@@ -203,10 +204,10 @@ def _speed_of(scene: bd.Scene, what: str, speed: str | None, axes: Sequence[Axis
 
 
 def inputs_of(scene: bd.Scene) -> list[Input]:
-    """Describe, as inputs of a file, the numbers of a scene that a study may vary, and the speed."""
+    """Return descriptions, as inputs of a file, of the numbers that a study may vary, and of the speed."""
 
     class ByWholeName(Input):
-        """An input that needs its whole path as a name: a factor, or an entry of a list."""
+        """An input that must be named by its full path: a factor, or an entry of a list."""
 
         @property
         def name(self) -> str:
@@ -221,6 +222,6 @@ def inputs_of(scene: bd.Scene) -> list[Input]:
 
 
 def unit_given(axis: Axis) -> tuple[str, float]:
-    """Return the unit in which the values of an input were given, and its size in SI."""
+    """Return the unit in which the values of an input were given, and the size of this unit in SI units."""
     place = abs(axis.given).argmax()
     return axis.unit, float(axis.values[place] / axis.given[place])

@@ -1,4 +1,4 @@
-"""Linear models at one speed: matrices, response over frequency, random response, and their excitations."""
+"""Linear models at one speed: matrices, frequency response, random response, and their excitations."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ class RandomInput:
         One-sided density of the input: a CSV file with the columns f [Hz] and psd [m2/s4/Hz]
         or [g2/Hz], of a force [N2/Hz].
     psd_axes : str, optional
-        Axes on which the density is straight between the points of --psd: log, as standards draw it, or
-        linear, which may begin at 0 Hz; default: log.
+        Axes on which the density is interpolated linearly between the points of --psd: log, as in standards,
+        or linear, which may begin at 0 Hz; default: log.
     road : str, optional
         Class of a random road by ISO 8608, from A, very good, to H.
     roughness : str, optional
-        Random road by its density at 0.1 1/m, e.g. "64e-6 m3".
+        Random road, given by its spectral density at 0.1 1/m, e.g. "64e-6 m3".
     highest : str, optional
-        Spatial frequency at which the road ends; default: 2.83 1/m, that of the standard.
+        Highest spatial frequency of the road; default: 2.83 1/m, as in the standard.
     speed : str, optional
         Speed with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the scene's motion.
     velocity : str, optional
@@ -70,12 +70,12 @@ class RandomInput:
 
     @property
     def drive(self) -> inputs_outputs.Excitation | None:
-        """Return where the input acts; None if not given, as the kind of density then decides."""
+        """Return position or direction of the input; None if not given: the density determines it."""
         return None if self.input is None else parse_input(self.input)
 
     @property
     def density(self) -> bd.PowerSpectrum | bd.RoadRoughness:
-        """Read the density of the input, from a file or as that of a road.
+        """Read the spectral density of the input: from a file, or of a standard road profile.
 
         Raises
         ------
@@ -87,7 +87,7 @@ class RandomInput:
         if self.psd is not None:
             if self.highest is not None:
                 raise ValueError(
-                    f'--highest = "{self.highest}": it ends a road, but --psd has its own range; leave it out'
+                    f'--highest = "{self.highest}": it limits a road; --psd has its own range; leave it out'
                 )
             drive = self.drive
             unit = "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz"
@@ -100,11 +100,11 @@ class RandomInput:
         )
 
     def shown(self, scene: bd.Scene) -> bd.Scene:
-        """Return the scene, with results shown in the unit of the given speed."""
+        """Return the scene, with results displayed in the unit of the given speed."""
         return in_unit_of(scene, self.speed)
 
     def speed_of(self, scene: bd.Scene) -> float:
-        """Return the speed [rad/s]: as given, of a wheel rolling at the given velocity, or the scene's."""
+        """Return the speed [rad/s]: as given, of a wheel rolling at a given velocity, or the scene's."""
         if self.velocity is None:
             return scene.final_speed if self.speed is None else parse_speed("--speed", self.speed, scene)
         if self.speed is not None:
@@ -120,7 +120,7 @@ NO_RANDOM_INPUT = RandomInput()
 
 
 def parse_input(text: str) -> inputs_outputs.Excitation:
-    """Read the excitation of ``--input``: a word, or a force at a position with its unit."""
+    """Read the excitation in the option ``--input``: a word, or a force at a position with its unit."""
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] != "force":
         return inputs_outputs.as_excitation("--input", text.strip())
@@ -128,7 +128,7 @@ def parse_input(text: str) -> inputs_outputs.Excitation:
 
 
 def parse_output(text: str) -> inputs_outputs.Observation:
-    """Read the observation of ``--output``: a word, or a deflection or acceleration at a position."""
+    """Read the output in the option ``--output``: a word, or a deflection or acceleration at a position."""
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] == "force":
         return inputs_outputs.as_observation("--output", text.strip())
@@ -137,26 +137,27 @@ def parse_output(text: str) -> inputs_outputs.Observation:
 
 
 def _position(option: str, text: str) -> float | None:
-    """Read a position on the beam [m]; None stands for the word "tip"."""
+    """Read a position along the beam [m]; return None for the word "tip"."""
     return None if text.strip() == "tip" else parse_positive(option, text.strip(), "m")
 
 
 def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> bd.PowerSpectrum:
-    """Read a density from a CSV file with the columns f [Hz] and psd, in a unit such as m2/s4/Hz or g2/Hz.
+    """Read a spectral density from a CSV file with the columns f [Hz] and psd (m2/s4/Hz, g2/Hz or the like).
 
-    The density is straight between its points on logarithmic or linear `axes`.
+    Between its points the density is interpolated linearly on logarithmic or linear `axes`.
 
     Raises
     ------
     ConfigError
-        If a head lacks its unit, a column is missing or a cell is no number; the message names the line.
+        If a heading lacks its unit, a column is missing or a cell is not a number; the message names the
+        line.
     InvalidValue
         If the frequencies do not ascend, or a density is negative, or 0 on logarithmic axes.
     """
     text = read_data(path)
 
     class Density(Quantity):
-        """The quantity of a spectral density, whose unit may also be (m/s2)2/Hz or g2/Hz."""
+        """A spectral density, whose unit may also be written (m/s2)2/Hz or g2/Hz."""
 
         def convert(self, given: object) -> float:
             return super().convert(spell_density(given) if isinstance(given, str) else given)
@@ -176,7 +177,7 @@ def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> bd.PowerSpectrum
 
 
 def spell_density(text: str) -> str:
-    """Rewrite a density's unit in the words of `quantity`: m2/s4/Hz for (m/s2)2/Hz, gravity2/Hz for g2/Hz."""
+    """Rewrite the unit of a density for `quantity`: m2/s4/Hz for (m/s2)2/Hz, gravity2/Hz for g2/Hz."""
 
     def squared(unit: re.Match[str]) -> str:
         return _POWER.sub(lambda factor: f"{factor[1]}{2 * int(factor[2] or 1)}", unit[1])
@@ -275,7 +276,8 @@ def random(
     Parameters
     ----------
     damping_ratio
-        Damping ratio of all modes of a scene that has no damping, such as 0.01: undamped, it has no answer.
+        Damping ratio of all modes, such as 0.01, for a scene without damping, whose response would be
+        infinite.
     modes
         Number of modes; auto: the fewest that keep the error below 1e-9 of the root mean square.
     """
@@ -288,16 +290,17 @@ def random(
     )
 
 
-# Values of options --------------------------------------------------------------------------------
+# Reading of options -------------------------------------------------------------------------------
 
 
 def parse_frequencies(text: str) -> np.ndarray:
-    """Read the frequencies [Hz] of ``--frequencies``: a range at equal ratios, or a list.
+    """Read the frequencies [Hz] in the option ``--frequencies``: a range at equal ratios, or a list.
 
     Raises
     ------
     ValueError
-        If there are none, a range does not rise from above 0, or the unit is none of frequency.
+        If there are none, a range does not ascend from a positive frequency, or the unit is not a unit of
+        frequency.
     """
     words, unit = f'--frequencies = "{text}"', _UNIT.search(text.strip())
     if unit is None:

@@ -1,4 +1,4 @@
-"""Loads along the span: in equilibrium, in transients with their cycles, in steady and random response."""
+"""Loads along the span: in equilibrium, in transients (with load cycles), in steady and random response."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from beamdyn.loads.transient_loads import EquivalentRange
 
 
-# Cycles ----------------------------------------------------------------------------------------------
+# Load cycles -----------------------------------------------------------------------------------------
 
 
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
@@ -49,7 +49,7 @@ _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 @Parameter(name="*")
 @dataclass(frozen=True)
 class CycleOptions:
-    """Which cycles of a transient are counted, and what is made of them.
+    """Options on the counting of load cycles in a transient, and on equivalent cycles.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class CycleOptions:
     cycles_file: Annotated[Path | None, WRITTEN] = None
 
     def check(self, in_transient: bool) -> None:
-        """Refuse options that would have no effect."""
+        """Raise an error for options that would have no effect."""
         if self.cycles is not None and not in_transient:
             raise ValueError("--cycles belongs to a transient: give --t-end, too")
         text = "" if self.woehler is None else f'"{self.woehler}"'
@@ -87,7 +87,7 @@ class CycleOptions:
 
     @property
     def exponents(self) -> list[float]:
-        """Read the exponents of the Woehler curve; empty if they are not given."""
+        """Read the exponents of the Woehler (S-N) curve; empty if they are not given."""
         if self.woehler is None:
             return []
         parts = [part.strip() for part in self.woehler.split(",")]
@@ -98,16 +98,16 @@ class CycleOptions:
 
     @property
     def number(self) -> float:
-        """Number of equal cycles that do the same damage as those counted."""
+        """Return the number of equal cycles that cause the same damage as the counted cycles."""
         return 1.0 if self.equivalent_cycles is None else self.equivalent_cycles
 
     def tables(self, cycles: bd.LoadCycles, equivalents: Sequence[EquivalentRange]) -> list[RenderableType]:
-        """Make the tables of the counted cycles, and of the equal cycles that do the same damage."""
+        """Make the tables of the counted cycles, and of equal cycles that cause the same damage."""
         made: list[RenderableType] = [of_loads.cycles_table(cycles)]
         return [*made, of_loads.equivalents_table(equivalents)] if equivalents else made
 
     def write(self, cycles: bd.LoadCycles) -> None:
-        """Write the counted cycles to the file that was asked for, if any."""
+        """Write the counted cycles to the requested file, if any."""
         if self.cycles_file is None:
             return
         if self.cycles_file.suffix.lower() == ".json":
@@ -221,17 +221,16 @@ def random_loads(
     modes: CountOrAuto = "auto",
     discretization: Discretization = "ritz",
 ) -> Answer:
-    """Largest strains, stresses, moments and forces along the span that a random input makes expected.
+    """Largest expected strains, stresses, moments and forces along the span for a random input.
 
     Parameters
     ----------
     duration
-        Duration within which the largest are expected, with its unit.
+        Duration for which the largest values are expected, with its unit.
     quantity
         What --plot and --report draw along the span; default: strain.
     modes
-        Number of modes; auto: the fewest that keep the error below 1e-4 of the largest along the
-        span.
+        Number of modes; auto: the fewest that keep the error below 1e-4 of the largest value along the span.
     """
     asked = random_input
     shown, speed = asked.shown(scene), asked.speed_of(scene)
@@ -241,7 +240,7 @@ def random_loads(
 
 
 def _check_together(kinds: list[str], angle: float | None, window: str | None) -> None:
-    """Refuse options that belong to different analyses; `kinds` are the given options that choose one."""
+    """Raise an error for options of different analyses; `kinds` are the given options that choose one."""
     if len(kinds) > 1:
         raise ValueError(
             f"{' and '.join(kinds)}: give one of them: --speed for the equilibrium, --t-end for a transient, "
@@ -250,7 +249,7 @@ def _check_together(kinds: list[str], angle: float | None, window: str | None) -
     if window is not None and "--t-end" not in kinds:
         raise ValueError("--window belongs to a transient: give --t-end, too")
     if angle is not None and kinds and kinds != ["--speed"]:
-        raise ValueError("--angle belongs to the equilibrium at a --speed: elsewhere the beam turns")
+        raise ValueError("--angle belongs to the equilibrium at a --speed: elsewhere the beam rotates")
 
 
 def _in_transient(

@@ -36,13 +36,13 @@ def equilibrium(
     branch: options.Text | None = None,
     discretization: options.Discretization = "ritz",
 ) -> bd.Equilibrium:
-    """Where the rotation bends the beam to, by any angle, and whether it stays there.
+    """Equilibrium of the beam bent by rotation, for deflections of any size, and its stability.
 
     Parameters
     ----------
     branch
         straight: the equilibrium that follows from rest as the speed rises; bent: the stable one
-        beside it, at high speed. Default: that of the scene's physics.
+        beside it, at high speed. Default: as the scene's physics requires.
     """
     return bd.equilibrium(scene, speed, branch, discretization)
 
@@ -132,7 +132,7 @@ def critical(
 ) -> Answer:
     """Critical speed, at which the rotating beam buckles; or why there is none, or up to which speed."""
     result = bd.critical_point(scene, discretization)
-    # With an infinite error there may be a critical speed, but it was not found, or not resolved.
+    # If the error is infinite, a critical speed may exist that was not found or not resolved.
     refusal = "; ".join(result.warnings) if isinf(result.error) else ""
     return Answer(result, refusal, [] if refusal else None)
 
@@ -149,7 +149,7 @@ def limits(
     discretization: options.Discretization = "ritz",
     outputs: AnswerFiles = NO_ANSWER_FILES,
 ) -> Answer:
-    """Setting angles past which the first frequency stops falling with speed, and past which it only rises.
+    """Setting angles above which the first frequency stops falling with speed, and above which it only rises.
 
     Parameters
     ----------
@@ -171,12 +171,12 @@ def _draw_locus(result: bd.Locus, ax: Axes) -> None:
 
 
 def _unstable(result: bd.Modes) -> str:
-    """Say which modes are unstable, with the critical speed; empty if all are stable."""
+    """Name the unstable modes, with the critical speed; empty if all modes are stable."""
     unstable = [i for i, status in enumerate(result.status) if status in _GROWING]
     if not unstable:
         return ""
     which = ", ".join(f"mode {i + 1} ({result.status[i]}, {result.growth_rate[i]:.4g} 1/s)" for i in unstable)
-    # A load that follows the beam may cause flutter, so that no critical speed is known.
+    # A follower load may cause flutter, so that no critical speed is known.
     if result.scene.may_flutter_by_load:
         return f"unstable at {result.speed:g} rad/s: {which}"
     critical = bd.critical_point(result.scene)

@@ -1,4 +1,4 @@
-"""Steady state, harvested energy, and motion in time: one transient, and a sweep of them over speed."""
+"""Steady-state response, harvested energy, and time simulation: one transient, or a sweep over speed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from beamdyn.common.results.result import Result
 
 
-# Steady state ----------------------------------------------------------------------------------------
+# Steady-state response -------------------------------------------------------------------------------
 
 
 TopOfSearch = Annotated[
@@ -77,7 +77,7 @@ def steady(
         Speeds with their unit: start:stop:count, e.g. "1:150:1000 rad/s", or a list, e.g. "50, 55
         rad/s".
     tolerance
-        Largest error by the harmonics left out, relative to the sum of all lines.
+        Largest error due to omitted harmonics, relative to the sum of all lines.
     """
     result = bd.steady_response(scene, speeds, modes, tolerance=tolerance, discretization=discretization)
     none = f"there is no steady response {at_any(len(speeds), 'speed')}: {result.status[0]}"
@@ -87,11 +87,11 @@ def steady(
 _HARVESTER = "The scene, with a table [harvester]; gravity and its motion excite the beam."
 
 
-_FEW_SPEEDS, _ROUGH = 11, 1e-2  # number of speeds, and tolerance, of a preliminary answer
+_FEW_SPEEDS, _ROUGH = 11, 1e-2  # number of speeds, and tolerance, of a preliminary result
 
 
 def _harvest_sooner(scene: bd.Scene, **options: Any) -> Result | Answer:
-    """Compute what is harvested at few of the speeds, as a preliminary answer."""
+    """Compute the harvested energy at a few of the speeds, as a preliminary result."""
     speeds = options["speeds"]
     few = speeds[evenly_spread(len(speeds), _FEW_SPEEDS)]
     return harvest.function(scene, **options | {"speeds": few, "tolerance": _ROUGH})
@@ -115,7 +115,7 @@ def harvest(
     tolerance: float = 1e-5,
     discretization: options.Discretization = "ritz",
 ) -> Answer:
-    """How much power piezoelectric layers harvest over speed, with which voltage, strain and efficiency.
+    """Power that piezoelectric layers harvest over speed, with voltage, strain and efficiency.
 
     Parameters
     ----------
@@ -123,11 +123,11 @@ def harvest(
         Speeds with their unit: start:stop:count, e.g. "10:130:61 rad/s", or a list, e.g. "50, 55 rad/s";
         of a wheel that rolls also velocities, e.g. "30:120:46 km/h".
     road
-        Class of a random road by ISO 8608 that the wheel follows besides, from A, very good, to H.
+        Class of an additional random road profile by ISO 8608, from A (very good) to H.
     highest
-        Spatial frequency at which that road ends; default: 2.83 1/m, that of the standard.
+        Highest spatial frequency of this random road; default: 2.83 1/m, as in the standard.
     tolerance
-        Largest error by the harmonics left out, relative to the sum of all lines.
+        Largest error due to omitted harmonics, relative to the sum of all lines.
     """
     result = bd.harvest(scene, speeds, modes, tolerance, discretization, _roughness(road, highest))
     none = f"there is no steady response {at_any(len(speeds), 'speed')}: {result.status[0]}"
@@ -135,9 +135,9 @@ def harvest(
 
 
 def _roughness(road: str | None, highest: str | None) -> bd.RoadRoughness | None:
-    """Read the class of a random road, and the spatial frequency at which it ends; None without a road."""
+    """Read the class of a random road, and its highest spatial frequency; None without a road."""
     if highest is not None and road is None:
-        raise ValueError(f'--highest = "{highest}": it ends a random road, and there is none; give --road')
+        raise ValueError(f'--highest = "{highest}": it limits a random road, but there is none; give --road')
     limit = {} if highest is None else {"highest": parse_positive("--highest", highest, "1/m")}
     return None if road is None else bd.RoadRoughness(road, **limit)
 
@@ -145,7 +145,7 @@ def _roughness(road: str | None, highest: str | None) -> bd.RoadRoughness | None
 def _resistance_sooner(
     scene: bd.Scene, road: str | None = None, highest: str | None = None, **options: Any
 ) -> Result:
-    """Try few resistances, as a preliminary answer."""
+    """Compute a few load resistances, as a preliminary result."""
     given = {"discretization": "ritz", **options, "tolerance": _ROUGH, "road": _roughness(road, highest)}
     return sought(ROUGH, scene, **given)
 
@@ -167,22 +167,22 @@ def best_resistance(
     tolerance: float = 1e-5,
     discretization: options.Discretization = "ritz",
 ) -> bd.BestResistance:
-    """The load resistance with which piezoelectric layers harvest most at a speed, and what they harvest.
+    """Load resistance at which piezoelectric layers harvest most power at a speed, and this power.
 
     Parameters
     ----------
     road
-        Class of a random road by ISO 8608 that the wheel follows besides, from A, very good, to H.
+        Class of an additional random road profile by ISO 8608, from A (very good) to H.
     highest
-        Spatial frequency at which that road ends; default: 2.83 1/m, that of the standard.
+        Highest spatial frequency of this random road; default: 2.83 1/m, as in the standard.
     tolerance
-        Largest error by the harmonics left out, relative to the sum of all lines.
+        Largest error due to omitted harmonics, relative to the sum of all lines.
     """
     rough = _roughness(road, highest)
     return bd.best_resistance(scene, speed, modes, tolerance, discretization, rough)
 
 
-# Motion in time --------------------------------------------------------------------------------------
+# Time simulation -------------------------------------------------------------------------------------
 
 
 # Number of periods of the first mode in a close-up, and number of frames of its animation.
@@ -209,14 +209,14 @@ def simulate(
     animation: Annotated[Path | None, WRITTEN] = None,
     outputs: Outputs = NO_FILES,
 ) -> Answer:
-    """Transient of the beam, from rest.
+    """Transient motion of the beam, starting from rest.
 
     Parameters
     ----------
     t_end
         End of the run with its unit, e.g. "30 s".
     method
-        Integrator: auto is the package's own; scipy's take minutes where that takes a second.
+        Integrator; auto: the package's own, which takes a second where those of scipy take minutes.
     window
         Also give the largest deflection within this time window: start:end, e.g. "20:30 s".
     series
@@ -274,7 +274,7 @@ def sweep(
 def _write_close_up(
     run: bd.Transient, window: tuple[float, float], series: Path | None, animation: Path | None, force: bool
 ) -> None:
-    """Write the motion over a few periods around the largest deflection in a window."""
+    """Write the motion during a few periods around the largest deflection in a window."""
     if series is None and animation is None:
         return
     middle, _ = time_of_peak(run, *window)
@@ -293,7 +293,7 @@ def _write_close_up(
 
 @contextmanager
 def _executor(scheduler: str | None) -> Iterator[Executor | None]:
-    """Yield the executor of the Dask cluster of a scheduler, or None if no scheduler is given."""
+    """Yield the executor of a Dask cluster, or None if no scheduler is given."""
     if scheduler is None:
         yield None
         return
@@ -311,7 +311,7 @@ def _executor(scheduler: str | None) -> Iterator[Executor | None]:
 
 @contextmanager
 def _progress(cases: int, store: Path | None) -> Iterator[Callable[[int, int], None]]:
-    """Yield a function that shows progress; if the sweep is interrupted, word how much is done."""
+    """Yield a function that shows progress; if the sweep is interrupted, report how much is done."""
     finished = 0
 
     def progress(done: int, total: int) -> None:

@@ -1,4 +1,4 @@
-"""The scene itself: its drawing, the terms of its equations, and what its errors cost."""
+"""Analyses of the scene itself: its drawing, the terms of its equations, and accuracy over computing time."""
 
 from __future__ import annotations
 

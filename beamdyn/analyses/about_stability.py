@@ -1,4 +1,4 @@
-"""Stability in periodic motion: the multipliers of one scene, and charts over two numbers."""
+"""Stability of periodic motion: Floquet multipliers of a scene, and stability charts over two numbers."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from beamdyn.scene.numbers import SPEED, number_at
 
 _FREQUENCY = "motion.frequency"
 _AMPLITUDES = "motion.fluctuation", "motion.along_n1", "motion.along_n2", "motion.along_n3"
-# Options with which the screens open: frequencies and amplitudes about a tongue of instability.
+# Initial options of the screens: frequencies and amplitudes around a region of instability.
 _TONGUE = "--vary", "motion.frequency=118:130:61 Hz", "--vary", "motion.fluctuation=0:0.2:41"
-_FEW = 9  # values of each number in a preliminary chart
-_VALUES = 41  # number of values of an amplitude, where none are given
+_FEW = 9  # number of values of each input in a preliminary chart
+_VALUES = 41  # number of amplitudes, if none are given
 
 Varied = Annotated[
     tuple[str, ...],
@@ -50,14 +50,14 @@ Store = Annotated[
 def floquet(
     scene: bd.Scene, *, modes: ModeCount = 3, discretization: Discretization = "ritz"
 ) -> bd.FloquetMultipliers:
-    """Whether free motion grows about a motion that repeats itself: Floquet multipliers over its period."""
+    """Stability of a periodic motion: Floquet multipliers of free vibration over one period."""
     return bd.floquet_multipliers(scene, modes, discretization)
 
 
 def _chart_sooner(
     scene: bd.Scene, *, vary: tuple[str, ...], discretization: Discretization, **_: Any
 ) -> Answer:
-    """Compute a chart of the first mode at few values, as a preliminary answer."""
+    """Compute a stability chart with one mode and few values, as a preliminary result."""
     scene, inputs, units = _varied(scene, vary)
     few = {path: values[evenly_spread(len(values), _FEW)] for path, values in inputs.items()}
     result = bd.stability_chart(scene, few, 1, discretization)
@@ -80,7 +80,7 @@ def stability_chart(
     workers: Workers = 1,
     store: Store = None,
 ) -> Answer:
-    """Where free motion grows, over two numbers of a scene whose motion repeats itself."""
+    """Stability chart of a periodic motion: where free vibration grows, over two inputs of the scene."""
     scene, inputs, units = _varied(scene, vary)
     result = bd.stability_chart(scene, inputs, modes, discretization, workers, store)
     return Answer(result, tables=[chart_table(result, units)])
@@ -102,7 +102,7 @@ def stability_limits(
     workers: Workers = 1,
     store: Store = None,
 ) -> bd.StabilityLimits:
-    """The limits between free motion that grows and that does not, over two numbers, followed as curves."""
+    """Stability limits of a periodic motion, followed as curves over two inputs of the scene."""
     scene, inputs, _ = _varied(scene, vary)
     return bd.stability_limits(scene, inputs, modes, discretization, workers, store)
 
@@ -110,7 +110,7 @@ def stability_limits(
 def _varied(
     scene: bd.Scene, vary: tuple[str, ...]
 ) -> tuple[bd.Scene, dict[str, np.ndarray], dict[str, tuple[str, float]]]:
-    """Return the scene in the unit of a given speed, the two varied numbers with values, and their units."""
+    """Return the scene in the unit of a given speed, the two varied inputs with values, and their units."""
     if not vary:
         return scene, _about(scene), {}
     if len(vary) != 2:
@@ -125,7 +125,7 @@ def _varied(
 
 
 def _about(scene: bd.Scene) -> dict[str, np.ndarray]:
-    """Choose values around a scene's own frequency and amplitude of pulsation."""
+    """Choose values around the pulsation frequency and amplitude of the scene."""
     numbers = {path: number_at(scene, path) for path in (_FREQUENCY, *_AMPLITUDES)}
     there = [path for path in _AMPLITUDES if numbers[path]]
     frequency = numbers[_FREQUENCY]

@@ -1,4 +1,4 @@
-"""Inverse design: numbers of a scene for wanted answers."""
+"""Inverse design: values of a scene's inputs for which its results are as wanted."""
 
 from __future__ import annotations
 
@@ -47,23 +47,23 @@ def design(
     write: Annotated[Path | None, WRITTEN] = None,
     file: Path | None = None,
 ) -> Answer:
-    """Numbers of the scene, within bounds, for which its answers are what is wanted.
+    """Inputs of the scene, within bounds, for which its results are as wanted.
 
     Parameters
     ----------
     free
-        The numbers by their names in the file, a comma between them, each with its bounds:
+        Names of the inputs to choose, separated by commas, each with its bounds:
         "beam.thickness=0.1:0.3 mm, beam.length=40:60 mm"; without, from half to twice its value.
     so_that
-        What is wanted, the option once for each: an answer, then =, >= or <= and a value, or largest or
-        smallest. Answers are "frequency 1 at 50 rad/s", of the first mode; "critical speed"; "resonance
+        A wanted result; give the option once for each: the result, then =, >= or <= and a value, or largest
+        or smallest. Results are "frequency 1 at 50 rad/s", of the first mode; "critical speed"; "resonance
         speed 1 with road +", of a mode and a line of the excitation; "amplitude", "peak", "strain" and
-        "power", with "at" and a speed. Without it frequencies are those at rest, and responses those at
-        the final speed.
+        "power", with "at" and a speed. Without it frequencies are those at rest, and responses those at the
+        final speed.
     seed
-        Seed of the random designs with which a search over several numbers begins.
+        Seed of the random designs with which a search over several inputs begins.
     write
-        Write the scene with the numbers found into this file, with what they were to reach.
+        Write the scene with the values found, and comments on the wanted results, into this file.
     """
     if not so_that:
         raise ValueError(f"--so-that: say what is wanted; {_EXAMPLE}")
@@ -78,7 +78,7 @@ def design(
 
 
 def _match(text: str) -> re.Match[str]:
-    """Split the text of ``--so-that`` into its parts; refuse a text that has another form."""
+    """Split the text of the option ``--so-that`` into its parts; raise an error for an invalid text."""
     found = _TARGET.fullmatch(text)
     if found is None:
         raise ValueError(f'--so-that = "{text}": {_EXAMPLE}')
@@ -86,7 +86,7 @@ def _match(text: str) -> re.Match[str]:
 
 
 def _target(found: re.Match[str], scene: bd.Scene) -> bd.Target:
-    """Make the target that ``--so-that`` describes."""
+    """Make the target that the option ``--so-that`` describes."""
     what, unit = _WORDS[found["what"]], KINDS[_WORDS[found["what"]]].unit
     wanted: dict[str, Any] = {"best": found["best"]}
     if found["sign"]:
@@ -96,7 +96,7 @@ def _target(found: re.Match[str], scene: bd.Scene) -> bd.Target:
 
 
 def _value(text: str, unit: str, scene: bd.Scene) -> float:
-    """Read a wanted value, in SI."""
+    """Read a wanted value, in SI units."""
     if unit == "rad/s":
         return parse_speed("--so-that", text, scene)
     return parse_quantity("--so-that", text, unit) if unit else float(text)

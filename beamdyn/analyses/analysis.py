@@ -1,4 +1,4 @@
-"""The description of an analysis, from which its command, screen, report and page in the manual are made."""
+"""Description of an analysis, from which its command, screen, report and manual page are made."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ Physics = Annotated[
 
 
 class Mark(Enum):
-    """The role of an option: a file to write, a second file to read, or a choice for a picture."""
+    """The role of an option: an output file, a second input file, or a choice for a picture."""
 
     WRITTEN = auto()
     DRAWN = auto()
@@ -54,16 +54,18 @@ def _option(name: str) -> str:
 
 @dataclass(frozen=True)
 class AsText:
-    """An option that is given as text, such as a number with its unit, and read for a scene.
+    """An option given as text, such as a number with its unit, which is converted for a scene.
 
     Parameters
     ----------
     read : callable
-        ``read(option, text, scene)``: the value in SI; a ValueError names the option.
+        ``read(option, text, scene)`` returns the value in SI units; it raises a ValueError that names the
+        option.
     default : str, optional
-        The text if none is given.
+        Default text.
     absent : callable, optional
-        ``absent(scene)``: the value if none is given; without it and a default, the option is required.
+        ``absent(scene)`` returns the value if the option is not given; without `absent` and `default`, the
+        option is required.
     """
 
     read: Callable[[str, str, Scene], Any]
@@ -71,7 +73,7 @@ class AsText:
     absent: Callable[[Scene], Any] | None = None
 
     def shown(self, option: inspect.Parameter) -> inspect.Parameter:
-        """Return the option as the command line has it: with its value as text."""
+        """Return the option as on the command line: its value is a text."""
         notes = Parameter(allow_leading_hyphen=True), *_extras(option.annotation)
         if self.default is None and self.absent is not None:
             return option.replace(annotation=Annotated[str | None, *notes], default=None)
@@ -79,7 +81,7 @@ class AsText:
         return option.replace(annotation=Annotated[str, *notes], default=default)
 
     def value(self, option: str, text: str | None, scene: Scene) -> Any:
-        """Return the value that a text means, or that of an option left out."""
+        """Return the value that a text means, or the value of an option that is not given."""
         if text is None:
             return None if self.absent is None else self.absent(scene)
         return self.read(option, text, scene)
@@ -87,22 +89,22 @@ class AsText:
 
 @dataclass(frozen=True)
 class Answer:
-    """A result, and what its command says of it beyond its views and warnings.
+    """A result, with messages, tables and drawing that differ from the defaults for its class.
 
     Parameters
     ----------
     result : Result
         The result.
     refusal : str
-        Why the model has no answer; empty if it has one.
+        The reason why the model has no solution; empty if it has one.
     warnings : sequence of str, optional
-        Warnings; those of the result if not given.
+        Warnings; by default the warnings of the result.
     tables : sequence of rich renderables, optional
-        The result for people; by its view if not given.
+        Tables and sentences for the console; by default those of the result's class.
     draw : callable, optional
-        Draws the result on axes; by its view if not given.
+        Draws the result on axes; by default as its class does.
     tolerance : float, optional
-        Tolerance by which the warnings of the result judge its errors.
+        Tolerance that the errors of the result should not exceed; otherwise a warning is given.
     """
 
     result: Result
@@ -114,7 +116,7 @@ class Answer:
 
     @property
     def cautions(self) -> Sequence[str]:
-        """Warnings beside the answer; those about the model error are computed here, which takes time."""
+        """Return the warnings on the result, including those on model errors, which are computed here."""
         return warnings_of(self.result, self.tolerance) if self.warnings is None else self.warnings
 
 
@@ -125,24 +127,25 @@ class Analysis:
     Parameters
     ----------
     function : callable
-        ``function(scene, **options)``: a result, or an `Answer`. Its name is that of the command, its
-        docstring the question; the annotations of its keyword arguments describe the options. It is given
-        `outputs`, and the `file` of the scene, only if it has arguments of these names.
+        ``function(scene, **options)`` returns a result or an `Answer`.  The name of the function is the name
+        of the command, its docstring is the help text, and the annotations of its keyword arguments describe
+        the options.  It receives `outputs`, and the `file` of the scene, only if it has arguments with these
+        names.
     examples : tuple of str
-        Commands that can be typed as they stand.
+        Example commands that can be typed as they are.
     about_scene : str
-        What the analysis takes of the scene, in words.
+        Parts of the scene that the analysis uses, in words.
     moving : callable
-        ``moving(options)``: whether the scene must have a motion.
+        ``moving(options)`` returns whether the scene must have a motion.
     physics : type, optional
-        Annotation of the option on physics; None if the analysis takes that of the scene.
+        Annotation of the option on physical effects; None if the analysis uses those of the scene.
     screen : str
-        Name of the screen that is made of it; empty if there is none.
+        Name of the screen made from the analysis; empty if there is none.
     opens_with : tuple of str
-        Options, as they are typed, with which the screen opens; empty for those of the first example.
+        Initial options of the screen, as typed; empty for the options of the first example.
     sooner : callable, optional
-        ``sooner(scene, **options)``: a preliminary answer, whose picture the screen shows until that of
-        `function` is there; if not given, an answer with few modes.
+        ``sooner(scene, **options)`` returns a preliminary result, whose picture the screen shows until the
+        result of `function` is available; by default, a result with few modes.
     """
 
     function: Callable[..., Result | Answer]
@@ -156,12 +159,12 @@ class Analysis:
 
     @property
     def name(self) -> str:
-        """Name of the command: that of the function, with hyphens."""
+        """Return the name of the command: the name of the function, with hyphens."""
         return self.function.__name__.replace("_", "-")
 
     @cached_property
     def options(self) -> dict[str, inspect.Parameter]:
-        """Options by name, with their annotations: the function's own, then those common to all analyses."""
+        """Return the options by name, with annotations: first the function's own, then the common ones."""
         own = [p for p in inspect.signature(self.function).parameters.values() if p.kind is p.KEYWORD_ONLY]
         names = vars(inspect.getmodule(self.function))
         found = {p.name: p.replace(annotation=eval(p.annotation, names)) for p in own}
@@ -173,7 +176,7 @@ class Analysis:
 
     @cached_property
     def texts(self) -> dict[str, AsText]:
-        """Descriptions of the options that are given as text, by name."""
+        """Return the descriptions of the options that are given as text, by name."""
         return {
             name: note
             for name, each in self.options.items()
@@ -183,13 +186,13 @@ class Analysis:
 
     @cached_property
     def shown(self) -> dict[str, inspect.Parameter]:
-        """Options as the command line and forms have them, by name."""
+        """Return the options as the command line and forms have them, by name."""
         texts = {name: text.shown(self.options[name]) for name, text in self.texts.items()}
         return self.options | texts
 
     @property
     def question(self) -> str:
-        """The question that the analysis answers, in a sentence: the first line of its docstring."""
+        """Return the first line of the function's docstring: the question that the analysis answers."""
         return (self.function.__doc__ or "").partition("\n")[0]
 
     def meaning(self, name: str) -> str:
@@ -198,7 +201,7 @@ class Analysis:
         return next(filter(None, [meanings_in(self.function).get(name), *notes]), "")
 
     def command(self) -> Callable[..., None]:
-        """Make the function of the command, with the signature that its help is made from."""
+        """Make the function of the command, with a signature from which the help text is made."""
 
         def run(scene: Path, /, *second: Path | None, **options: Any) -> None:
             named = (name for name, each in self.options.items() if READ_SECOND in _extras(each.annotation))
@@ -213,7 +216,7 @@ class Analysis:
         return run
 
     def run(self, file: Path, options: Mapping[str, Any]) -> None:
-        """Answer the scene of a file, write the files that are asked for, and print the answer."""
+        """Analyse the scene of a file, write the requested files, and print the result."""
         given = {name: options.get(name, each.default) for name, each in self.shown.items()}
         outputs: Files = given.pop("outputs")
         written, read, asked = self._sort(given)
@@ -225,7 +228,7 @@ class Analysis:
         scene = load_scene(file)
         if self.moving(given):
             check_moves(scene, file)
-        # Results are shown in the unit of a given speed.
+        # Results are displayed in the unit of a given speed.
         scene = in_unit_of(scene, *(given[name] for name in self.texts))
         if given.get("physics") is not None:
             scene = replace(scene, physics=given["physics"])
@@ -241,20 +244,20 @@ class Analysis:
         file: Path | None = None,
         by: Callable[..., Result | Answer] | None = None,
     ) -> Answer:
-        """Compute the answer on a scene.
+        """Compute the result for a scene.
 
         Parameters
         ----------
         scene : Scene
-            The scene, with the physics that is wanted.
+            The scene, with the requested physical effects.
         given : mapping
-            Values of the options, those in `texts` as text.
+            Values of the options; options in `texts` as text.
         outputs : Outputs
-            Files that are asked for.
+            Requested output files.
         named : callable
-            ``named(name)``: what the user calls an option.
+            ``named(name)`` returns the name of an option for the user.
         file : Path, optional
-            The file of the scene, if it is in one.
+            The file that contains the scene, if any.
         by : callable, optional
             Function to call in place of `function`, with the same options.
         """
@@ -268,8 +271,8 @@ class Analysis:
         return made if isinstance(made, Answer) else Answer(made)
 
     def _sort(self, given: Mapping[str, Any]) -> tuple[dict[str, Path], list[Path], dict[str, object]]:
-        """Sort options into files to write, files and folders to read, and options that a report repeats."""
-        # Values and annotations of options; those of a group count one by one.
+        """Sort options into output files, input files and folders, and options that a report repeats."""
+        # Values and annotations of options; options in a group are listed one by one.
         options: dict[str, tuple[Any, Any]] = {}
         for name, value in given.items():
             if is_dataclass(value):
@@ -285,33 +288,33 @@ class Analysis:
 
 
 def analysis(*examples: str, **about: Any) -> Callable[[Callable[..., Any]], Analysis]:
-    """Return a decorator that makes an `Analysis` of a function, with these attributes."""
+    """Return a decorator that makes an `Analysis` of a function, with the given attributes."""
     return lambda function: Analysis(function, examples, **about)
 
 
 def meanings_in(documented: object) -> dict[str, str]:
-    """Return the explanations of parameters in a docstring, by their names."""
+    """Return the explanations of the parameters in a docstring, by name."""
     from docstring_parser import parse
 
     return {each.arg_name: each.description or "" for each in parse(documented.__doc__ or "").params}
 
 
 def deliver(answer: Answer, outputs: Files, question: Question) -> None:
-    """Write the requested files, then print the answer and its warnings.
+    """Write the requested files, then print the result and its warnings.
 
     Parameters
     ----------
     answer : Answer
-        The answer.
+        The result to write and print.
     outputs : Outputs
-        Files to write.
+        Requested output files.
     question : Question
         The command and its input, for the report.
 
     Raises
     ------
     NoAnswer
-        With the refusal, after everything has been written.
+        If the model has no solution; raised after all files are written.
     """
     result, refusal = answer.result, answer.refusal
     draw = picture_of(result) if answer.draw is None else on_axes(answer.draw)
@@ -322,7 +325,7 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
     tables += describe_left_out(result)
     warnings = answer.cautions
     refusals = [refusal] if refusal else []
-    # Files are written first: who stops reading the tables does not lose a long computation.
+    # Files are written first, so that a user who closes the output does not lose a long computation.
     write(result, outputs, rows_of(result), draw, Report(question, tables, [*warnings, *refusals]))
     show(tables)
     exit_codes.warn("beamdyn", warnings)
@@ -335,7 +338,7 @@ def _keyword(name: str, annotation: Any, default: Any = inspect.Parameter.empty)
 
 
 def _placed(option: inspect.Parameter) -> inspect.Parameter:
-    """Return the option as the command takes it: positional if it names the second file to read."""
+    """Return the option for the command: positional if it names the second input file."""
     second = READ_SECOND in _extras(option.annotation)
     return option.replace(kind=inspect.Parameter.POSITIONAL_ONLY) if second else option
 

@@ -1,4 +1,4 @@
-"""Options that several analyses share: the meaning, the bounds and the reading of each."""
+"""Options that several analyses share: meaning, bounds, and conversion of texts."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 
 
 def none_given(_: bd.Scene) -> None:
-    """Return None, the value of an option that is left out and needs none."""
+    """Return None, the value of an optional option that is not given."""
 
 
 def final_speed(scene: bd.Scene) -> float:
-    """Return the scene's final speed [rad/s], the value of a speed that is left out."""
+    """Return the final speed of the scene's motion [rad/s], the default of the option for the speed."""
     return scene.final_speed
 
 
 def positive(unit: str, **more: Any) -> AsText:
-    """Describe an option that is a positive number with its unit."""
+    """Describe an option that is a positive number with a unit."""
     return AsText(lambda option, text, _: values.parse_positive(option, text, unit), **more)
 
 

@@ -1,4 +1,4 @@
-"""Reading of values of options: numbers with units, ranges and lists of speeds."""
+"""Reading of option values: numbers with units, ranges and lists of speeds."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ _NUMBER = re.compile(r"[-+]?[\d.]+([eE][-+]?\d+)?")
 
 
 def at_most(most: int) -> Parameter:
-    """Describe an option that is a whole number up to a limit, above which a command takes hours."""
+    """Describe a whole-number option with a largest value, above which a command would take hours."""
 
     def whole(kind: object, tokens: Sequence[Token]) -> int | str:
-        """Read a whole number, or "auto" where allowed; cyclopts alone would cut 2.5 down to 2."""
+        """Read a whole number, or "auto" if allowed; the option parser cyclopts would cut 2.5 down to 2."""
         text, auto = tokens[0].value.strip(), kind is not int
         if auto and text == "auto":
             return text
@@ -49,7 +49,7 @@ def at_most(most: int) -> Parameter:
 
 
 def parse_quantity(option: str, text: str, of: str | Quantity) -> float:
-    """Read a number with its unit, in SI; an InvalidInput names the option."""
+    """Read a number with its unit, in SI units; an InvalidInput names the option."""
     try:
         return quantity(text, of) if isinstance(of, str) else of.convert(text)
     except InvalidInput as error:
@@ -57,7 +57,7 @@ def parse_quantity(option: str, text: str, of: str | Quantity) -> float:
 
 
 def parse_positive(option: str, text: str, unit: str, scene: bd.Scene | None = None) -> float:
-    """Read a positive number with its unit, in SI; for a scene, a speed as `parse_speed` reads it."""
+    """Read a positive number with its unit, in SI units; with a scene, a speed as in `parse_speed`."""
     value = parse_quantity(option, text, unit) if scene is None else parse_speed(option, text, scene)
     if value <= 0:
         raise ValueError(f'{option} = "{text}": it must be greater than 0')
@@ -67,7 +67,7 @@ def parse_positive(option: str, text: str, unit: str, scene: bd.Scene | None = N
 def parse_speed(option: str, text: str, scene: bd.Scene | None = None) -> float:
     """Read a speed with its unit [rad/s]; a ValueError names the option.
 
-    If the scene has a wheel that rolls, it may be the velocity of the vehicle, such as "60 km/h".
+    For a scene with a rolling wheel, the text may be the velocity of the vehicle, such as "60 km/h".
     """
     if scene is not None and isinstance(scene.motion, RollingWheel):
         velocity = as_velocity(text)
@@ -77,7 +77,7 @@ def parse_speed(option: str, text: str, scene: bd.Scene | None = None) -> float:
 
 
 def parse_window(text: str, t_end: float | None = None) -> tuple[float, float]:
-    """Read start and end [s] of ``--window``, such as "20:30 s", within a run that ends at `t_end`."""
+    """Read start and end [s] in ``--window``, such as "20:30 s", not after the end `t_end` of the run."""
     unit = _UNIT.search(text.strip())
     ends = text.strip()[: unit.start()].split(":") if unit else []
     if unit is None or len(ends) != 2:
@@ -91,14 +91,14 @@ def parse_window(text: str, t_end: float | None = None) -> tuple[float, float]:
 
 
 def parse_speeds(text: str, scene: bd.Scene | None = None) -> np.ndarray:
-    """Read the speeds [rad/s] of ``--speeds``: start:stop:count or a list, with a unit at the end.
+    """Read the speeds [rad/s] in ``--speeds``: start:stop:count or a list, with a unit at the end.
 
     Parameters
     ----------
     text : str
-        E.g. "0:150:301 rad/s" or "0, 50, 100 rad/s".
+        The option's text, e.g. "0:150:301 rad/s" or "0, 50, 100 rad/s".
     scene : Scene, optional
-        The scene, whose wheel may roll: see `parse_speed`.
+        The scene; if its wheel rolls, velocities are allowed as in `parse_speed`.
 
     Returns
     -------
@@ -107,7 +107,7 @@ def parse_speeds(text: str, scene: bd.Scene | None = None) -> np.ndarray:
     Raises
     ------
     ValueError
-        If there are none, they do not ascend, or lack a unit of angular speed.
+        If there are no speeds, they do not ascend, or a unit of angular speed is missing.
     """
 
     def refusal(said: str) -> ValueError:
@@ -145,7 +145,7 @@ def parse_speeds(text: str, scene: bd.Scene | None = None) -> np.ndarray:
 
 
 def parse_amounts(option: str, text: str, of: str | Quantity, example: str) -> tuple[list[float], list[str]]:
-    """Read a list of numbers with a unit at its end, such as "62.1, 389 Hz": values, and texts as written."""
+    """Read a list of numbers with a unit at its end, such as "62.1, 389 Hz": return values, and texts."""
     found = _UNIT.search(text.strip())
     values = [value for (value,) in _tuples(option, text, 1, example, of)]
     return values, [part.strip() for part in text.strip()[: found.start() if found else None].split(",")]
@@ -157,12 +157,12 @@ def parse_positions(option: str, text: str) -> list[float]:
 
 
 def parse_points(option: str, text: str) -> list[list[float]]:
-    """Read points of a section [m]: pairs with a unit at their end, such as "-0.1:0, 0.1:2 mm"."""
+    """Read points of a cross-section [m]: pairs with a unit at the end, such as "-0.1:0, 0.1:2 mm"."""
     return _tuples(option, text, 2, "-0.1:0, 0.1:0 mm")
 
 
 def _tuples(option: str, text: str, size: int, example: str, of: str | Quantity = "m") -> list[list[float]]:
-    """Read a list, each member of which has `size` numbers, with one unit for all at the end."""
+    """Read a list of groups of `size` numbers, with one unit for all at the end."""
     unit = _UNIT.search(text.strip())
     members = text.strip()[: unit.start()].split(",") if unit else []
     parts = [[number.strip() for number in member.split(":")] for member in members]
@@ -172,21 +172,21 @@ def _tuples(option: str, text: str, size: int, example: str, of: str | Quantity 
 
 
 def unit_of_speed(*texts: str | None) -> str:
-    """Return the unit of the first text with a speed that can be shown in its unit.
+    """Return the unit of the first text with a speed, if results can be displayed in this unit.
 
-    Empty if there is none.
+    The unit is empty if there is none.
     """
     found = (_UNIT.search(text.strip()) for text in texts if text is not None)
     return next(filter(None, (known_unit("speed", unit.group()) for unit in found if unit)), "")
 
 
 def in_unit_of(scene: bd.Scene, *texts: str | None) -> bd.Scene:
-    """Return the scene, with results shown in the unit of the speeds in texts, if one is given."""
+    """Return the scene; its results are displayed in the unit of the speed in a text, if there is one."""
     return replace(scene, units=scene.units.with_others({"speed": unit_of_speed(*texts)}))
 
 
 def check_moves(scene: bd.Scene, path: Path) -> None:
-    """Refuse a scene without a motion."""
+    """Raise an error for a scene without a motion."""
     if scene.motion is None:
         example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'
         sentence = f"motion: missing; a motion in time needs it: give a table [motion], e.g. with {example}"

@@ -1,1 +1,1 @@
-"""The interactive program of beamdyn: screens on frequencies, responses and other analyses of a beam."""
+"""The interactive program of beamdyn: screens for frequencies, responses and other analyses of a beam."""

@@ -1,4 +1,4 @@
-"""Screens made from the description of an analysis: a form of its options, and its result."""
+"""Screens made from the description of an analysis: a form for its options, and its result."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ from beamdyn.common.screens.screens import Screen
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_FEW_MODES = 6  # number of modes of a coarse solution, where the tolerance chooses the number otherwise
-_HEADLINES = 3  # number of parts of a result's one-line summary that a screen shows first, at most
+_FEW_MODES = 6  # modes of a preliminary result, if the tolerance chooses the number otherwise
+_HEADLINES = 3  # largest number of parts of a result's one-line summary that a screen shows
 _NARROW = 4.4, 4.0  # size of a picture on a narrow page [inch]
 _OF_COMMANDS = (
     "physics",
@@ -41,12 +41,12 @@ _OF_COMMANDS = (
     "workers",
     "samples",
     "seed",
-)  # options that a form leaves out
-_BETWEEN = ";"  # separator of the texts of an option that may be given several times
+)  # options that have no field in a form
+_BETWEEN = ";"  # separator between several texts of an option that may be given several times
 
 
 def analysis_screen(analysis: Analysis) -> Screen:
-    """Make the screen of an analysis: a form of its options beside the scene's, and its result."""
+    """Make the screen of an analysis: a form with its options and the scene's inputs, and its result."""
     name = analysis.function.__name__
     ASIDE[name] = _section(analysis)
 
@@ -71,7 +71,7 @@ def analysis_screen(analysis: Analysis) -> Screen:
         return answer.result
 
     def headline(answer: Answer) -> Iterator[KeyResult]:
-        beside = "", warned(getattr(answer.result, "warnings", ()))  # left out: the warnings stand below
+        beside = "", warned(getattr(answer.result, "warnings", ()))  # without warnings, which are shown below
         lines = (line for line in answer.result.headline() if line not in beside)
         yield KeyResult("in short", "; ".join(map(in_files, islice(lines, _HEADLINES))))
 
@@ -83,10 +83,10 @@ def analysis_screen(analysis: Analysis) -> Screen:
 
 
 def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
-    """Draw the picture of an answer, without the notes that stand below it in files."""
+    """Draw the picture of a result without notes, which files have but the page shows separately."""
     result: Any = answer.result
     if narrow:
-        own = hasattr(result, "picture_size")  # a picture of panels chooses its own size
+        own = hasattr(result, "picture_size")  # a picture with several panels chooses its own size
         size, plot = (result.picture_size(_NARROW[0]), result.plot_panels) if own else (_NARROW, result.plot)
         draw = partial(figure_of, answer.draw or plot, size)
     else:
@@ -96,7 +96,7 @@ def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
 
 
 def first_entries(analysis: Analysis) -> dict[str, str]:
-    """Return the entries of the form on opening: as stated, or the options of the first example."""
+    """Return the initial field texts of a form: the stated ones, or the options of the first example."""
     name, words = analysis.function.__name__, analysis.opens_with or shlex.split(analysis.examples[0])
     given: dict[str, str] = {}
     for word, text in pairwise(words):
@@ -107,7 +107,7 @@ def first_entries(analysis: Analysis) -> dict[str, str]:
 
 
 def _section(analysis: Analysis) -> type[Section]:
-    """Make the table of an analysis' options, grouped ones included: numbers, texts and choices, no files."""
+    """Make the form table for an analysis' options, also grouped ones: numbers, texts, choices; no files."""
     fields: dict[str, Any] = {}
     for name, option in analysis.shown.items():
         if group := _group_of(option.annotation):
@@ -127,7 +127,7 @@ def _section(analysis: Analysis) -> type[Section]:
 
 
 def _group_of(annotation: Any) -> type | None:
-    """Return the class of an option that is a group of options; None for others."""
+    """Return the class of an option that is a group of options; None for other options."""
     kind = _bare(annotation)
     return kind if isinstance(kind, type) and is_dataclass(kind) and not issubclass(kind, Files) else None
 
@@ -137,7 +137,7 @@ def _bare(annotation: Any) -> Any:
 
 
 def _in_a_form(annotation: Any) -> Any:
-    """Return the kind of field that an option has in a form; None if it has none."""
+    """Return the kind of form field for an option; None if the option has no field."""
     kind = _bare(annotation)
     if get_origin(kind) is tuple:
         return str if str in get_args(kind) else None
@@ -146,7 +146,7 @@ def _in_a_form(annotation: Any) -> Any:
 
 
 def _in_groups(analysis: Analysis, given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of options as the function takes them, with groups as objects."""
+    """Return the option values as arguments of the analysis; groups of options become objects."""
     values: dict[str, Any] = {}
     for name, option in analysis.options.items():
         if group := _group_of(option.annotation):

@@ -1,4 +1,4 @@
-"""The screen of other programs' blades: a blade's file, its content, and the scene made from it."""
+"""The screen for blades from other programs: input file, contents, and the scene made from it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SOURCE = Path("file")  # name of the text in messages
+_SOURCE = Path("file")  # name of the input text in messages
 _DRAWN = {
     "mass_per_length": "mass [kg/m]",
     "bending_stiffness": "EI flap [N m2]",
@@ -58,7 +58,7 @@ class _DeckFile(Section):
 
 
 def solve(tables: Mapping[str, Any]) -> Deck:
-    """Read the deck from the text of its file."""
+    """Read the blade from the input file in the form."""
     given = validated(_DeckFile, {"deck": tables.get("deck", {})}, "deck").deck
     with of_file({name: f"deck.{name}" for name in ("length", "hub_radius")}):
         return read_deck_text(_lines(given.text), given.length, given.hub_radius)
@@ -69,7 +69,7 @@ def _lines(text: str) -> DataText:
 
 
 def _tables_of_file(text: str, source: str) -> dict[str, Any]:
-    """Return the tables of the form for a file: a deck, or a file that this screen has saved."""
+    """Return the form's tables for a file: another program's blade file, or a file saved by this screen."""
     if is_deck(_lines(text)):
         return {"deck": {"text": text}}
     return parse(text, source)
@@ -97,7 +97,7 @@ def draw(deck: Deck, _: float = 0.0) -> Figure:
 
 
 def _along(deck: Deck) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """Return the stations [m] of a blade, and the properties drawn over them, by name with unit."""
+    """Return positions [m] along a blade, and its properties by name with unit."""
     blade, matrices = deck.blade, deck.blade.matrices
     if matrices is None:
         columns = {words: blade.columns[name] for name, words in _DRAWN.items() if name in blade.columns}
@@ -107,7 +107,7 @@ def _along(deck: Deck) -> tuple[np.ndarray, dict[str, np.ndarray]]:
 
 
 def headline(deck: Deck) -> Iterator[KeyResult]:
-    """Yield kind, length and mass of a blade."""
+    """Yield kind of file, length and mass of a blade."""
     yield KeyResult("file", deck.kind)
     yield KeyResult("length", number(deck.scene.beam.length, "m"))
     yield KeyResult("mass", number(deck.audit.mass, "kg"))
@@ -118,7 +118,7 @@ def _scene(deck: Deck) -> str:
 
 
 def _for_screens(deck: Deck) -> str:
-    """Write the scene with options of the screens: speeds up to half of its first frequency, as is usual."""
+    """Return the scene file with options for the screens: speeds up to half of the first frequency."""
     speed = f"{first_frequency(deck.scene) / 2:.2g} rad/s"
     return f"# options.top_speed = {speed}\n# operation.speed = {speed}\n{deck.scene_text()}"
 

@@ -1,4 +1,4 @@
-"""Drawings on the screens: a bent beam, and sketches of rotor, section and road that explain symbols."""
+"""Drawings of the screens: a deflected beam, and sketches that explain the symbols of the inputs."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from beamdyn.common.drawing.layout import Rows, round_below
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.drawing.sketch import Sketch, wall
 
-_DEEP = 0.012  # depth of the drawn beam, over its length
-_SHOWN = 0.22  # largest deflection in the drawing, over the length of the beam
+_DEEP = 0.012  # thickness of the drawn beam, as a fraction of its length
+_SHOWN = 0.22  # largest drawn deflection, as a fraction of the length of the beam
 _PHI, _PSI, _ETA = np.radians((36.0, 35.0, 24.0))
 _ROOT, _LENGTH, _TIP = np.array([1.0, 0.0]), 0.9, 0.16
-_AWAY = 0.5 * np.array([np.cos(0.7), np.sin(0.7)])  # offset on paper of a unit along y, in an oblique view
-_SECTIONS = 4  # number of positions along the beam from one drawn section to the next
-# Radius of the arrow for the sense of rotation, over the drawn distance from the axis to the root.
+_AWAY = 0.5 * np.array([np.cos(0.7), np.sin(0.7)])  # offset of a unit length along y (oblique projection)
+_SECTIONS = 4  # number of positions along the beam between two drawn cross-sections
+# Radius of the arrow for the direction of rotation, divided by the drawn radius of the beam's root.
 _HUB = 0.16
 
 
-# A bent beam ------------------------------------------------------------------------------------------
+# Deflected beam ---------------------------------------------------------------------------------------
 
 
 def drawn_larger(largest: float, length: float) -> float:
-    """Return the factor (1, 2, 5, 10, ...) by which deflections are magnified, so that they can be seen.
+    """Return the factor (1, 2, 5, 10, ...) by which deflections are magnified to make them visible.
 
     Parameters
     ----------
@@ -48,24 +48,24 @@ def bent_beam(
     room: float = 0.0,
     scale: str = "",
 ) -> Drawing:
-    """Draw a beam with its root at the left.
+    """Draw a deflected beam with its root at the left.
 
     Parameters
     ----------
     x : ndarray, shape (n,)
         Positions along the beam [m], from 0 to its length.
     deflection : ndarray, shape (n,)
-        Deflection as drawn [m].
+        Magnified deflection [m].
     title : str
-        Title.
+        Title of the drawing.
     label : str
         Label at the tip.
     envelope : sequence of ndarray, shape (n,)
-        Further deflections as drawn [m], in grey.
+        Further magnified deflections [m], drawn in grey.
     room : float
-        Largest deflection as drawn [m] for which to leave room.
+        Largest magnified deflection [m] for which the drawing reserves space.
     scale : str
-        Scale to which the deflection is drawn, in words.
+        Magnification of the deflection, in words.
     """
     length = float(x[-1])
     half = 0.5 * _DEEP * length
@@ -87,7 +87,7 @@ def bent_beam(
 def bent_strip(
     x: np.ndarray, y: np.ndarray, deflection: np.ndarray, across: np.ndarray, title: str, room: float
 ) -> Drawing:
-    """Draw a strip as a mesh of lines along and across, seen obliquely, with its root at the left.
+    """Draw a deflected strip as a mesh of lines in oblique projection, with its root at the left.
 
     Parameters
     ----------
@@ -96,13 +96,13 @@ def bent_strip(
     y : ndarray, shape (n, k)
         Positions across the strip [m].
     deflection : ndarray, shape (n, k)
-        Deflection as drawn [m].
+        Magnified deflection [m].
     across : ndarray, shape (n,)
-        Deflection of the middle along -y [m].
+        Magnified deflection of the centre line in the direction -y [m].
     title : str
-        Title.
+        Title of the drawing.
     room : float
-        Largest deflection as drawn [m] for which to leave room.
+        Largest magnified deflection [m] for which the drawing reserves space.
     """
 
     def seen(deflection: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -128,7 +128,7 @@ def bent_strip(
 
 
 def sketch(entries: Mapping[str, str]) -> Rows:
-    """Draw the sketches for a form with these entries, with the symbols of its inputs."""
+    """Draw the sketches for a form with the given field texts, with the symbols of its inputs."""
     symbols = {entry.path: entry.quantity.symbol for entry in inputs_of(entries)}
     paths = {*symbols}
     rows = [[_plan(paths)], [_section(paths), _from_the_side()]]
@@ -137,7 +137,7 @@ def sketch(entries: Mapping[str, str]) -> Rows:
 
 
 def _plan(paths: set[str]) -> Drawing:
-    """Draw the beam on its carrier, seen along the axis of rotation."""
+    """Draw the beam and the rotor that carries it, seen along the axis of rotation."""
     s = Sketch()
     along = np.array([-np.cos(_PHI), np.sin(_PHI)])
     aside = np.array([along[1], -along[0]])
@@ -162,7 +162,7 @@ def _plan(paths: set[str]) -> Drawing:
 
 
 def _section(paths: set[str]) -> Drawing:
-    """Draw the section of the root, seen from the tip."""
+    """Draw the cross-section at the root, seen from the tip."""
     s = Sketch()
     e, f = np.array([np.cos(_PSI), np.sin(_PSI)]), np.array([-np.sin(_PSI), np.cos(_PSI)])
     h, b = 0.34, 0.9
@@ -179,7 +179,7 @@ def _section(paths: set[str]) -> Drawing:
 
 
 def _from_the_side() -> Drawing:
-    """Draw an outward beam that leaves the plane of rotation, seen from the side."""
+    """Draw a radial beam that is inclined to the plane of rotation, seen from the side."""
     s = Sketch()
     along = np.array([np.cos(_ETA), np.sin(_ETA)])
     root = np.array([0.42, 0.0])
@@ -192,7 +192,7 @@ def _from_the_side() -> Drawing:
 
 
 def _road(speed: str) -> Drawing:
-    """Draw a wheel that rolls over a wavy road, with the symbol of its angular speed."""
+    """Draw a wheel that rolls on a wavy road, with the symbol of its angular speed."""
     s = Sketch()
     x = np.linspace(-1.15, 2.0, 121)
     road = np.column_stack([x, -0.16 * np.cos(2 * np.pi * x / 1.1)])

@@ -33,34 +33,34 @@ from beamdyn.studies.campbell.line_crossings import Margin, margins_at_rated
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], and what crosses there
-_SPEEDS, _FEW_SPEEDS = 121, 31  # number of speeds, in full and while something is dragged
-_ROUGH = 1e-3  # tolerance of a coarse solution
+CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], mode and line that cross
+_SPEEDS, _FEW_SPEEDS = 121, 31  # number of speeds, in a full and in a preliminary result
+_ROUGH = 1e-3  # tolerance of a preliminary result
 _NOT_MARKED = "the resonance speeds are of other physics than the frequencies, and not marked in the drawing"
-_HEADROOM = 1.08  # height of the chart, over the highest frequency
-_MOST_ABOVE = 2.0  # highest frequency shown, over that of the steepest line at the top speed
+_HEADROOM = 1.08  # height of the chart, as a multiple of the highest frequency
+_MOST_ABOVE = 2.0  # highest frequency shown, as a multiple of the highest excitation frequency
 
 
 @dataclass(frozen=True)
 class Frequencies:
-    """The answer that the screen shows.
+    """Result of the frequency screen.
 
     Parameters
     ----------
     locus : Locus
-        Frequencies over speed.
+        Natural frequencies over speed.
     crossings : Crossings, optional
-        Speeds at which the motion excites the modes; None without a motion, or where they are not known.
+        Speeds at which the motion excites the modes; None without a motion, or if they are unknown.
     critical : CriticalPoint or None
-        Critical speed; None under a load at the tip by which the beam may flutter instead.
+        Critical speed of buckling; None under a load at the tip that may cause flutter instead.
     refused : str
-        Why there are no crossings, if the motion has none that are known.
+        The reason why there are no crossings, if the excitation lines of the motion are unknown.
     lines : tuple of Line
-        Excitation lines: the multiples of the speed at which the motion excites the beam.
+        Excitation lines: the multiples of the speed with which the motion excites the beam.
     crossing_points : tuple of (float, float, str)
-        Speed [rad/s] and frequency [Hz] of each crossing, and what crosses.
+        Speed [rad/s] and frequency [Hz] of each crossing, with the names of mode and line.
     margins : tuple of Margin
-        Distances of the modes from the nearest excitation line at the speed at which the motion settles.
+        Distances of the modes from the nearest excitation line at the final speed of the motion.
     """
 
     locus: Locus
@@ -73,20 +73,20 @@ class Frequencies:
 
     @property
     def critical_speed(self) -> float:
-        """Critical speed [rad/s]; inf where there is none, or it is not known."""
+        """Return the critical speed [rad/s]; inf if there is none, or it is unknown."""
         return np.inf if self.critical is None else self.critical.speed
 
     @property
     def have_same_physics(self) -> bool:
-        """Whether the crossings and the frequencies are of the same physics."""
+        """Return whether crossings and frequencies were computed with the same physical effects."""
         return self.crossings is None or self.crossings.scene.physics == self.locus.scene.physics
 
 
 def solve(tables: Mapping[str, Any]) -> Frequencies:
-    """Compute frequencies over speed, the critical speed, and the speeds at which the motion excites a mode.
+    """Compute frequencies over speed, critical speed, and speeds at which the motion excites a mode.
 
-    A coarse solution, which tables with `COARSE` ask for, has few speeds; the crossings of excitation lines
-    are then interpolated between these.
+    If the tables contain `COARSE`, the result is preliminary: it has few speeds, between which the crossings
+    are interpolated.
     """
     scene, top, modes = read(tables)
     coarse = COARSE in tables
@@ -115,13 +115,13 @@ def solve(tables: Mapping[str, Any]) -> Frequencies:
 
 
 def motion_speed(scene: Scene) -> float | None:
-    """Return the speed at which the motion settles [rad/s]; None if it does not settle, or at 0."""
+    """Return the final speed of the motion [rad/s]; None if the speed does not settle, or is 0."""
     speed = None if scene.motion is None else abs(scene.motion.final_speed)
     return speed if speed is not None and 0 < speed < np.inf else None
 
 
 def _crossing_points(locus: Locus, lines: Sequence[Line]) -> Iterator[CrossingPoint]:
-    """Yield where lines meet the modes of a locus, by linear interpolation between its speeds."""
+    """Yield the crossings of excitation lines and modes, by linear interpolation between speeds."""
     names = locus.names()
     for line in lines:
         apart = locus.frequency - line.multiple * locus.speeds[:, None] / (2 * np.pi)
@@ -132,9 +132,9 @@ def _crossing_points(locus: Locus, lines: Sequence[Line]) -> Iterator[CrossingPo
 
 
 def _margins(locus: Locus, lines: Sequence[Line]) -> tuple[Margin, ...]:
-    """Return the distances of the modes from the nearest lines at the speed at which the motion settles.
+    """Return the distances of the modes from the nearest excitation lines at the final speed.
 
-    Empty if the locus does not reach that speed, or no lines are known.
+    The result is empty if the computed speeds do not reach the final speed, or no lines are known.
     """
     speed = motion_speed(locus.scene)
     if speed is None or speed > locus.speeds[-1] or not lines:
@@ -152,7 +152,7 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
         least = np.nanmin(frequency, initial=np.inf)
         above = f" (above: from {least:.4g} Hz)" if top < least < np.inf else ""
         curves.append(ChartCurve(f"{name}{above}", speed.of(locus.speeds), frequency))
-    for line in lines:  # each line is drawn up to where it leaves the chart
+    for line in lines:  # each line is drawn up to the edge of the chart
         end = min(last, 2 * np.pi * top / line.multiple) if line.multiple > 0 else last
         ends = np.array([0.0, end])
         curves.append(ChartCurve(line.name, speed.of(ends), line.multiple * ends / (2 * np.pi), True, True))
@@ -172,7 +172,7 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
         words = f"speed of the motion {speed.say(motion, 5)}"
         marks.append(ChartMark(speed.of(motion), words, at_foot=True))
     past = [ChartBand(speed.of(critical), speed.of(last), "past the critical speed")]
-    size = 10.0 ** np.floor(np.log10(top)) / 10  # the axis ends at a number of two digits
+    size = 10.0 ** np.floor(np.log10(top)) / 10  # the axis ends at a number with two significant digits
     return [
         Chart(
             "Natural frequencies over speed",
@@ -187,7 +187,7 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
 
 
 def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
-    """Return the highest frequency shown [Hz]: of modes not far above all lines, or of the lowest mode."""
+    """Return the highest frequency shown [Hz], which omits modes far above all excitation lines."""
     known = [float(np.nanmax(f)) for f in frequency.T if np.isfinite(f).any()]
     fastest = max(ends, default=0.0)
     near = [f for f in known if not fastest or f <= _MOST_ABOVE * fastest]
@@ -195,7 +195,7 @@ def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
 
 
 def describe_margin(margin: Margin) -> str:
-    """Describe a margin: how far the nearest line is from the natural frequency."""
+    """Describe a margin: the distance between the natural frequency and the nearest excitation line."""
     if not margin.margin:
         return f"{margin.line.name} meets it"
     where = "above" if margin.margin > 0 else "below"
@@ -203,7 +203,7 @@ def describe_margin(margin: Margin) -> str:
 
 
 def headline(answer: Frequencies) -> Iterator[KeyResult]:
-    """Yield the first frequency at both ends of the speeds, the critical speed, and its margin."""
+    """Yield the first frequency at the lowest and highest speed, the critical speed, and its margin."""
     first, top, critical = answer.locus.frequency[:, 0], float(answer.locus.speeds[-1]), answer.critical
     unit = answer.locus.display_units.speed_unit()
     for words, frequency in (("first frequency at rest", first[0]), (f"at {brief(top, unit)}", first[-1])):
@@ -225,7 +225,7 @@ def headline(answer: Frequencies) -> Iterator[KeyResult]:
 
 
 def make_tables(answer: Frequencies) -> Sequence[RenderableType]:
-    """Make tables of crossings and frequencies, each with the physics that was chosen for it."""
+    """Make tables of crossings and frequencies, each with a note on the chosen physical effects."""
     parts = [] if answer.crossings is None else tables_with_choice(answer.crossings)
     if answer.margins:
         at = answer.locus.display_units.speed_unit().say(answer.margins[0].speed)
@@ -236,14 +236,14 @@ def make_tables(answer: Frequencies) -> Sequence[RenderableType]:
 
 
 def draw(answer: Frequencies, _: float = 0.0) -> Figure:
-    """Draw the Campbell diagram; without a motion, the locus alone."""
+    """Draw the Campbell diagram; without a motion, only the natural frequencies over speed."""
     figure = new_figure(9.0, 5.4)
     ax, units = figure.subplots(), answer.locus.display_units
     if answer.crossings is None:
         answer.locus.plot(ax)
     elif answer.have_same_physics:
         answer.crossings.plot(ax)
-    else:  # the crossings belong to frequencies of other physics
+    else:  # crossings and frequencies were computed with different physical effects
         lines = {line.name: line.multiple for line in answer.crossings.lines}
         curves = Curves(answer.locus.speeds, answer.locus.frequency, answer.locus.names())
         plot_campbell([curves], lines, {}, ax, units.speed_unit().name)
@@ -253,7 +253,7 @@ def draw(answer: Frequencies, _: float = 0.0) -> Figure:
 
 
 def warnings(answer: Frequencies) -> Sequence[str]:
-    """Return the warnings of all parts, and why there are no crossings."""
+    """Return the warnings of all parts of the result, and the reason if there are no crossings."""
     refused = [answer.refused] if answer.refused else []
     found = [*refused, *warnings_of(answer.locus)]
     if answer.crossings is not None:

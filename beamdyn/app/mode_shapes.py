@@ -1,4 +1,4 @@
-"""The screen of mode shapes at one speed, which move while a slider is played."""
+"""The screen of mode shapes at one speed, animated by a slider."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ from beamdyn.equations.effects import words_of_directions
 from beamdyn.modes.model_error.left_out_effects import say_size
 from beamdyn.modes.modes import Mesh, Modes
 
-_PLACES, _ROWS = 41, 5  # number of positions along the beam, and across a strip
-# Largest deflection in the drawing of a beam, and of a strip, over the length.
+_PLACES, _ROWS = 41, 5  # number of positions along the beam, and across the width of a strip
+# Largest drawn deflection of a beam, and of a strip, as a fraction of the length.
 _LARGEST, _LARGEST_OF_STRIP = 0.22, 0.12
-_ABREAST = 2  # number of drawings in a row
+_ABREAST = 2  # number of drawings side by side
 
 
 def solve(tables: Mapping[str, Any]) -> Modes:
-    """Compute the modes at the speed."""
+    """Compute the modes at the speed in the tables."""
     scene, speed, modes = read_at_speed(tables)
     return natural_modes(scene, speed, modes)
 
 
 def drawings(modes: Modes, place: float = 0.0) -> Rows:
-    """Draw each mode shape at a phase of its vibration: 0 and 2 are the extremes, 1 is the beam at rest."""
+    """Draw each mode shape at a phase of its vibration: 0 and 2 are the extremes, 1 is zero deflection."""
     if (mesh := modes.mesh(_PLACES, _ROWS)) is not None:
         return _abreast(_strips(modes, mesh, 1.0 - place))
     length, words = modes.scene.beam.length, words_of_directions(modes.scene)
@@ -48,7 +48,7 @@ def drawings(modes: Modes, place: float = 0.0) -> Rows:
 
 
 def _strips(modes: Modes, mesh: Mesh, swing: float) -> list[Drawing]:
-    """Draw each mode shape of a strip that twists or cambers, as a share of its extreme position."""
+    """Draw each mode shape of a strip that twists or cambers, multiplied by the factor `swing`."""
     x, y, shapes, across = mesh
     room = _LARGEST_OF_STRIP * float(x[-1])
     each = []
@@ -70,7 +70,7 @@ def quick_headline(modes: Modes) -> Iterator[KeyResult]:
 
 
 def headline(modes: Modes) -> Iterator[KeyResult]:
-    """Yield the results of `quick_headline`, and the largest model error, which takes longer."""
+    """Yield the results of `quick_headline`, and the largest model error, whose computation takes longer."""
     yield from quick_headline(modes)
     if np.isfinite(modes.model_error).any():
         yield KeyResult("model error at most", say_size(float(np.nanmax(modes.model_error))))

@@ -1,4 +1,4 @@
-"""The program ``beamdyn app``: its documents and their screens."""
+"""The program that the command ``beamdyn app`` runs: its documents and their screens."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from beamdyn.files.scene_inputs import with_physics_as_table
 from beamdyn.files.scenes import parse_scene
 
 SHOWN = [*(analysis for analysis in analyses().values() if analysis.screen), campbell]
-# Example files of documents with a scene of their own, by name.
+# Example files of documents with their own initial scene, by name.
 _BASES = {"harvester": "bimorph.toml", "periodic motion": "pulsating_wheel.toml"}
 _ASIDE = {
     "options.top_speed": "150 rad/s",
@@ -46,14 +46,14 @@ _HEADINGS = {
 
 
 def _on(base: str) -> list[Analysis]:
-    """Return the analyses whose first example uses the file `base`, with which their screens open."""
+    """Return the analyses whose first example uses the file `base`; their screens start with it."""
     return [each for each in SHOWN if f"/{base} " in f"{each.examples[0]} "]
 
 
 def _scene(
     name: str, base: str, shown: Sequence[Analysis], aside: Mapping[str, str], *special: Screen
 ) -> Document:
-    """Make the document of a scene, with special screens and those of analyses."""
+    """Make the document for a scene, with special screens and with screens made from analyses."""
     of_analyses = (first_entries(each).items() for each in shown)
     aside = {**aside, **{path: text for entries in of_analyses for path, text in entries}}
     elsewhere = {*ASIDE} - {*map(table_of, aside)}

@@ -1,4 +1,4 @@
-"""The screen of the rotor: the beam at its angles, whose points can be dragged."""
+"""The screen of the rotor: a drawing of the beam on its rotor, with points that the user can drag."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.scene.rotor import RotorDrawing
 
-_STEPS = 200  # least number of steps in the length of the beam, to which dragged lengths are rounded
+_STEPS = 200  # least number of steps per beam length, for rounding dragged lengths
 
 
 def solve(tables: Mapping[str, Any]) -> RotorDrawing:
-    """Make the drawing of the rotor of a scene that can be solved."""
+    """Make the drawing of the rotor, if the scene can be computed."""
     scene = read_scene(tables)
-    first_frequency(scene)  # refuses a scene that cannot be solved
+    first_frequency(scene)  # raises an error if the scene cannot be computed
     return draw_rotor(scene)
 
 
 def drawings(rotor: RotorDrawing, _: float = 0.0) -> Rows:
-    """Draw the rotor along its axis, beside the section of its root.
+    """Draw the rotor seen along its axis, beside the cross-section at the root.
 
-    The beam by itself, where it is drawn, stands beside the section: both are details.
+    If the beam is also drawn separately, it is beside the cross-section; both are detail drawings.
     """
     (plan,), *details = rotor.drawings()
     apart = [replace(detail, own_scale=True) for (detail,) in details]
@@ -36,7 +36,7 @@ def drawings(rotor: RotorDrawing, _: float = 0.0) -> Rows:
 
 
 def handles(rotor: RotorDrawing, _: float = 0.0) -> Sequence[Handle]:
-    """Make handles that set the radius, the setting angle and the length."""
+    """Make handles that set the radius, the setting angle and the length of the beam."""
     r, C = rotor.radius, np.cos(rotor.precone)
     along = np.array([-np.cos(rotor.setting_angle), np.sin(rotor.setting_angle)])
     grain = float(10.0 ** np.floor(np.log10(rotor.length / _STEPS)))

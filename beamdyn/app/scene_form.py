@@ -1,4 +1,4 @@
-"""The form of the beam's screens: the tables of a scene, and the options that commands have."""
+"""The form of the beam's screens: the tables of a scene file, and the options of commands."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from beamdyn.files.scenes import scene_from_dict
 from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.scene.scene import Scene
 
-# Tables on the form of each screen, in this order.
+# Tables of the form for each screen, in this order.
 SCENE_TABLES = ("beam", "harvester", "mount", "motion", "model", "damping", "tip_load", "physics")
 TABLES = ("options", *SCENE_TABLES)
 DRAGS = (
@@ -30,7 +30,7 @@ DRAGS = (
     Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
     Drag("beam.thickness", 0.1, 1.0, 0.01, "mm"),
 )
-# Young's modulus, density and Poisson's ratio at room temperature; a batch may differ by some percent.
+# Young's modulus, density and Poisson's ratio at room temperature; actual values differ by some percent.
 _MATERIALS = {
     "steel": ("200 GPa", "7850 kg/m3", "0.3"),
     "stainless steel": ("193 GPa", "7900 kg/m3", "0.29"),
@@ -53,16 +53,16 @@ PRESETS = (
         {name: {"mount.setting_angle": angle} for name, angle in _DIRECTIONS.items()},
     ),
 )
-# Advice on answers that take long.
+# Advice on computations that take long.
 EFFORT = "It takes longer at higher speeds, with more modes, and of a beam that varies much along its length."
-# Inputs that are lists of tables, and their meanings.
+# Inputs that are lists of tables, with their meanings.
 _LISTS = {
     "beam.point_mass": 'point masses, each such as { position = "20 mm", mass = "1 g" }',
     "beam.point_spring": 'springs along the beam, each such as { position = "20 mm", stiffness = "10 N/m" }',
 }
-COARSE = "coarse"  # name of a table whose presence asks for a coarse solution, with plain physics
+COARSE = "coarse"  # name of a table that requests a preliminary result, with simple physics
 _USUAL_SPEED = "rad/s"
-_FASTEST = 10  # highest speed that is accepted, over the first natural angular frequency at rest
+_FASTEST = 10  # highest accepted speed, as a multiple of the first natural angular frequency at rest
 
 
 class OptionsInput(Section):
@@ -84,7 +84,7 @@ class OperationInput(Section):
 
 
 class TradeInput(Section):
-    """[trade]: how many digits an answer is to have."""
+    """[trade]: the requested number of correct digits."""
 
     digits: Annotated[float, WholeNumber(symbol="n", meaning="digits to keep", least=1, most=10)]
 
@@ -100,7 +100,7 @@ class RunInput(Section):
     ] = None
 
 
-# Tables of the form that are not in the file of a scene.
+# Tables of the form that are not part of a scene file.
 ASIDE: dict[str, type[Section]] = {
     "options": OptionsInput,
     "operation": OperationInput,
@@ -110,13 +110,13 @@ ASIDE: dict[str, type[Section]] = {
 
 
 class _NoKind(Section):
-    """A table whose kind has not been chosen yet."""
+    """A table whose kind the user has not chosen yet."""
 
     kind: Annotated[str, Field(description="kind of motion")]
 
 
 def inputs_of(entries: Mapping[str, str]) -> list[Input]:
-    """List the inputs of the alternatives that entries choose: the beam's kind and the motion's."""
+    """List the inputs for the kinds of beam and motion that the field texts choose."""
     kinds: dict[str, tuple[str, ...]] = {}
 
     def choose(table: str, models: Sequence[type[BaseModel]]) -> list[type[BaseModel]]:
@@ -124,7 +124,7 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
             given = {
                 path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text
             }
-            # Heads of the columns of beam.stations.
+            # Column headings of beam.stations.
             given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}
             if "matrices" in given:
                 return [MatricesInput]
@@ -133,7 +133,7 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
         by_kind = {get_args(model.model_fields["kind"].annotation)[0]: model for model in models}
         kinds[f"{table}.kind"] = tuple(by_kind)
         chosen = any(text for path, text in entries.items() if path.startswith(f"{table}."))
-        # The first kind, for a table with keys but without a kind.
+        # The first kind, for a table that has keys but no kind.
         usual = next(iter(by_kind)) if chosen else ""
         return [by_kind.get(entries.get(f"{table}.kind", "") or usual, _NoKind)]
 
@@ -141,7 +141,7 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
     inputs: dict[str, Input] = {}
     for entry in (*aside, *describe(SceneInput, choose=choose)):
         whole = next((path for path in _LISTS if entry.path.startswith(f"{path}.")), "")
-        if whole:  # one field for all tables of a list
+        if whole:  # one field for a whole list of tables
             words = Quantity(meaning=_LISTS[whole])
             inputs.setdefault(whole, Input(whole, entry.section, list[dict], words, (), False, None))
         elif entry.path in kinds:
@@ -153,21 +153,21 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
 
 
 def read(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
-    """Read the scene, the top speed [rad/s] and the number of modes."""
+    """Read the scene, the top speed [rad/s] and the number of modes from the form's tables."""
     return _read_with_speed(tables, "options", "top_speed")
 
 
 def read_at_speed(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
-    """Read the scene, one speed [rad/s] and the number of modes."""
+    """Read the scene, one speed [rad/s] and the number of modes from the form's tables."""
     return _read_with_speed(tables, "operation", "speed")
 
 
 def _read_with_speed(tables: Mapping[str, Any], table: str, key: str) -> tuple[Scene, float, int]:
-    """Read a scene, a speed and the number of modes.
+    """Read a scene, a speed [rad/s] and the number of modes.
 
-    Results are shown in the unit of that speed, unless that is the usual one.  A speed that takes minutes is
-    refused: the faster a beam turns, the more functions a mode needs.  That depends on the stiffness of the
-    beam, not on that of its root, which may be a hinge.
+    Results are shown in the unit of this speed, unless it is the usual unit.  A speed whose computation would
+    take minutes is an error: the faster the beam rotates, the more functions each mode needs.  The limit
+    depends on the stiffness of the beam, not on the stiffness of the root, which may be a hinge.
     """
     speed, modes = getattr(read_aside(tables, table), key), read_aside(tables, "options").modes
     scene = read_scene(tables)
@@ -184,22 +184,22 @@ def _read_with_speed(tables: Mapping[str, Any], table: str, key: str) -> tuple[S
 
 
 def read_scene(tables: Mapping[str, Any]) -> Scene:
-    """Read the scene alone, with plain physics for a coarse solution."""
+    """Read the scene from the form's tables; for a preliminary result, with few physical effects."""
     own = {name: table for name, table in tables.items() if name not in ASIDE and name != COARSE}
     return plain_physics(scene_from_dict(own)) if COARSE in tables else scene_from_dict(own)
 
 
 def coarser(tables: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the tables of a coarser solution, which is ready sooner, for the drawing."""
+    """Return the tables that request a preliminary result, which is faster, for the drawing."""
     return {**tables, COARSE: {}}
 
 
 def read_aside(tables: Mapping[str, Any], name: str) -> Any:
-    """Read the values of a table that is not in a scene's file."""
+    """Read the values of a table that is not part of a scene file."""
     model = create_model("_Aside", __base__=Section, **{name: (ASIDE[name], ...)})  # pyright: ignore[reportCallIssue, reportArgumentType]
     return getattr(validated(model, {name: tables.get(name, {})}, name), name)
 
 
 def first_frequency(scene: Scene) -> float:
-    """Compute the first natural frequency at rest [rad/s], to 1 %."""
+    """Compute the first natural angular frequency at rest [rad/s], with an error of 1 %."""
     return 2 * math.pi * float(natural_modes(scene, 0.0, 1, tolerance=0.01).frequency[0])

@@ -1,4 +1,4 @@
-"""Parts that the screens of a scene share: their making, tables with choices, and effects left out."""
+"""Parts shared by the screens of a scene: making screens, the choice of physics, neglected effects."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from beamdyn.modes.model_error import left_out_effects
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# Relative change below which no bar is drawn; the length of a bar grows with the logarithm of the change.
+# Relative change below which no bar is drawn; bar lengths grow with the logarithm of the change.
 _LEAST = 1e-6
-_DECADE = 3  # number of letters in a bar for each decade of the change above `_LEAST`
-_LONGEST = 7  # largest number of decades of a change that a bar shows
+_DECADE = 3  # characters of a bar for each decade of the change above `_LEAST`
+_LONGEST = 7  # longest bar, in decades of the change
 _BAR = "\u2588"
-_HEADLINES = 3  # number of parts of a result's one-line summary that a screen shows first, at most
+_HEADLINES = 3  # largest number of parts of a result's one-line summary that a screen shows
 
 
 def scene_screen(
@@ -43,18 +43,20 @@ def scene_screen(
     left_out_of: str = "",
     **special: Any,
 ) -> Screen:
-    """Make a screen for a scene, which shows the result within an answer by the result's views.
+    """Make a screen for a scene, which shows a result in the same way as its command.
 
     Parameters
     ----------
     name, purpose, solve
         As for `Screen`.
     beside : sequence of str
-        Further tables of its form, after the first two of the scene.
+        Further tables of the form, after the first two tables of the scene.
     result : callable
-        ``result(answer)``: the result within an answer; by default the answer itself.
+        ``result(answer)`` returns the part of the computed answer that is shown; by default the answer
+        itself.
     left_out_of : str
-        What the effects left out change, such as "frequencies"; empty if the screen does not list them.
+        Quantities that neglected effects would change, such as "frequencies"; empty if the screen does not
+        list the effects.
     **special
         Further arguments of `Screen`.
     """
@@ -81,7 +83,7 @@ def scene_screen(
 
 
 def tables_with_choice(result: Result) -> list[RenderableType]:
-    """Return the tables of a result, with the sentence on how its physics was chosen."""
+    """Return the tables of a result, with the sentence on how its physical effects were chosen."""
     return [tables_of(result), *describe_choice(result)]
 
 
@@ -93,27 +95,27 @@ def drawn(result: Result) -> Figure:
 
 
 def brief(value: float, unit: ShownUnit) -> str:
-    """Format a value in SI with few digits, in the unit shown."""
+    """Format a value in SI units with few digits, in its display unit."""
     return number(unit.of(value), unit.name)
 
 
-# What the physics leaves out --------------------------------------------------------------------------
+# Neglected effects ------------------------------------------------------------------------------------
 
 
 def left_out_table(effects: left_out_effects.LeftOutEffects, of: str) -> RenderableType:
-    """Make a table of the effects that a model leaves out, the largest first, with a bar for each.
+    """Make a table of the effects that a model neglects, the largest first, with a bar for each.
 
     Parameters
     ----------
     effects : LeftOutEffects
-        The effects.
+        Sizes of the neglected effects.
     of : str
-        What the effects left out change, such as "frequencies".
+        Quantities that the neglected effects would change, such as "frequencies".
     """
     sizes: dict[str, float] = {}
     for name, change in effects.changes.items():
         known = np.asarray(change)[np.isfinite(change)]
-        if known.size:  # the change with the largest magnitude
+        if known.size:  # the relative change with the largest magnitude
             sizes[name] = float(known[np.abs(known).argmax()])
     rows = []
     for name in sorted(sizes, key=lambda name: -abs(sizes[name])):
@@ -134,6 +136,6 @@ def left_out_table(effects: left_out_effects.LeftOutEffects, of: str) -> Rendera
 
 
 def bar(change: float) -> str:
-    """Draw a bar whose length is the number of decades of a change above 1e-6."""
+    """Return a bar of characters, whose length is the number of decades of a change above 1e-6."""
     decades = np.log10(abs(change) / _LEAST) if change else 0.0
     return _BAR * int(np.ceil(_DECADE * min(max(decades, 0.0), _LONGEST)))

@@ -1,4 +1,4 @@
-"""The screen of the steady response over speed."""
+"""The screen of the steady-state response over speed."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from beamdyn.scene.validity import LARGE_DEFLECTION
 from beamdyn.steady.response import SteadyResponse
 
 _SPEEDS = 242
-# Relative distances of further speeds from a resonance speed.
+# Relative distances from a resonance speed at which further speeds are computed.
 _BESIDE = (-4e-3, -1e-3, -2e-4, 2e-4, 1e-3, 4e-3)
 _STABLE = "stable"
 _PAST_LIMIT = f"past {LARGE_DEFLECTION:g} of the length: not linear"
 
 
 def solve(tables: Mapping[str, Any]) -> SteadyResponse:
-    """Compute the steady response over speed, with more speeds beside resonances, which may be narrow."""
+    """Compute the steady-state response over speed, with more speeds near narrow resonances."""
     scene, top, modes = read(tables)
     if scene.motion is None:
         raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
@@ -36,13 +36,13 @@ def solve(tables: Mapping[str, Any]) -> SteadyResponse:
         beside = np.array(_BESIDE + ((0.0,) if scene.is_damped else ()))
         near = np.multiply.outer(found, 1 + beside).ravel()
         speeds = np.union1d(speeds, near[near < top])
-    except ValueError:  # the excitation lines of the motion are not known
+    except ValueError:  # the excitation lines of the motion are unknown
         pass
     return steady_response(scene, speeds, modes)
 
 
 def chart(answer: SteadyResponse, _: float = 0.0) -> Sequence[Chart]:
-    """Make the chart of the resonance curve, grey where it does not hold."""
+    """Make the chart of the resonance curve; speeds at which the result is invalid are grey."""
     units = answer.display_units
     speed, length = units.speed_unit(), units.length_unit()
     x, size = speed.of(answer.speeds), length.of(np.where(answer.amplitude > 0, answer.amplitude, np.nan))
@@ -71,7 +71,7 @@ def chart(answer: SteadyResponse, _: float = 0.0) -> Sequence[Chart]:
 
 
 def stretches(answer: SteadyResponse) -> np.ndarray:
-    """Say why the response does not hold at each speed (S,); "" where it does."""
+    """Return for each speed (S,) the reason why the response is invalid; "" if it is valid."""
     said = np.where(answer.status == _STABLE, "", answer.status).astype(object)
     large = np.nan_to_num(answer.amplitude) > LARGE_DEFLECTION * answer.scene.beam.length
     said[(said == "") & large] = _PAST_LIMIT
@@ -79,7 +79,7 @@ def stretches(answer: SteadyResponse) -> np.ndarray:
 
 
 def _bands(x: np.ndarray, said: np.ndarray) -> Iterator[ChartBand]:
-    """Yield bands over speeds with the same reason; a band ends midway between two speeds."""
+    """Yield bands of speeds with the same reason; a band ends halfway between two speeds."""
     changes = np.flatnonzero(said[1:] != said[:-1]) + 1
     ends = [x[0], *((x[:-1] + x[1:]) / 2)[changes - 1], x[-1]]
     for start, (low, high) in zip([0, *changes.tolist()], pairwise(ends), strict=True):
@@ -88,7 +88,7 @@ def _bands(x: np.ndarray, said: np.ndarray) -> Iterator[ChartBand]:
 
 
 def headline(response: SteadyResponse) -> Iterator[KeyResult]:
-    """Yield the largest deflection of the tip, whether it is beyond linear theory, and its speed."""
+    """Yield the largest tip deflection, its speed, and whether it exceeds the range of linear theory."""
     amplitude = np.asarray(response.amplitude)
     if not np.isfinite(amplitude).any():
         yield KeyResult("largest deflection of the tip", "no steady state")

@@ -1,4 +1,4 @@
-"""Sweeps on the beam's screens: any input against frequencies, critical speed and steady response."""
+"""Parameter sweeps of the beam's screens: frequencies, critical speed and steady response over any input."""
 
 from __future__ import annotations
 
@@ -35,12 +35,12 @@ from beamdyn.scene.scene import Scene
 from beamdyn.steady.response import SteadyResponse
 
 Kept = TypeVar("Kept")
-# Number of speeds at first, of speeds near the largest amplitude, and of refinements there.
+# Initial number of speeds, number of speeds near the largest amplitude, and number of refinements there.
 _COARSE, _FINE, _ROUNDS = 121, 41, 3
 
 
 class SweepCase:
-    """A scene of a sweep, with top speed and number of modes; answers are computed when asked for.
+    """A scene of a sweep, with top speed and number of modes; results are computed when needed.
 
     Parameters
     ----------
@@ -54,33 +54,33 @@ class SweepCase:
 
     def __init__(self, scene: Scene, top: float, modes: int) -> None:
         self.scene, self.top, self.modes = scene, top, modes
-        self.answers: dict[tuple[Any, ...], Any] = {}  # answers so far, by function and arguments
+        self.answers: dict[tuple[Any, ...], Any] = {}  # computed results, by function and arguments
 
     def ask(self, function: Callable[..., Kept], *given: Any) -> Kept:
-        """Return a function's answer for the scene, which is computed once."""
+        """Return a function's result for the scene, which is computed only once."""
         asked = function, *given
         if asked not in self.answers:
             self.answers[asked] = function(self.scene, *given)
         return self.answers[asked]
 
     def crossings(self) -> np.ndarray:
-        """Speeds at which the motion excites a mode [rad/s]."""
+        """Return the speeds at which the motion excites a mode [rad/s]."""
         if self.scene.motion is None:
             return np.array([])
         return np.array([found.speed for found in self.ask(resonance_speeds, self.top, self.modes)])
 
     def amplitude(self, speed: float) -> float:
-        """Compute the steady amplitude at a speed [m]; nan where there is none."""
+        """Compute the steady-state amplitude at a speed [m]; nan if there is none."""
         return float(self.ask(_steady_response, (speed,), self.modes).amplitude[0])
 
     @cached_property
     def peak(self) -> tuple[float, float]:
-        """Speed [rad/s] and size [m] of the largest steady amplitude up to the top speed.
+        """Return speed [rad/s] and value [m] of the largest steady-state amplitude up to the top speed.
 
         Raises
         ------
         ValueError
-            If the beam is not damped: then the amplitude at a resonance has no bound.
+            If the beam is undamped: the amplitude at a resonance is then unbounded.
         """
         crossings, best = self.crossings(), 0
         if not self.scene.is_damped and len(crossings):
@@ -94,13 +94,13 @@ class SweepCase:
                 speeds = np.union1d(np.linspace(low, high, _FINE), speeds[best])
             amplitudes = _steady_response(self.scene, speeds, self.modes).amplitude
             if np.isnan(amplitudes).all():
-                raise ValueError("at no speed up to the top speed is there a steady response")
+                raise ValueError("there is no steady response at any speed up to the top speed")
             best = int(np.nanargmax(amplitudes))
         return float(speeds[best]), self.amplitude(float(speeds[best]))
 
     @cached_property
     def model_error(self) -> float:
-        """Largest model error of the answers that were asked for; nan where it is not known."""
+        """Return the largest model error of the computed results; nan if unknown."""
         errors = [float(np.max(answer.model_error, initial=0.0)) for answer in self.answers.values()]
         return float(np.max(errors, initial=0.0))
 
@@ -112,7 +112,7 @@ def _steady_response(scene: Scene, speeds: Sequence[float] | np.ndarray, modes: 
 
 
 def frequency_outputs(modes: int) -> list[Output]:
-    """List the results on frequencies: at the top speed and at rest, critical speed, lowest resonance."""
+    """List the results on frequencies: at top speed and at rest, critical speed, lowest resonance speed."""
     frequencies = [
         Output(f"frequency_{i + 1}{at}", f"frequency {i + 1}", partial(_frequency, i, share), "Hz")
         for at, share in (("", 1.0), ("_at_rest", 0.0))
@@ -127,12 +127,12 @@ def frequency_outputs(modes: int) -> list[Output]:
 
 
 def _frequency(mode: int, share: float, case: SweepCase) -> float:
-    """Compute a natural frequency at a share of the top speed [Hz]; nan where the mode diverges."""
+    """Compute a natural frequency [Hz] at a fraction of the top speed; nan if the mode diverges."""
     return float(case.ask(natural_modes, share * case.top, case.modes).frequency[mode])
 
 
 def steady_outputs(_: int) -> list[Output]:
-    """List the results on steady motion: amplitude at the top speed, and the largest one up to there."""
+    """List the results on steady motion: amplitude at the top speed, and largest amplitude up to it."""
     return [
         Output("amplitude", "amplitude at top speed", lambda case: case.amplitude(case.top), "mm", 1e-3),
         Output("largest_amplitude", "largest amplitude", lambda case: case.peak[1], "mm", 1e-3),
@@ -144,7 +144,7 @@ _MODEL_ERROR = Output("model_error", "largest model error", lambda case: case.mo
 
 
 def sweeps_of(outputs: Callable[[int], list[Output]], example: str, results: str) -> Sweeps:
-    """Make the sweeps of a screen, whose results depend on the number of modes in the form."""
+    """Make the sweeps that a screen offers; their results depend on the number of modes in the form."""
 
     def names(tables: Mapping[str, Any]) -> Sequence[str]:
         return [output.name for output in outputs(read(tables)[2])]
@@ -163,14 +163,14 @@ def sweeps_of(outputs: Callable[[int], list[Output]], example: str, results: str
         return replace(swept, warnings=(*swept.warnings, *_warn_of_model(cases), *_say_choices(cases)))
 
     def draw(swept: InputSweep) -> Figure:
-        # The picture has its warnings, as it may be used without the page.
+        # The picture contains the warnings, as it may be used without the page.
         return note_below(sweep_figure(swept), swept.warnings)
 
     return Sweeps(names, example, results, run, draw)
 
 
 def _warn_of_model(cases: Sequence[SweepCase]) -> Iterator[str]:
-    """Yield warnings of the case with the largest model error, and of the first case with an unknown one."""
+    """Yield the warnings of the case with the largest model error, and of the first with an unknown one."""
     large = [case for case in cases if case.model_error > LARGE_MODEL_ERROR]
     unknown = [case for case in cases if np.isnan(case.model_error)]
     for some, what in (
@@ -185,7 +185,7 @@ def _warn_of_model(cases: Sequence[SweepCase]) -> Iterator[str]:
 
 
 def _say_choices(cases: Sequence[SweepCase]) -> Iterator[str]:
-    """Yield at how many values each effect was added, where the physics was chosen."""
+    """Yield a sentence on each automatically added effect: at how many values of the input it was added."""
     choices = [
         [a.physics_choice for a in case.answers.values() if a.physics_choice is not None] for case in cases
     ]

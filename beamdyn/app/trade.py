@@ -1,4 +1,4 @@
-"""The screen of the trade-off: computing time for digits of frequencies, and the cheapest model."""
+"""The screen on accuracy and cost: computing time for correct digits, and the cheapest model."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ from beamdyn.studies.tradeoffs.measurements import Diagram, Digit
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# Computing time of all measurements of a diagram [s], for a full and for a coarse solution.
+# Total computing time of a diagram's measurements [s], for a full and for a preliminary result.
 _BUDGET, _SOON = 2.0, 0.05
-_RUNS = 5  # number of runs of the chosen model, of which the shortest counts
-# Placeholder for a diagram that a coarse solution does not have.
+_RUNS = 5  # number of timed runs of the chosen model; the shortest time counts
+# Placeholder for a diagram that a preliminary result lacks.
 _FOLLOWS = "follows"
 _LATER = Diagram.make(_FOLLOWS, "", "", 0.0, ())
-_KEPT = 8  # largest number of scenes whose measurements are kept
-_LARGEST, _LEAST = 1.0, 1e-14  # largest and least relative error that are drawn
+_KEPT = 8  # largest number of scenes whose measurements are stored
+_LARGEST, _LEAST = 1.0, 1e-14  # largest and smallest relative error shown
 _ROUNDING = 1e-9  # relative rounding error of a power of ten
-# Names on the screen of families of models that are named otherwise in Python.
+# Names of families of models on the screen, if they differ from the names in Python.
 _FAMILIES = {"tolerance=": "chosen by tolerance"}
 
 
@@ -55,15 +55,15 @@ class Trade:
     Parameters
     ----------
     digits : int
-        Digits to keep.
+        Requested number of correct digits.
     modes : Modes
-        Natural modes by the model that `tolerance` chooses.
+        Natural modes, computed by the model chosen for `tolerance`.
     time : float
-        Shortest processor time of the whole call, with the choice of the model [s].
+        Shortest processor time of the computation, including the choice of the model [s].
     numerical : Diagram
-        Numerical error against time.
+        Numerical error over computing time.
     of_physics : Diagram
-        Numerical error with model error against time.
+        Sum of numerical error and model error over computing time.
     """
 
     digits: int
@@ -74,19 +74,19 @@ class Trade:
 
     @property
     def tolerance(self) -> float:
-        """Allowed relative error."""
+        """Return the allowed relative error for the requested number of digits."""
         return 10.0**-self.digits
 
     def cheapest(self, diagram: Diagram) -> Digit | None:
-        """Return the cheapest measurement with as many digits as asked for; None if none has them."""
+        """Return the fastest measurement with the requested number of digits; None if there is none."""
         each = (d for d in diagram.per_digit if abs(d.error / self.tolerance - 1) < _ROUNDING)
         return next(each, None)
 
 
 def solve(tables: Mapping[str, Any]) -> Trade:
-    """Choose the model, and measure error and time of others for comparison.
+    """Choose the model for the tolerance, and measure error and time of other models for comparison.
 
-    A coarse solution has few measurements, of the numerical error alone, and one run of the chosen model,
+    A preliminary result has few measurements, only of the numerical error, and one run of the chosen model,
     whose time is not shown.
     """
     digits = int(read_aside(tables, "trade").digits)
@@ -107,9 +107,9 @@ def _numbers(scene: Scene, speed: float, modes: int, budget: float) -> Diagram:
 
 @lru_cache(maxsize=_KEPT)
 def _measure(scene: Scene, speed: float, modes: int) -> tuple[Diagram, Diagram]:
-    """Measure error and computing time of alternative models: of the numbers alone, and with the model error.
+    """Measure computing time, numerical error and total error (with model error) of alternative models.
 
-    Neither diagram depends on the tolerance of the screen, so that they are cached.
+    The measurements do not depend on the tolerance of the screen, and are therefore cached.
     """
     return _numbers(scene, speed, modes, _BUDGET), physics_diagram(scene, speed, modes, _BUDGET)
 
@@ -118,13 +118,13 @@ def _measure(scene: Scene, speed: float, modes: int) -> tuple[Diagram, Diagram]:
 
 
 def charts(answer: Trade, _: float = 0.0) -> Sequence[Chart]:
-    """Make charts of error against time: of the numerical error alone, and with the model error."""
+    """Make charts of error over computing time: numerical error, and total error with the model error."""
     each = (answer.numerical, "Error of the numbers"), (answer.of_physics, "Error with that of the model")
     return [_chart(answer, d, name) for d, name in each if d.measurements or d.title == _LATER.title]
 
 
 def _chart(answer: Trade, diagram: Diagram, name: str) -> Chart:
-    """Make a chart of errors against times [ms]; errors outside the chart are drawn at its edge."""
+    """Make a chart of errors over times [ms]; errors outside the chart are drawn at its edge."""
     families: dict[str, list[tuple[float, float]]] = {}
     for m in diagram.measurements:
         if 0 < m.error < np.inf:
@@ -159,7 +159,7 @@ def _chart(answer: Trade, diagram: Diagram, name: str) -> Chart:
 
 
 def tables(answer: Trade) -> Sequence[RenderableType]:
-    """Make tables of the chosen model, of the cheapest for each number of digits, and of effects left out."""
+    """Make tables of the chosen model, the cheapest model per number of digits, and neglected effects."""
     numbers, physics = answer.cheapest(answer.numerical), answer.cheapest(answer.of_physics)
     n = f"{answer.digits} digit{'s' * (answer.digits > 1)}"
     found = "nothing measured keeps them" if numbers is None else _describe(numbers)
@@ -175,7 +175,7 @@ def tables(answer: Trade) -> Sequence[RenderableType]:
 
 
 def _describe(digit: Digit) -> str:
-    """Describe a measurement: the physics and setting of the model, and its time."""
+    """Describe a measurement: physical effects and settings of the model, and computing time."""
     physics = "physics as given" if digit.family == "as given" else digit.family
     return f"{physics}, {digit.setting}, in {1e3 * digit.time:.3g} ms"
 
@@ -202,7 +202,7 @@ def _chosen_table(answer: Trade) -> RenderableType:
 
 
 def rows(answer: Trade) -> Iterator[Sequence[object]]:
-    """Yield rows of all measurements: with the numerical error, and with the model error."""
+    """Yield rows of all measurements, first with the numerical error, then with the total error."""
     for name, diagram in (("numerical", answer.numerical), ("with_model_error", answer.of_physics)):
         heads, *lines = diagram_csv(diagram)
         if name == "numerical":
@@ -211,7 +211,7 @@ def rows(answer: Trade) -> Iterator[Sequence[object]]:
 
 
 def draw(answer: Trade, _: float = 0.0) -> Figure:
-    """Draw the diagrams side by side."""
+    """Draw both diagrams side by side."""
     known = [d for d in (answer.numerical, answer.of_physics) if d.measurements]
     figure = new_figure(6.5 * len(known), 5.0)
     for diagram, ax in zip(known, np.atleast_1d(figure.subplots(1, len(known))), strict=True):
@@ -220,7 +220,7 @@ def draw(answer: Trade, _: float = 0.0) -> Figure:
 
 
 def headline(answer: Trade) -> Iterator[KeyResult]:
-    """Yield the cheapest model measured, the time that the chosen one takes, and its errors."""
+    """Yield the cheapest measured model, the computing time of the chosen model, and its errors."""
     digit = answer.cheapest(answer.of_physics if answer.of_physics.measurements else answer.numerical)
     cheapest = "none measured" if digit is None else _describe(digit)
     yield from _of_times(cheapest, number(1e3 * answer.time, "ms"))
@@ -228,14 +228,14 @@ def headline(answer: Trade) -> Iterator[KeyResult]:
 
 
 def quick_headline(answer: Trade) -> Iterator[KeyResult]:
-    """Yield the numerical error, and placeholders for the model error and for what takes many runs."""
+    """Yield the numerical error, and placeholders for results whose computation takes long."""
     yield from _of_times(_FOLLOWS, _FOLLOWS)
     yield from [*quick_headline_of_modes(answer.modes)][1:]
     yield KeyResult("model error at most", _FOLLOWS)
 
 
 def _of_times(cheapest: str, time: str) -> Iterator[KeyResult]:
-    """Yield the two results that take many timed runs: the cheapest model, and the chosen one's time."""
+    """Yield the two results that need many timed runs: cheapest model, and time of the chosen model."""
     yield KeyResult("cheapest, physics included", cheapest)
     yield KeyResult("time of the chosen model", time)
 

@@ -1,4 +1,4 @@
-"""The screen of a transient: the tip deflection over time, beside the moving beam."""
+"""The screen of a transient simulation: tip deflection over time, beside an animation of the beam."""
 
 from __future__ import annotations
 
@@ -28,29 +28,29 @@ from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import label_crossing
 from beamdyn.transient.transient import Transient
 
-_TOLERANCE, _ROUGH = 1e-4, 1e-2  # tolerance of a full solution, and of a coarse one with few modes
-_MOST_PERIODS = 20_000  # largest number of periods of the first mode at rest in a run
+_TOLERANCE, _ROUGH = 1e-4, 1e-2  # tolerance of a full result, and of a preliminary one with few modes
+_MOST_PERIODS = 20_000  # longest simulated time, in periods of the first mode at rest
 _PLACES, _TIMES = 41, 201  # number of positions along the beam, and of times in the close-up
-_SAMPLES = 40  # number of the largest samples near which the peak is sought
-_CLOSE = 4  # periods of the first mode before and after the present time in the close-up
-_MOST_SENT = 2000  # points of the whole run on the page: enough to see its periods when zoomed
-_MODES = 3  # number of modes whose resonances are marked, and of a coarse solution
+_SAMPLES = 40  # number of the largest samples near which the peak is searched
+_CLOSE = 4  # length of the close-up before and after the present time, in periods of the first mode
+_MOST_SENT = 2000  # number of points of a curve on the page, enough to zoom in
+_MODES = 3  # number of modes whose resonances are marked, and of a preliminary result
 
 
 @dataclass(frozen=True)
 class Playable:
-    """A transient to be played, with its peak and the resonances that it passes.
+    """A transient simulation to be animated, with its peak and the resonances that it passes.
 
     Parameters
     ----------
     run : Transient
-        The transient.
+        Result of the simulation.
     window : (float, float)
-        Where its peak was sought [s].
+        Time window in which the peak was searched [s].
     peak, peak_at : float
         Largest magnitude of the tip deflection in the window [m], and its time [s].
     passages : tuple of (float, str)
-        When the speed passes a resonance speed [s], and what resonates.
+        Times at which the speed passes a resonance speed [s], with the names of mode and excitation line.
     period : float
         Period of the first mode at rest [s].
     """
@@ -63,12 +63,12 @@ class Playable:
     period: float
 
     def time(self, place: float) -> float:
-        """Return the time at a position of the slider, from 0 to 1 [s]."""
+        """Return the time [s] at a position of the slider, which is between 0 and 1."""
         return self.run.path.start + place * (self.run.path.end - self.run.path.start)
 
     @cached_property
     def chart(self) -> Chart:
-        """Chart of the tip deflection over the whole run."""
+        """Return the chart of the tip deflection over the whole simulation."""
         run, (start, end), unit = self.run, self.window, self.run.display_units.length_unit()
         tips = zip(_names(run), (run.tip, run.tip_across), strict=False)
         peak = unit.of(float(run.deflection([self.peak_at])[0]))
@@ -86,7 +86,7 @@ class Playable:
 
 
 def solve(tables: Mapping[str, Any]) -> Playable:
-    """Simulate the motion from rest, and find its peak and the resonances that it passes."""
+    """Simulate the motion from rest; find the peak and the resonances that are passed."""
     given, scene = read_aside(tables, "run"), read_scene(tables)
     if scene.motion is None:
         raise MissingValue("motion.kind", None, "choose the motion that excites the beam")
@@ -111,7 +111,7 @@ def solve(tables: Mapping[str, Any]) -> Playable:
 
 
 def _time_of_peak(run: Transient, start: float, end: float) -> float:
-    """Find the time of the largest deflection in a window [s], near one of its largest samples."""
+    """Find the time [s] of the largest deflection in a window, near one of its largest samples."""
     _, apart = time_of_peak(run, start, end)
     inside = np.flatnonzero((run.t >= start) & (run.t <= end))
     largest = inside[np.argsort(np.hypot(run.tip, run.tip_across)[inside])[-_SAMPLES:]]
@@ -121,13 +121,13 @@ def _time_of_peak(run: Transient, start: float, end: float) -> float:
 
 
 def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
-    """Yield when the motion passes speeds at which an excitation line meets a mode, and which."""
+    """Yield the times at which the speed passes a resonance, with the names of mode and excitation line."""
     assert scene.motion is not None
     t = np.linspace(0.0, min(end, scene.motion.end), 4001)
     speed = np.abs(scene.motion.at(t).speed)
     try:
         found = resonance_speeds(scene, float(speed.max()), _MODES)
-    except ValueError:  # the scene is at rest, or its excitation lines are not known
+    except ValueError:  # the scene is at rest, or its excitation lines are unknown
         return
     for c in found:
         over = speed - c.speed
@@ -140,7 +140,7 @@ def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
 
 
 def drawings(answer: Playable, place: float = 1.0) -> Rows:
-    """Draw the beam at a time, in each direction, with its extremes within a period before and after."""
+    """Draw the beam at a time, in each direction, with its extremes one period before and after."""
     run, now = answer.run, answer.time(place)
     unit, words = run.display_units.length_unit(), modelled_directions(run.scene)
     x = np.linspace(0.0, run.scene.beam.length, _PLACES)
@@ -158,7 +158,7 @@ def drawings(answer: Playable, place: float = 1.0) -> Rows:
 
 
 def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
-    """Return times [s] of some periods before and after the present time, within the run."""
+    """Return times [s] some periods before and after the present time, within the simulation."""
     path, reach = answer.run.path, periods * answer.period
     return np.linspace(max(now - reach, path.start), min(now + reach, path.end), _TIMES)
 
@@ -167,7 +167,7 @@ def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
 
 
 def charts(answer: Playable, place: float = 1.0) -> Sequence[Chart]:
-    """Make charts of the tip over the whole run, and over some periods around the present time."""
+    """Make charts of the tip deflection over the whole simulation and around the present time."""
     run, now, unit = answer.run, answer.time(place), answer.run.display_units.length_unit()
     t = _around(answer, now, _CLOSE)
     near = [ChartCurve(name, t, unit.of(run.deflection(t, i))) for i, name in enumerate(_names(run))]
@@ -179,12 +179,12 @@ def charts(answer: Playable, place: float = 1.0) -> Sequence[Chart]:
 
 
 def _names(run: Transient) -> Sequence[str]:
-    """Return the names of the curves."""
+    """Return the names of the curves: the directions of deflection."""
     return modelled_directions(run.scene) if run.scene.physics.planes > 1 else ("tip deflection",)
 
 
 def _axes(run: Transient, start: float, end: float) -> tuple[ChartAxis, ChartAxis]:
-    """Make the axes of a chart from one time to another [s]."""
+    """Make the axes of a chart between two times [s]."""
     unit = run.display_units.length_unit()
     return ChartAxis("time", "s", low=start, high=end), ChartAxis("tip deflection", unit.name)
 
@@ -193,14 +193,14 @@ def _axes(run: Transient, start: float, end: float) -> tuple[ChartAxis, ChartAxi
 
 
 def tables(answer: Playable) -> Sequence[RenderableType]:
-    """Make tables of the peaks, the resonances passed, and the effects left out."""
+    """Make tables of the peaks, the resonances passed, and the neglected effects."""
     said = [f"At {t:.5g} s the speed passes a resonance: {words}." for t, words in answer.passages]
     effects = left_out_table(answer.run.left_out_effects, "largest deflection")
     return [transient_table(answer.run, answer.window), *said, *describe_choice(answer.run), effects]
 
 
 def headline(answer: Playable) -> Iterator[KeyResult]:
-    """Yield the peak, and when the speed first passes a resonance."""
+    """Yield the peak deflection, and the time at which the speed first passes a resonance."""
     unit = answer.run.display_units.length_unit()
     yield KeyResult("largest deflection of the tip", brief(answer.peak, unit))
     yield KeyResult("at the time", number(answer.peak_at, "s"))

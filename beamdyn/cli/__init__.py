@@ -9,7 +9,7 @@ __all__ = ["BAD_INPUT", "DONE", "INTERRUPTED", "NO_ANSWER", "main"]
 
 
 def __getattr__(name: str) -> Any:
-    """Make the program with all its commands when somebody asks for the attribute `app`."""
+    """Make the command line with all commands when the attribute `app` is first accessed."""
     if name != "app":
         raise AttributeError(f"module 'beamdyn.cli' has no attribute {name!r}")
     return command_line()

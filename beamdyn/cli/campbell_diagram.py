@@ -73,11 +73,11 @@ def campbell(
     per_rev
         Per-rev lines: "6" for 1P to 6P, one order, e.g. "2P", or a list, e.g. "3, 6, 9".
     labels
-        Names of the scenes, separated by commas; default: those of the files.
+        Names of the scenes, separated by commas; default: the names of the files.
     length
         Length with its unit of the one blade whose file does not say it (TipRad - HubRad).
     hub_radius
-        Distance of the root from the axis of rotation with its unit, likewise.
+        Distance of the root from the axis of rotation with its unit, if the blade's file does not say it.
     bounds
         Also give guaranteed bounds of the frequencies at the rated speed, or else the top speed.
     crossings
@@ -88,7 +88,7 @@ def campbell(
     outputs.check(*scenes, crossings=crossings)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     inputs = _read_all(scenes, length, hub_radius)
-    alone = inputs[0].scene if len(inputs) == 1 else None  # several have no one rolling radius
+    alone = inputs[0].scene if len(inputs) == 1 else None  # several scenes have no common rolling radius
     bent = any(given.scene.physics.large_deflection for given in inputs)
     speeds, unit = parse_top(top_speed, alone, bent)
     question = _question(
@@ -110,7 +110,7 @@ def campbell(
 
 
 class _BladeFile(NamedTuple):
-    """A file with its scene, the scene's text, and the parts of a blade's file that no scene has."""
+    """A file with its scene, the scene as text, and data of a blade file that a scene cannot hold."""
 
     path: Path
     scene: Scene
@@ -119,7 +119,7 @@ class _BladeFile(NamedTuple):
 
 
 def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None) -> list[_BladeFile]:
-    """Read the files; the options apply to blades of other programs only."""
+    """Read the files; the two options apply only to blade files of other programs."""
     given = {"length": length, "hub_radius": hub_radius}
     decks = [path for path in paths if path.suffix.lower() != ".toml"]
     for name, text in given.items():
@@ -141,14 +141,14 @@ def _read(path: Path, length: str | None, hub_radius: str | None) -> _BladeFile:
 
 
 def _question(inputs: Sequence[_BladeFile], **options: object) -> Question:
-    """Make the head of a report: the command on each of its files."""
+    """Make the heading of a report: the command with each of its files."""
     each = [Question.of("beamdyn campbell", given.path, given.text, **options) for given in inputs]
     title = f"beamdyn campbell: {', '.join(str(given.path) for given in inputs)}"
     return Question(title, "\n\n".join(question.inputs for question in each))
 
 
 def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -> dict[str, Scene]:
-    """Return the scenes by their labels, with the physics of the option if that is given."""
+    """Return the scenes by label, with the physical effects of the option if it is given."""
     stems = [given.path.stem for given in inputs]
     names = stems if labels is None else [part.strip() for part in labels.split(",")]
     if len(names) != len(inputs) or not all(names):
@@ -163,6 +163,6 @@ def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -
 
 
 def add(app: App) -> None:
-    """Add the command `campbell` to a program's command line."""
+    """Add the command `campbell` to a command line."""
     example = 'beamdyn campbell examples/twisted_blade.toml --top-speed "15 rpm" --modes 2'
     app.command(campbell, help_epilogue=examples(example))

@@ -1,4 +1,4 @@
-"""The commands of ``beamdyn``; running one imports its own module alone, and listing them imports none."""
+"""The commands of ``beamdyn``; each imports only its own module, for a short start-up time."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from beamdyn.common.screens.app_command import add_command
 if TYPE_CHECKING:
     from beamdyn.common.screens.screens import Program
 
-# Commands that are not analyses of a scene: the module here that adds each, and the function that it runs.
+# Commands that are not analyses of a scene: module that adds each command, and function that it runs.
 _OTHERS = {
     "campbell": ("campbell_diagram", "campbell"),
     "import": ("decks", "import_deck"),
@@ -30,7 +30,7 @@ _SCREENS = "The interactive program in the browser: frequencies, rotor, mode sha
 
 
 def make_program() -> Program:
-    """Import the interactive program when it is wanted."""
+    """Import and return the interactive program, when it is needed."""
     from beamdyn.app.program import BEAMDYN
 
     return BEAMDYN
@@ -38,7 +38,7 @@ def make_program() -> Program:
 
 @cache
 def command_line(command: str = "", *, listed: bool = False) -> App:
-    """Make the program with one command, with all, or, if `listed`, with all as its help lists them."""
+    """Make the command line with one command or all; if `listed`, only with names and help."""
     app = App(
         name="beamdyn",
         version=__version__,
@@ -64,7 +64,7 @@ A scene is a TOML file with units; `beamdyn COMMAND --help` lists the options of
 
 
 def _question(command: str) -> str:
-    """Return the first line of the docstring of a command's function from source, without imports."""
+    """Return the first line of a command's function docstring, read from source without imports."""
     if command in COMMANDS:
         file, function = f"analyses/{COMMANDS[command]}.py", command.replace("-", "_")
     else:
@@ -74,14 +74,14 @@ def _question(command: str) -> str:
 
 @cache
 def _first_lines(file: Path) -> dict[str, str]:
-    """Return the first lines of the docstrings of a module's functions, by their names."""
+    """Return the first lines of the docstrings of a module's functions, by name of the function."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
     functions = (node for node in tree.body if isinstance(node, ast.FunctionDef))
     return {each.name: (ast.get_docstring(each) or "").partition("\n")[0] for each in functions}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; see `beamdyn.common.edge.exit_codes.run`."""
+    """Run the command line; see `beamdyn.common.edge.exit_codes.run`."""
     given = sys.argv[1:] if arguments is None else [*arguments]
     command = next((word for word in given if not word.startswith("-")), "")
     if command in COMMANDS or command in _OTHERS:

@@ -1,4 +1,4 @@
-"""The command `import`, which reads blades of other programs."""
+"""The command `import`, which reads blade files of other programs."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def import_deck(
     ----------
     file
         A blade file or the main file of ElastoDyn, FAST 7, OpenFAST or BeamDyn, a .bmi or section properties
-        of BModes, or a CSV table with units in its heads, such as "r [m], mass [kg/m], EI flap [N m2]".
+        of BModes, or a CSV table with units in its headings, such as "r [m], mass [kg/m], EI flap [N m2]".
     output
         Write the scene into this TOML file, which the other commands read; without it, only the audit is
         printed.
@@ -52,7 +52,7 @@ def import_deck(
     polynomials
         Write polynomials of the mode shapes into this file, in the lines of ElastoDyn's blade files.
     speed
-        Speed of rotation of these mode shapes with its unit; without it that of the file, or 0.
+        Rotational speed for these mode shapes, with its unit; default: that in the file, or 0.
     force
         Overwrite a file that exists.
     """
@@ -73,7 +73,7 @@ def import_deck(
 
 
 def _write_polynomials(deck: Deck, path: Path, speed: float | None, force: bool) -> None:
-    """Write the polynomials of the mode shapes, and print how well they fit."""
+    """Write the polynomials of the mode shapes into a file, and print how well they fit."""
     fitted = deck.fit_mode_polynomials(speed)
     lines = [line for each in fitted for line in each.lines()]
     write_text(check_writable(path, force=force), "\n".join([*lines, ""]))
@@ -82,7 +82,7 @@ def _write_polynomials(deck: Deck, path: Path, speed: float | None, force: bool)
 
 
 def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:
-    """Read a deck with the options --length and --hub-radius."""
+    """Read a blade file with the options --length and --hub-radius."""
     given = {
         name: None if text is None else parse_quantity(f"--{name.replace('_', '-')}", text, "m")
         for name, text in {"length": length, "hub_radius": hub_radius}.items()
@@ -91,6 +91,6 @@ def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:
 
 
 def add(app: App) -> None:
-    """Add the command `import` to a program's command line."""
+    """Add the command `import` to a command line."""
     example = 'beamdyn import examples/blade_stations.csv --length "40 m" --hub-radius "1 m"'
     app.command(import_deck, name="import", help_epilogue=examples(example))

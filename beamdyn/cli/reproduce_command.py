@@ -13,7 +13,7 @@ from beamdyn.reproduce import compare_all
 
 
 def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = False) -> None:
-    """Published numbers beside ours, with deviations and verdicts; draws the paper's figures.
+    """Published numbers compared with computed ones; draws the paper's figures.
 
     Parameters
     ----------
@@ -37,5 +37,5 @@ def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = 
 
 
 def add(app: App) -> None:
-    """Add the command `reproduce` to a program's command line."""
+    """Add the command `reproduce` to a command line."""
     app.command(reproduce, help_epilogue=examples("beamdyn reproduce --output pictures"))

@@ -1,1 +1,1 @@
-"""Parts without mechanics that both packages share: checks, results, units, tables, workers, pages."""
+"""Modules without mechanics that both packages share: checks, results, units, tables, processes, pages."""

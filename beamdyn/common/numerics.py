@@ -1,7 +1,8 @@
-"""Small numerical tools: assignment, Gauss-Legendre points and series, ellipses, and triangular systems.
+"""Numerical tools: assignment problem, Gauss quadrature, Legendre series, ellipses, triangular systems.
 
-Triangular systems: LAPACK's routine, which `scipy.linalg.solve_triangular` calls, starts threads for matrices
-of any size: on a busy machine they wait for milliseconds where the arithmetic takes microseconds.
+Triangular systems are not solved by `scipy.linalg.solve_triangular`: its LAPACK routine starts threads even
+for small matrices, and on a busy machine these wait for milliseconds although the arithmetic takes
+microseconds.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from scipy.linalg.blas import dtrsm
 
 def solve_lower(L: np.ndarray, B: np.ndarray) -> np.ndarray:
     """Solve L X = B for lower triangular L (n, n) and B (n, m)."""
-    # The transpose is stored by columns, as LAPACK wants it, so that nothing is copied.
+    # The transpose is stored by columns, as LAPACK needs it, so that no copy is made.
     return dtrsm(1.0, L.T, B, lower=0, trans_a=1)
 
 
@@ -25,11 +26,11 @@ def solve_lower_transposed(L: np.ndarray, B: np.ndarray) -> np.ndarray:
 
 
 def assign(cost: np.ndarray) -> np.ndarray:
-    """Assign a column (n,) to each row of a cost matrix (n, m), n <= m, with the least sum of costs."""
+    """Assign a different column (n,) to each row of a cost matrix (n, m), n <= m, at the least total cost."""
     least = cost.argmin(axis=1)
     if np.isfinite(cost).all() and len(np.unique(least)) == len(least):
-        return least  # the columns that each row would choose alone are all different
-    # Imported here, because it takes as long to import as all the rest.
+        return least  # the cheapest columns of the rows are all different
+    # Imported here, because this import takes as long as all others together.
     from scipy.optimize import linear_sum_assignment
 
     return linear_sum_assignment(cost)[1]
@@ -37,44 +38,45 @@ def assign(cost: np.ndarray) -> np.ndarray:
 
 @cache
 def gauss_rule(points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return points and weights of the Gauss rule on [-1, 1]."""
+    """Return points and weights of the Gauss-Legendre quadrature on [-1, 1]."""
     return legendre.leggauss(points)
 
 
 def gauss_points_on(ends: np.ndarray, points: int) -> np.ndarray:
-    """Return Gauss points on each of c cells between ascending ends (c + 1,): shape (c, points)."""
+    """Return the Gauss points on each of c intervals between ascending ends (c + 1,); shape (c, points)."""
     return ends[:-1, None] + np.diff(ends)[:, None] * (1 + gauss_rule(points)[0]) / 2
 
 
 def gauss_weights_on(ends: np.ndarray, points: int) -> np.ndarray:
-    """Return weights (c points,) of the Gauss points on all of c cells between ascending ends (c + 1,)."""
+    """Return weights (c points,) of the Gauss points on c intervals between ascending ends (c + 1,)."""
     return (np.diff(ends)[:, None] / 2 * gauss_rule(points)[1]).ravel()
 
 
 @cache
 def legendre_values(points: int, degree: int) -> np.ndarray:
-    """Evaluate Legendre polynomials up to a degree at the points of the Gauss rule: (points, degree + 1)."""
+    """Evaluate Legendre polynomials at the Gauss points on [-1, 1]; shape (points, degree + 1)."""
     return legendre.legvander(gauss_rule(points)[0], degree)
 
 
 @cache
 def legendre_series(points: int) -> np.ndarray:
-    """Return the matrix from values at Gauss points to the Legendre coefficients of their interpolant."""
+    """Return the matrix that converts values at Gauss points to Legendre coefficients of the interpolant."""
     return (np.arange(points)[:, None] + 0.5) * legendre_values(points, points - 1).T * gauss_rule(points)[1]
 
 
 def longer_semi_axis(c: np.ndarray) -> np.ndarray:
-    """Compute the longer semi-axis (...) of the ellipses Re(c exp(i phi)) over phi, c of shape (d, ...)."""
+    """Compute the longer semi-axis (...) of the ellipse Re(c exp(i phi)), 0 <= phi < 2 pi, for c (d, ...)."""
     return np.sqrt(((np.abs(c) ** 2).sum(axis=0) + np.abs((c * c).sum(axis=0))) / 2)
 
 
 def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Multiply Legendre series in columns, (m, c) and (n, c): shape (m + n - 1, c).
+    """Multiply two Legendre series; coefficients in columns (m, c) and (n, c), product (m + n - 1, c).
 
-    The recurrence of Legendre polynomials P_k gives P_k b; for series of a few terms no digits are lost.
+    The recurrence of Legendre polynomials P_k gives the products P_k b; for short series the rounding errors
+    are small.
     """
     short, long = sorted((a, b), key=len)
-    if len(short) == 1:  # one of the series is a constant
+    if len(short) == 1:  # one of the two series is constant
         return short * long
     total = np.zeros((len(a) + len(b) - 1, long.shape[1]))
     before, product = np.zeros_like(total), np.zeros_like(total)
@@ -86,7 +88,7 @@ def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def integrate_series(series: np.ndarray) -> np.ndarray:
-    """Integrate Legendre series in columns (m, c) from 1: shape (m + 1, c).
+    """Integrate Legendre series from 1 to t; coefficients in columns (m, c), integral (m + 1, c).
 
     The derivative of P_{k+1} - P_{k-1} is (2k + 1) P_k.
     """
@@ -98,7 +100,7 @@ def integrate_series(series: np.ndarray) -> np.ndarray:
 
 
 def _times_argument(series: np.ndarray) -> np.ndarray:
-    """Multiply Legendre series in columns by t; the term of highest degree must be 0, and is dropped."""
+    """Multiply Legendre series (columns of coefficients) by t; the highest coefficient, 0, is dropped."""
     k = np.arange(len(series))[:, None]
     shifted = np.zeros_like(series)
     shifted[1:] = (series * (k + 1) / (2 * k + 1))[:-1]

@@ -1,4 +1,4 @@
-"""Texts made of parts that each medium (Python, files, forms) words in its own way, and numbers in them."""
+"""Texts with parts that Python, files and forms word differently, and formatting of numbers in texts."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any, Self
 
-_NAMES = {"youngs": "Young's", "poissons": "Poisson's"}  # words with an apostrophe, which keys lack
-_LONG = 10.0  # lengths from this one on are worded in m everywhere [m]
+_NAMES = {"youngs": "Young's", "poissons": "Poisson's"}  # words whose apostrophe is missing in keys
+_LONG = 10.0  # lengths of this size or more are shown in m in all media [m]
 
 
 def name_in_words(path: str) -> str:
-    """Write the path of an input as forms and pictures do: "root stiffness" for "root_stiffness"."""
+    """Return the path of an input as shown in forms and pictures: "root stiffness" for "root_stiffness"."""
     words = path.replace(".", " ").replace("_", " ").split(" ")
     return " ".join(_NAMES.get(word, word) for word in words)
 
 
 class Words(str):
-    """A text made of parts, some of which each medium words in its own way.
+    """A text with parts that each medium (Python, files, forms) words differently.
 
     Parameters
     ----------
     *parts : str
-        The parts, one after the other; those that are `Words` keep their own parts.
+        Parts of the text in their order; a part that is a `Words` object keeps its own parts.
     """
 
     parts: tuple[str, ...]
@@ -35,7 +35,7 @@ class Words(str):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Return arguments by position and by name that make an equal object, for pickles and files."""
+        """Return arguments by position and by name that make an equal object, for pickling and saving."""
         return self.parts, {}
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -43,38 +43,38 @@ class Words(str):
         return partial(type(self), *given, **named), ()
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """Return the text with each part as a medium words it."""
+        """Return the text, with the function `word` applied to each part."""
         return "".join(worded(part, word) for part in self.parts)
 
 
 class Part(Words):
-    """A part of a text that each medium words in its own way."""
+    """A part of a text that each medium (Python, files, forms) words differently."""
 
     def in_units(self, units: Any) -> str:
-        """Return the part in `DisplayUnits`, if it has a quantity in such units."""
+        """Return the part in the given `DisplayUnits`, if it contains a quantity with such units."""
         return str(self)
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """Return the part as a medium words it."""
+        """Return the part as the function `word` of a medium words it."""
         return word(self)
 
 
 class InputName(Part):
-    """The name of an input: its path, as files and commands have it, and on a form the words of its field."""
+    """The name of an input: its path in files and commands, and the name of its field in forms."""
 
     @property
     def on_form(self) -> str:
-        """The name of its field on a form: "thickness" for "beam.thickness"."""
+        """Return the name of the input's field in a form: "thickness" for "beam.thickness"."""
         return name_in_words(self.removeprefix("beam."))
 
 
 class Named(Part):
-    """A text worded in one way for Python, and in another for files and commands, such as "a RollingWheel".
+    """A text with one wording in Python, and another in files and commands, such as "a RollingWheel".
 
     Parameters
     ----------
     in_python, elsewhere : str
-        Both wordings.
+        Wording in Python, and in all other media.
     """
 
     elsewhere: str
@@ -85,12 +85,12 @@ class Named(Part):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Return both words, as arguments that make an equal object."""
+        """Return both wordings, as arguments that make an equal object."""
         return (str(self), self.elsewhere), {}
 
 
 class Setting(Named):
-    """Keys of a table of a scene's file, and their values: "[physics] shear = true", `Physics(shear=True)`.
+    """Keys of a table in a scene file, and their values: "[physics] shear = true", `Physics(shear=True)`.
 
     Parameters
     ----------
@@ -110,18 +110,18 @@ class Setting(Named):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Return the table, and its keys by name, as arguments that make an equal object."""
+        """Return the table name, and its keys by name, as arguments that make an equal object."""
         return (self.table,), self.keys
 
     def on_form(self, heading: str) -> str:
-        """Write the setting as a form does, under the heading of its table."""
+        """Return the setting as a form shows it, under the heading of its table."""
         return f"{heading}: {_as_toml({key.replace('_', ' '): value for key, value in self.keys.items()})}"
 
 
 def amount(*values: Any, unit: str = "m", digits: int = 6) -> Named:
-    """Format a length, an angle or the coordinates of a point [m or rad]; files and drawings have mm or deg.
+    """Format a length, an angle or a point's coordinates [m or rad]; files and drawings use mm or deg.
 
-    Lengths from 10 m on are in m everywhere.
+    Lengths of 10 m or more are shown in m in all media.
     """
     small, factor = {"m": ("mm", 1e3), "rad": ("deg", 180 / math.pi)}[unit]
     if unit == "m" and max(map(abs, values), default=0.0) >= _LONG:
@@ -135,16 +135,16 @@ def _placed(numbers: Sequence[float], digits: int, unit: str) -> str:
 
 
 def _as_toml(keys: Mapping[str, Any]) -> str:
-    """Write keys and values as a file has them."""
+    """Return keys and values in the notation of files."""
     return ", ".join(f"{key} = {json.dumps(value)}" for key, value in keys.items())
 
 
 def worded(text: str, word: Callable[[Part], str]) -> str:
-    """Return a text with each of its parts as a medium words it."""
+    """Return a text, with the function `word` applied to each of its parts."""
     return text.worded(word) if isinstance(text, Words) else text
 
 
-# Numbers with the digits that their error justifies --------------------------------------------------
+# Numbers with the digits that their errors justify --------------------------------------------------
 
 _MOST_DIGITS = 10  # largest number of digits that a table shows
 
@@ -164,8 +164,8 @@ def supported(value: float, error: float, most: int = _MOST_DIGITS) -> str:
     Returns
     -------
     str
-        "0 ± error" where the error is half the number or more, "number ± error" where else no digit is sure,
-        "unresolved" where the error is not known.
+        The rounded number; "0 ± error" if the error is at least half the number, "number ± error" if no digit
+        is certain for another reason, "unresolved" if the error is unknown.
     """
     if not math.isfinite(value):
         return "none" if math.isnan(value) else str(value)
@@ -185,7 +185,7 @@ def supported(value: float, error: float, most: int = _MOST_DIGITS) -> str:
 
 
 def supported_or_range(value: float, error: float, most: int = _MOST_DIGITS) -> str:
-    """Format a number like `supported`, but as "number ± error" where only one digit is sure."""
+    """Format a number like `supported`, but as "number ± error" if only one digit is certain."""
     text = supported(value, error, most)
     if "±" in text or not (0 < 2 * error < abs(value) < math.inf):
         return text
@@ -194,26 +194,26 @@ def supported_or_range(value: float, error: float, most: int = _MOST_DIGITS) -> 
 
 
 def _with_error(value: float, error: float) -> str:
-    """Format a number with the digits up to the first of its error, and that error with one digit."""
+    """Format a number with digits down to the first digit of its error, and the error with one digit."""
     last = math.floor(math.log10(error))
     digits = max(math.floor(math.log10(abs(value))) - last, 0) + 1
     return f"{value:#.{digits}g} ± {error:.1g}".replace(". ", " ").replace(".e", "e")
 
 
 def told_from(value: float, limit: float) -> str:
-    """Format a number with two digits, or as many as tell it from a limit beside it."""
+    """Format a number with two digits, or with as many as are needed to distinguish it from a limit."""
     texts = (f"{value:.{digits}g}" for digits in range(2, 18))
     return next((text for text in texts if float(text) != limit), f"{value:g}")
 
 
 def percent(value: float, sign: str = "") -> str:
-    """Format a relative number in percent with two digits, never with a positive exponent."""
+    """Format a fraction in percent with two digits, never with a positive exponent."""
     digits = f"{100 * value:{sign}.2g}"
     return f"{100 * value:{sign}.0f} %" if "e+" in digits else f"{digits} %"
 
 
 def at_any(count: int, noun: str) -> str:
-    """Say where something is not, of what is asked for one by one: "at any of 3 speeds", "at this speed"."""
+    """Return words for where a result is missing: "at any of 3 speeds", or "at this speed" for one."""
     return f"at this {noun}" if count == 1 else f"at any of {count} {noun}s"
 
 
@@ -223,14 +223,15 @@ def count_sure(text: str, error: float) -> int:
     Parameters
     ----------
     text : str
-        A number as `supported` writes it.
+        A number as formatted by `supported`.
     error : float
-        Absolute error; nan or inf leaves no digit sure.
+        Absolute error of the number; for nan or inf, no digit is certain.
 
     Returns
     -------
     int
-        The whole length if all digits are sure; a sign or decimal point counts only before a sure digit.
+        The length of the text if all digits are certain; a sign or decimal point counts only before a certain
+        digit.
     """
     mantissa, _, exponent = text.partition("e")
     digits = mantissa.lstrip("-").replace(".", "", 1)

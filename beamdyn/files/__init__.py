@@ -1,1 +1,1 @@
-"""Reading of scenes from TOML files with units, and of blades from other programs' files."""
+"""Reading of scenes from TOML files with units, and of blades from files of other programs."""

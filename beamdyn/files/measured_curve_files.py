@@ -1,4 +1,4 @@
-"""Reading of histories, peaks, loads along the span, responses and mode shapes, as tables with units."""
+"""Reading of measured time histories, peaks, loads along the span, responses and mode shapes."""
 
 from __future__ import annotations
 
@@ -30,24 +30,24 @@ _SPEED = {"speed": Quantity("rad/s")}
 _SHAPE = re.compile(r"\s*(?:mode )?shape at ([\d.eE+-]+ *[\w/]+)\s*(?=[,;\t]|$)", re.IGNORECASE)
 _OTHER_SHAPE = re.compile(r"\b(?:mode )?shape\b[^,;\t]*", re.IGNORECASE)
 _RESPONSE = re.compile(r"\s*(.+?) (?:by|per) (.+?)\s*")
-_MOST = 40  # largest number of shapes in a file
+_MOST = 40  # largest number of mode shapes in a file
 _REMEDY = 'name yours by columns, as in --columns "{name} = {head}"'
 
-Half = Callable[[str], float]  # a function from a number as written to half a unit of its last digit
+Half = Callable[[str], float]  # a function that returns half a unit of the last digit of a number as written
 
 
 class Frequency(Quantity):
-    """A frequency, which may be given as an angular one, too."""
+    """A frequency in Hz, which may also be given as an angular frequency in rad/s."""
 
     def convert(self, given: object) -> float:
-        """Convert to a frequency [Hz]."""
+        """Convert a number with a unit to a frequency [Hz]."""
         if isinstance(given, str) and given.rstrip().endswith("rad/s"):
             return quantity(given, "rad/s") / (2 * math.pi)
         return super().convert(given)
 
 
 def reader_of(text: DataText) -> Callable[..., MeasuredCurves | MeasuredFrequencies] | None:
-    """Return the function that reads the curves in a text, by its heads; None if it has no curves."""
+    """Return the function that reads the curves in a text, by its column headings; None if there are none."""
     line = text.lines[head_line(text) - 1].lower()
     heads = {plain_name(re.sub(r"[\[(].*", "", cell)) for cell in re.split(r"[,;\t]", line)}
     if "time" in heads:
@@ -60,7 +60,7 @@ def reader_of(text: DataText) -> Callable[..., MeasuredCurves | MeasuredFrequenc
 
 
 def read_history(text: DataText, half: Half, speed: float | None) -> MeasuredHistory:
-    """Read histories: a column of times, and at least one column such as "tip" or "root moment"."""
+    """Read time histories: a column of times, and at least one column such as "tip" or "root moment"."""
     if speed is not None:
         bound = "histories are compared with the scene's motion"
         raise InvalidValue("speeds", speed, bound, "leave it out", "rad/s")
@@ -82,7 +82,7 @@ def read_peaks(text: DataText, half: Half, speed: float | None) -> MeasuredPeaks
 
 
 def _check_ascending(table: CsvTable, name: str, unit: str) -> None:
-    """Refuse a value [unit] that does not follow a smaller one, with its line."""
+    """Raise an error, with the line number, if a value [unit] is not greater than the one before."""
     values = table.named()[name].values
     if later := next((k for k in range(1, len(values)) if values[k] <= values[k - 1]), 0):
         found = f"{name} = {values[later]:g} {unit} follows {values[later - 1]:g} {unit}"
@@ -90,17 +90,17 @@ def _check_ascending(table: CsvTable, name: str, unit: str) -> None:
 
 
 def _only(table: CsvTable, name: str, what: str) -> float:
-    """Return the single value of a column [SI]; refuse different values."""
+    """Return the only value of a column [SI unit]; raise an error if its values differ."""
     values = table.named()[name].values
     if other := next((k for k, value in enumerate(values) if value != values[0]), 0):
         raise table.text.refusal(
-            table.lines[other], f"expected {what} in all lines alike, found another {name}"
+            table.lines[other], f"expected {what} to be the same in all lines, found another {name}"
         )
     return values[0]
 
 
 def _speed(table: CsvTable, given: float | None) -> float | None:
-    """Return the speed in the file [rad/s], or the one given with it; None if there is none."""
+    """Return the speed in the file [rad/s], or the given one; None if there is none."""
     if "speed" not in table.named():
         return given
     if given is not None:
@@ -122,7 +122,7 @@ def _read(
     least_rows: int = 2,
     *times: str,
 ) -> tuple[CsvTable, list[CsvColumn]]:
-    """Read a table of one kind of data, and its columns of values; `times` names columns of further times."""
+    """Read a table of one kind of data, and its columns of values; `times` names further columns of times."""
     along, unit = kind.along
     known = {along: Quantity(unit, least=0.0)} | {name: Quantity("s", least=0.0) for name in times}
     known |= _SPEED if kind is MeasuredLoads else {}
@@ -134,15 +134,13 @@ def _read(
     if not columns:
         others = [column.head for column in table.columns if not column.name]
         remedy = _REMEDY.format(name=next(iter(kind.units)), head=others[0] if others else "Head")
-        said = (
-            f"expected a column such as {', '.join(kind.units)}; the heads are {', '.join(others)}; {remedy}"
-        )
+        said = f"expected a column such as {', '.join(kind.units)}; headings: {', '.join(others)}; {remedy}"
         raise text.refusal(table.head_line, said)
     return table, columns
 
 
 def _values(table: CsvTable, columns: list[CsvColumn], half: Half) -> dict[str, Any]:
-    """Return the fields that measured data of every kind have."""
+    """Return the constructor arguments that all classes of measured data have."""
     values, named = np.array([column.values for column in columns]).T, table.named()
     none = np.full(len(values), np.nan)
     spreads = [named.get(f"{column.name} {_SPREAD}") for column in columns]
@@ -156,7 +154,7 @@ def _values(table: CsvTable, columns: list[CsvColumn], half: Half) -> dict[str, 
 
 
 def _size(column: CsvColumn) -> float:
-    """Return the size of the unit of a column in SI."""
+    """Return the size of a column's unit in SI units."""
     si = (MeasuredHistory.units | MeasuredPeaks.units | MeasuredLoads.units)[column.name]
     return quantity(f"1 {column.unit}", si) if si else 1.0
 
@@ -188,7 +186,7 @@ def read_response(text: DataText, half: Half, speed: float | None) -> MeasuredRe
 
 
 def _check_response(table: CsvTable, column: CsvColumn) -> None:
-    """Refuse frequencies that do not ascend, and amplitudes below 0, with their lines."""
+    """Raise an error, with the line number, if frequencies do not ascend or an amplitude is below 0."""
     _check_ascending(table, "frequency", "Hz")
     if (below := next((k for k, value in enumerate(column.values) if value < 0), None)) is not None:
         found = f"{column.head} = {column.values[below]:g}"
@@ -197,15 +195,15 @@ def _check_response(table: CsvTable, column: CsvColumn) -> None:
 
 
 def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]:
-    """Return the unit of a response in SI, and the words for its output and input."""
-    said = f"expected a head such as 'tip by tip force [mm/N]', found '{column.head}'"
+    """Return the SI unit of a response, and the names of its output and input."""
+    said = f"expected a heading such as 'tip by tip force [mm/N]', found '{column.head}'"
     if (match := _RESPONSE.fullmatch(column.head)) is None:
         raise table.text.refusal(table.head_line, said)
     try:
         seen, drive = as_observation("output", match[1]), as_excitation("input", match[2])
     except ValueError as error:
         raise table.text.refusal(table.head_line, f"{said}: {error}") from None
-    for sign in re.finditer(r"/| per ", column.unit):  # places at which the unit of the input may begin
+    for sign in re.finditer(r"/| per ", column.unit):  # positions at which the unit of the input may begin
         above, below = (
             part.strip(" ()") for part in (column.unit[: sign.start()], column.unit[sign.end() :])
         )
@@ -219,18 +217,18 @@ def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]
 
 
 def _plain_unit(unit: str) -> float:
-    """Return the unit of a plain number, such as strain: "", "-" or a positive number; else a ValueError."""
+    """Return the unit of a plain number, such as strain: "", "-" or a positive number."""
     size = 1.0 if unit in ("", "-") else float(unit)
     if not 0 < size < math.inf:
         raise ValueError(unit)
     return size
 
 
-# Shapes -------------------------------------------------------------------------------------------
+# Mode shapes --------------------------------------------------------------------------------------
 
 
 def read_shapes(text: DataText, half: Half, speed: float | None) -> MeasuredFrequencies:
-    """Read mode shapes: a column of positions, and one for each mode, such as "shape at 62.1 Hz"."""
+    """Read mode shapes: a column of positions, and a column per mode, such as "shape at 62.1 Hz"."""
     line = head_line(text)
     given = _SHAPE.findall(text.lines[line - 1])
     if len(given) > _MOST:
@@ -239,7 +237,7 @@ def read_shapes(text: DataText, half: Half, speed: float | None) -> MeasuredFreq
     heads = _SHAPE.sub(lambda _: f" shape {next(numbers)}", text.lines[line - 1])
     other = next((o for o in _OTHER_SHAPE.findall(heads) if not re.fullmatch(r"shape \d+", o)), "")
     if other or not given:
-        raise text.refusal(line, f"expected heads such as 'shape at 62.1 Hz', found '{other or heads}'")
+        raise text.refusal(line, f"expected headings such as 'shape at 62.1 Hz', found '{other or heads}'")
     known = (
         {"position": Quantity("m", least=0.0)}
         | _SPEED

@@ -1,4 +1,4 @@
-"""Reading of measured values: tables with units, and other programs' files; and tables of frequencies."""
+"""Reading of measured values from CSV tables with units and from files of other programs."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ from beamdyn.files.program_tables import UNIVERSAL, as_table, universal_table
 from beamdyn.scene.measured_curves import MeasuredCurves
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 
-_MOST_SPEED = 1e5  # highest speed [rad/s], a million revolutions per minute: more is a mistaken unit
-_MOST = 40  # largest number of columns of frequencies
+_MOST_SPEED = 1e5  # highest speed [rad/s], 10^6 rpm: a higher one has a wrong unit
+_MOST = 40  # largest number of frequency columns
 _SPEED, _OF_ALL = "speed", "uncertainty"
 _KNOWN = {
     _SPEED: Quantity("rad/s", least=-_MOST_SPEED, most=_MOST_SPEED),
@@ -46,25 +46,25 @@ def read_measurements(
 ) -> MeasuredFrequencies | MeasuredCurves:
     """Read measured values from a file of a laboratory or of another program.
 
-    A CSV file has a line of heads with units, which tell what it holds: natural frequencies over speed
-    ("speed [rpm], frequency 1 [Hz], torsion 1 [Hz], uncertainty [Hz]"), histories ("time [s], tip [mm]"),
-    peaks over speed ("speed [rad/s], from [s], to [s], largest tip [mm]"), loads along the span ("position
-    [m], moment [N m]"), a frequency response ("frequency [Hz], tip by tip force [mm/N], phase [deg]") or mode
-    shapes ("position [mm], shape at 62.1 Hz").  Lists of modes and of
-    variables of ANSYS (SET,LIST and PRVAR), output of FAST and universal files (dataset 58, by pyuff) are
-    read as they stand.
+    A CSV file has a line of column headings with units, which determine its kind: natural frequencies over
+    speed ("speed [rpm], frequency 1 [Hz], torsion 1 [Hz], uncertainty [Hz]"), histories ("time [s], tip
+    [mm]"), peaks over speed ("speed [rad/s], from [s], to [s], largest tip [mm]"), loads along the span
+    ("position [m], moment [N m]"), a frequency response ("frequency [Hz], tip by tip force [mm/N], phase
+    [deg]") or mode shapes ("position [mm], shape at 62.1 Hz").  Lists of modes and of variables of ANSYS
+    (SET,LIST and PRVAR), output files of FAST and universal files (dataset 58, by pyuff) are read without
+    changes.
 
     Parameters
     ----------
     path : str or path-like
         The file.
     speeds : sequence of float, optional
-        Speeds [rad/s] of the rows where a file of frequencies has none; the one speed of loads, shapes or a
-        response.  If they are not given, a single row and shapes are at rest, loads and a response at the
-        final speed of the scene's motion.
+        Speeds [rad/s] of the rows, if a file of frequencies has none; or the single speed of loads, mode
+        shapes or a response.  By default a single row and mode shapes are at rest, and loads and responses at
+        the final speed of the scene's motion.
     columns : mapping of str to str, optional
-        Which column of the file is meant by which of our heads: {"tip": "TipDxb1"}, with a unit where the
-        file has none: {"tip by tip force [mm/N]": "UY_2"}.
+        Heading of the file's column for each heading that this function knows: {"tip": "TipDxb1"}, with a
+        unit if the file has none: {"tip by tip force [mm/N]": "UY_2"}.
 
     Returns
     -------
@@ -95,7 +95,7 @@ def measurements_of(
     speeds: Sequence[float] | np.ndarray | None = None,
     columns: Mapping[str, str] | None = None,
 ) -> MeasuredFrequencies | MeasuredCurves:
-    """Read measured values from the text of a file; arguments as for `read_measurements`."""
+    """Read measured values from the text of a file; speeds and columns are as for `read_measurements`."""
     given = None if speeds is None else real_array("speeds", speeds)
     head = next((k for k, line in enumerate(text.lines, 1) if _SET_LIST.match(line)), 0)
     if not head:
@@ -110,7 +110,7 @@ def measurements_of(
 
 
 def _checked(columns: Mapping[str, str] | None) -> Mapping[str, str]:
-    """Refuse `columns` of `read_measurements` that map no texts to texts; return them, or {} for None."""
+    """Return `columns`, or {} for None; raise an error unless it is a dictionary of texts."""
     if columns is None:
         return {}
     texts = isinstance(columns, Mapping) and all(
@@ -122,7 +122,7 @@ def _checked(columns: Mapping[str, str] | None) -> Mapping[str, str]:
 
 
 def _one_speed(speeds: np.ndarray | None) -> float | None:
-    """Return the single speed of loads, shapes or a response [rad/s]; None if none is given."""
+    """Return the single speed of loads, mode shapes or a response [rad/s]; None if none is given."""
     if speeds is not None and len(speeds) != 1:
         raise InvalidValue("speeds", speeds.tolist(), "curves of this kind are at one speed", "give one")
     return None if speeds is None else float(speeds[0])
@@ -132,7 +132,7 @@ _Read = tuple[np.ndarray, list[list[str]], tuple[str, ...], Mapping[str, np.ndar
 
 
 def _speeds(text: DataText, own: np.ndarray | None, given: np.ndarray | None, count: int) -> np.ndarray:
-    """Return the speeds of the rows, from the file or as given with it."""
+    """Return the speeds of the rows, from the file or as given by the caller."""
     if own is not None:
         if given is not None:
             raise InvalidValue(
@@ -188,23 +188,23 @@ def _from_csv(text: DataText) -> _Read:
 
 
 def _check_columns(table: CsvTable) -> None:
-    """Refuse columns that are not known, and a table without frequencies."""
+    """Raise an error for unknown columns, and for a table without frequencies."""
     if unknown := next((column.head for column in table.columns if not column.name), ""):
         known = "speed [rpm], frequency 1 [Hz], flap 1 [Hz], torsion 1 [Hz], uncertainty [Hz]"
         raise table.text.refusal(table.head_line, f"unknown column '{unknown}'; known are {known}")
     if not [*_of_frequency(table)]:
         found = ", ".join(column.head for column in table.columns)
-        said = f"expected a column such as 'frequency 1 [Hz]'; the heads are {found}"
+        said = f"expected a column such as 'frequency 1 [Hz]'; the headings are {found}"
         raise table.text.refusal(table.head_line, said)
 
 
 def _of_frequency(table: CsvTable) -> Iterator[CsvColumn]:
-    """Yield the columns of frequencies."""
+    """Yield the columns that contain frequencies."""
     yield from (c for c in table.columns if c.name != _SPEED and not c.name.startswith(_OF_ALL))
 
 
 def _as_rows(table: CsvTable) -> _Read:
-    """Return frequencies, cells, labels and further data, a row for each speed, and the unit of speeds."""
+    """Return frequencies, cells, labels and further data, one row per speed, and the unit of speeds."""
     columns, named = [*_of_frequency(table)], table.named()
     rows, written = (
         np.array([c.values for c in columns]).T,
@@ -216,7 +216,7 @@ def _as_rows(table: CsvTable) -> _Read:
         if of_one is not None:
             spread[:, k] = of_one.values
     labels = tuple(column.head for column in columns)
-    # A column without speeds is a list of modes at one speed.
+    # A column of frequencies without speeds is a list of modes at one speed.
     if len(columns) == 1 and len(rows) > 1 and _SPEED not in named:
         labels = tuple(f"{columns[0].head} {k}" for k in range(1, len(rows) + 1))
         rows, written, spread = rows.T, [[row[0] for row in written]], spread.T
@@ -230,7 +230,7 @@ def _as_rows(table: CsvTable) -> _Read:
 
 
 def _from_list(text: DataText, head: int) -> _Read:
-    """Read the frequencies of each load step, below the heads of the list."""
+    """Read the frequencies of each load step in a list of ANSYS, below its headings."""
     steps: dict[int, list[tuple[float, str]]] = {}
     for line in range(head + 1, len(text.lines) + 1):
         match = _SET.fullmatch(text.lines[line - 1])

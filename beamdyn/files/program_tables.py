@@ -1,7 +1,7 @@
-"""Tables as other programs write them, laid out as CSV: the lines of a file keep their numbers.
+"""Conversion of tables written by other programs to CSV with units, with unchanged line numbers.
 
-It reads lists of variables of ANSYS (PRVAR), tables whose heads and units stand in two lines (FAST),
-CSV files with lines of titles or with heads such as "X:Time(s)", and universal files (dataset 58).
+This module reads lists of variables of ANSYS (PRVAR), tables with headings and units in two lines (FAST), CSV
+files with title lines or with headings such as "X:Time(s)", and universal files (dataset 58).
 """
 
 from __future__ import annotations
@@ -25,27 +25,27 @@ _UNIT = re.compile(r"\(.*\)|\[.*\]")
 _AXIS = re.compile(r"(^|[,;\t])(\s*\"?)[XY]:", re.IGNORECASE)
 _CELL = re.compile(r"[^,;\t]+")
 UNIVERSAL = (".uff", ".unv", ".58")
-_RESPONSE, _HISTORY = 4, 1  # kinds of functions of dataset 58
-# Measured quantities by the number of the kind of data.
+_RESPONSE, _HISTORY = 4, 1  # function types of dataset 58
+# Measured quantities, by number of the data type in dataset 58.
 _OBSERVED = {8: ("tip", "m"), 12: ("tip acceleration", "m/s2")}
 _DRIVES = {13: ("tip force", "N"), 12: ("bending", "m/s2")}
 
 
 def as_table(text: DataText, columns: Mapping[str, str]) -> DataText:
-    """Return a file as a table of heads with units, with separators between its cells.
+    """Return a file as CSV: column headings with units, and separators between cells.
 
     Parameters
     ----------
     text : DataText
-        The file.
+        Text of the file.
     columns : mapping
-        Heads that its columns are to have, such as "tip" or "tip by tip force [mm/N]", each with the head of
-        its column in the file, without the unit.
+        New headings, such as "tip" or "tip by tip force [mm/N]"; for each, the heading of the column in the
+        file, without the unit.
 
     Raises
     ------
     ConfigError
-        If a list has no numbers, or no column has one of these heads.
+        If a list has no numbers, or no column has one of the given headings.
     """
     head = next((k for k, line in enumerate(text.lines) if _LIST.fullmatch(line)), None)
     units = next((k for k, pair in enumerate(pairwise(text.lines), 1) if _units_below(*pair)), None)
@@ -59,12 +59,12 @@ def as_table(text: DataText, columns: Mapping[str, str]) -> DataText:
 
 
 def head_line(text: DataText) -> int:
-    """Return the line of the heads, the first that is no comment; 0 if there is none."""
+    """Return the number of the heading line, the first line that is no comment; 0 if there is none."""
     return next((line for line in range(1, len(text.lines) + 1) if not text.is_comment(line)), 0)
 
 
 def _without_titles(text: DataText) -> list[str]:
-    """Return lines of a CSV file from the first with several cells on; heads without "X:" and "Y:"."""
+    """Return the lines of a CSV file without title lines, and without "X:" and "Y:" in headings."""
     lines = [*text.lines]
     first = next((k for k, line in enumerate(lines) if _AXIS.search(f",{line}") or _has_cells(line)), None)
     if first is None or text.is_comment(first + 1):
@@ -77,7 +77,7 @@ def _has_cells(line: str) -> bool:
 
 
 def _units_below(heads: str, units: str) -> bool:
-    """Whether a line gives the units of the words in the line above."""
+    """Return whether a line contains the units of the headings in the line above."""
     words = units.split()
     return len(words) > 1 and len(words) == len(heads.split()) and all(map(_UNIT.fullmatch, words))
 
@@ -89,7 +89,7 @@ def _of_two_heads(text: DataText, units: int) -> list[str]:
 
 
 def _of_list(text: DataText, head: int) -> list[str]:
-    """Return rows of a list of variables over time or frequency, whose heads are repeated on each page."""
+    """Return the rows of an ANSYS list over time or frequency, whose headings repeat on each page."""
     rows = {
         k: words
         for k, line in enumerate(text.lines)
@@ -112,7 +112,7 @@ def _of_list(text: DataText, head: int) -> list[str]:
 
 
 def _renamed(text: DataText, columns: Mapping[str, str]) -> DataText:
-    """Return the table with other heads; the file's unit stays where the new head has none."""
+    """Return the table with new headings; the unit in the file is kept if the new heading has none."""
     if not columns or not (line := head_line(text)):
         return text
     wanted = {plain_name(source): head for head, source in columns.items()}
@@ -128,7 +128,7 @@ def _renamed(text: DataText, columns: Mapping[str, str]) -> DataText:
 
     changed = _CELL.sub(new, text.lines[line - 1])
     if missing := next((source for source in columns.values() if plain_name(source) not in found), ""):
-        said = f"there is no column '{missing}'; the heads are {text.lines[line - 1].strip()}"
+        said = f"there is no column '{missing}'; the headings are {text.lines[line - 1].strip()}"
         raise text.refusal(line, said)
     return replace(text, lines=(*text.lines[: line - 1], changed, *text.lines[line:]))
 
@@ -137,12 +137,13 @@ def _renamed(text: DataText, columns: Mapping[str, str]) -> DataText:
 
 
 def universal_table(path: Path) -> DataText:
-    """Return the only function of a universal file (dataset 58): a frequency response, or a history.
+    """Return the only function in a universal file (dataset 58): a frequency response or a time history.
 
     Raises
     ------
     ConfigError
-        If the package that reads it is not installed, or there is not one function of a known kind.
+        If the package pyuff is not installed, or the file does not contain exactly one function of a known
+        type.
     """
     if find_spec("pyuff") is None:
         said = "a universal file needs the package pyuff: pip install 'beamdyn[uff]'"
@@ -151,7 +152,7 @@ def universal_table(path: Path) -> DataText:
 
     try:
         sets = pyuff.UFF(str(path)).read_sets()
-    except Exception as error:  # the package raises any error that its parts raise
+    except Exception as error:  # pyuff may raise errors of any class
         raise ConfigError(str(path), [f"it is no universal file that can be read ({error})"]) from None
     each = [found for found in (sets if isinstance(sets, list) else [sets]) if found["type"] == 58]
     if len(each) != 1 or each[0]["func_type"] not in (_RESPONSE, _HISTORY):
@@ -176,7 +177,7 @@ def _lines_of_function(path: Path, found: Mapping[str, Any]) -> list[str]:
 def _kind_of(
     path: Path, found: Mapping[str, Any], axis: str, known: Mapping[int, tuple[str, str]]
 ) -> tuple[str, str]:
-    """Return this package's word for the data on an axis, and their unit."""
+    """Return this package's name for the data on an axis, and the unit."""
     number = int(found.get(f"{axis}_spec_data_type", 0))
     if number not in known:
         kinds = ", ".join(f"{k} ({words})" for k, (words, _) in known.items())

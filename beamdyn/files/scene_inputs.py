@@ -1,4 +1,4 @@
-"""Tables of a scene's TOML file, with texts with units, and the objects that they make, such as `Beam`."""
+"""Tables of a scene's TOML file, whose texts have units, and the objects that they describe."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.section_matrices import UPPER, SectionMatrices, entry_name, entry_units
 
-Along = float | Polynomial | Table  # a property along the beam
+Along = float | Polynomial | Table  # a property that varies along the beam
 
 
 class Metres(float):
-    """A position given as a length, which becomes a fraction once the length of the beam is known."""
+    """A position given as a length, which becomes a fraction when the length of the beam is known."""
 
 
 class Position(Quantity):
-    """A position along the beam: a bare fraction x/L or a length with its unit."""
+    """A position along the beam: a plain number is the fraction x/L; a length has a unit."""
 
     def convert(self, given: object) -> float:
-        """Convert to a fraction, or to `Metres`."""
+        """Convert to a fraction x/L, or to `Metres` if the position is a length."""
         return Metres(quantity(given, "m")) if isinstance(given, str) else super().convert(given)
 
 
@@ -48,7 +48,7 @@ BREAKPOINT = Position(meaning="places where a property jumps or has a kink, as f
 
 
 class Varying(Quantity):
-    """A quantity that is constant, a polynomial in x/L or a table over stations."""
+    """A quantity that is constant, a polynomial in x/L, or a table over stations."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         constant = core_schema.no_info_plain_validator_function(self.parse)
@@ -69,7 +69,7 @@ class Varying(Quantity):
 
 
 def _table(build: Any, **lists: CoreSchema) -> CoreSchema:
-    """Return the schema of an inline table of lists, from which `build` makes an object."""
+    """Return the pydantic schema of an inline table of lists, from which `build` makes an object."""
     fields = {
         name: core_schema.typed_dict_field(core_schema.list_schema(item, strict=True, min_length=1))
         for name, item in lists.items()
@@ -87,7 +87,7 @@ def _stations(given: dict[str, list[float]]) -> Table:
 
 
 def _kind_of_variation(given: Any) -> str | None:
-    if isinstance(given, Table):  # the property comes from a column of beam.stations
+    if isinstance(given, Table):  # the property is given by a column of beam.stations
         return "<column>"
     if not isinstance(given, dict):
         return None if isinstance(given, list) else "<constant>"
@@ -98,17 +98,17 @@ def _kind_of_variation(given: Any) -> str | None:
 # Motions, physics and points ----------------------------------------------------------------------
 
 
-# Tables of the file -------------------------------------------------------------------------------
+# Tables of a scene file -----------------------------------------------------------------------------
 
 
-# Tables by kind of rotation or motion, in the order of `KINDS`.
+# Classes of tables by kind of rotation or motion, in the order of `KINDS`.
 ROTATIONS = {name: section_of(made, name) for name, made in KINDS.items() if issubclass(made, Rotation)}
 _ROTATION = {Rotation: one_of_kinds(ROTATIONS)}
 MOTIONS = {name: ROTATIONS.get(name) or section_of(made, name, _ROTATION) for name, made in KINDS.items()}
 
 
 class _ChoosablePhysics(MadeSection):
-    """[physics], or the word "auto" in its place."""
+    """The table [physics], or the word "auto" in its place."""
 
     auto: Annotated[
         bool, Field(description="each analysis adds the effects whose size exceeds its tolerance")
@@ -116,7 +116,7 @@ class _ChoosablePhysics(MadeSection):
 
     @cached_property
     def core(self) -> Physics:
-        """Make the physics."""
+        """Make the `Physics` object, which states the physical effects to include."""
         with of_file(self.key_of):
             given = self.made(**self.given)
         if not self.auto:
@@ -129,7 +129,7 @@ class _ChoosablePhysics(MadeSection):
 
 
 def with_physics_as_table(tables: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of a scene, with a table in place of the word "auto" for its physics."""
+    """Return the tables of a scene, with a table in place of the word "auto" for the physical effects."""
     return tables | ({"physics": _auto_as_table(tables["physics"])} if "physics" in tables else {})
 
 
@@ -143,7 +143,7 @@ def _auto_as_table(given: Any) -> Any:
 
 
 def _in_a_list(key: str) -> BeforeValidator:
-    """Make a validator that refuses a single table where a list of tables is expected."""
+    """Make a validator that raises an error for a single table where a list of tables is expected."""
 
     def refuse_one(given: Any) -> Any:
         if isinstance(given, Mapping):
@@ -171,7 +171,7 @@ class _BeamInput(CoreSection):
     stations: Annotated[
         list[list[Any]] | None,
         Field(
-            description="table of the sections: a row of heads such as x/L and twist [deg], then numbers, "
+            description="table of the sections: a row of headings such as x/L and twist [deg], then numbers, "
             "a row a station; linear between stations, one given twice is a jump; or the name of a CSV file"
         ),
     ] = None
@@ -194,7 +194,7 @@ class _BeamInput(CoreSection):
 
     @property
     def _arguments(self) -> dict[str, Any]:
-        """Arguments of the constructors of `Beam`."""
+        """Return the arguments for the constructors of `Beam`."""
         others = ("stations", "point_mass", "point_spring")
         given = {name: value for name, value in self if value is not None and name not in others}
         given = {name: _to_fractions(value, self.length) for name, value in given.items()}
@@ -286,9 +286,9 @@ class MatricesInput(_BeamInput):
     matrices: Annotated[
         list[list[Any]],
         Field(
-            description="table of the 6 x 6 matrices of the sections: a row of heads, x/L and entries of the "
-            "upper triangles, K11 [N] to K66 [N m2] of stiffness and M11 [kg/m] to M66 [kg m] of mass, then "
-            "numbers, a row a station; linear between stations; entries that are not given are 0"
+            description="table of the 6 x 6 matrices of the sections: a row of headings, x/L and entries of "
+            "the upper triangles, K11 [N] to K66 [N m2] of stiffness and M11 [kg/m] to M66 [kg m] of mass, "
+            "then numbers, a row a station; linear between stations; entries that are not given are 0"
         ),
     ]
 
@@ -305,7 +305,7 @@ ENTRIES = {name: Quantity(unit, meaning="entry of a matrix") for name, unit in e
 
 
 def _read_matrices(rows: list[Any], length: float) -> SectionMatrices:
-    """Read the matrices of a table; entries that are not given are 0."""
+    """Read the cross-section matrices in a table; entries that are not given are 0."""
     columns = read_columns("matrices", rows, PLACES | ENTRIES)
     places = [name for name in columns if name in PLACES]
     if len(places) != 1:
@@ -320,18 +320,19 @@ def _read_matrices(rows: list[Any], length: float) -> SectionMatrices:
 
 
 def _to_fractions(given: Any, length: float) -> Any:
-    """Convert positions in metres to fractions of the length; leave all else unchanged."""
+    """Convert positions in metres to fractions of the length; leave all other values unchanged."""
     if isinstance(given, Table):
         return Table(_to_fractions(given.stations, length), given.values)
     if isinstance(given, list | tuple):
-        # Rounded: otherwise 20 mm of 50 mm would differ from the fraction 0.4, with a sliver between them.
+        # Rounded: otherwise 20 mm of 50 mm would differ from the fraction 0.4 by a rounding error, and there
+        # would be a tiny interval between them.
         return tuple(round(x / length, 14) if isinstance(x, Metres) else x for x in given)
     return given
 
 
 @contextmanager
 def _of_points() -> Iterator[None]:
-    """Reword refusals by the core about a point mass or spring, so that they name its table."""
+    """In this context, reword errors about a point mass or spring: name the table of the file."""
     try:
         yield
     except InvalidValue as error:
@@ -341,7 +342,7 @@ def _of_points() -> Iterator[None]:
 
 @contextmanager
 def _naming_missing_key(beam: type[BaseModel]) -> Iterator[None]:
-    """Reword refusals for lack of a property, so that they name the beam's key for it."""
+    """In this context, reword errors about a missing property, so that they name the key in the file."""
     try:
         yield
     except InvalidValue as error:
@@ -364,12 +365,12 @@ VARYING = {
 
 
 def _with_columns(given: Any) -> Any:
-    """Add the columns of `stations` to the keys of the beam, each as the table of the property it names."""
+    """Replace `stations` by a key for each of its columns: the table of the property in the column."""
     if not isinstance(given, dict) or given.get("stations") is None:
         return given
     rows = given["stations"]
     if isinstance(rows, str):
-        remedy = 'give a row of heads, ["x/L", "twist [deg]"], then rows of numbers'
+        remedy = 'give a row of headings, ["x/L", "twist [deg]"], then rows of numbers'
         raise InvalidInput("stations", rows, f"{remedy}; only a scene in a file may name another file")
     columns = read_columns("stations", rows, PLACES | VARYING)
     places = [name for name in columns if name in PLACES]
@@ -377,14 +378,14 @@ def _with_columns(given: Any) -> Any:
         remedy = 'give the position in one column, "x/L" or "x [m]", and properties in others'
         raise InvalidInput("stations[0]", rows[0], remedy)
     if twice := [name for name in columns if name in given]:
-        raise InvalidInput("stations[0]", rows[0], f"{twice[0]} is a key of its own, too; give it once")
+        raise InvalidInput("stations[0]", rows[0], f"{twice[0]} is both a column and a key; give it once")
     x = tuple(columns.pop(places[0]))
     return given | {name: Table(x, tuple(values)) for name, values in columns.items()}
 
 
 @contextmanager
 def _of_stations(rows: list[Any] | None) -> Iterator[None]:
-    """Reword refusals by the core about a property's stations, so that they name the table's cells."""
+    """In this context, reword errors about stations of a property, so that they name the table cells."""
     keys: dict[str, str] = {}
     if rows:
         place = next(c for c, head in enumerate(rows[0]) if head.partition("[")[0].strip() in PLACES)
@@ -459,7 +460,7 @@ class SceneInput(CoreSection):
 
     @cached_property
     def core(self) -> Scene:
-        """Make the scene."""
+        """Make the scene from its tables."""
         motion = self.motion and self.motion.core
         with _naming_missing_key(type(self.beam)):
             made = {name: getattr(self, name).core for name in ("physics", "damping", "tip_load")}

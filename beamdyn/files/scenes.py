@@ -1,4 +1,4 @@
-"""Reading of scenes in TOML, with the CSV files that they name: from text with units to objects in SI."""
+"""Reading of scenes in TOML and of CSV files named in them: from texts with units to objects in SI units."""
 
 from __future__ import annotations
 
@@ -38,21 +38,21 @@ _TABLE = re.compile(r"\s*\[([^\[\]]+)\]\s*(#.*)?")
 
 
 def with_numbers_in_text(text: str, values: Mapping[str, float], head: Iterable[str] = ()) -> str:
-    """Replace some of the numbers in the text of a scene's file, or add them to their tables.
+    """Replace numbers in the text of a scene file, or add them to their tables.
 
     Parameters
     ----------
     text : str
-        The text.
+        Text of the scene file.
     values : mapping of str to float
-        Numbers [SI] by their names, such as "beam.thickness"; an infinite one is written as "inf".
+        Numbers [SI units] by path, such as "beam.thickness"; an infinite number is written as "inf".
     head : iterable of str
-        Sentences that stand as comments above.
+        Sentences to write as comments at the start of the file.
 
     Raises
     ------
     ConfigError
-        If a number has no line of its own that could be replaced: it is one of a list, or a factor.
+        If a number has no line of its own that could be replaced: an entry of a list, or a factor.
     """
     lines = text.splitlines()
     for path, value in values.items():
@@ -68,7 +68,7 @@ def with_numbers_in_text(text: str, values: Mapping[str, float], head: Iterable[
 
 
 def _written(path: str, value: float) -> str:
-    """Format a number as the file has it: text with its unit."""
+    """Format a number in the notation of files: a text with a unit."""
     if math.isinf(value):
         return '"inf"'
     unit = unit_of(path)
@@ -76,7 +76,7 @@ def _written(path: str, value: float) -> str:
 
 
 def _put(lines: list[str], table: str, key: str, line: str) -> None:
-    """Replace the line of a key in a table, or add it at the end of the table, or together with the table."""
+    """Replace the line of a key in a table, or add it at the end of the table; add the table if needed."""
     heads = {match[1].strip(): k for k, each in enumerate(lines) if (match := _TABLE.fullmatch(each))}
     if table not in heads:
         lines += ["", f"[{table}]", line]
@@ -93,8 +93,8 @@ def _put(lines: list[str], table: str, key: str, line: str) -> None:
     lines.insert(end, line)
 
 
-RADIUS = "r"  # head in CSV files of the distance from the axis of rotation
-# Heads of CSV files, in addition to the keys of the beam.
+RADIUS = "r"  # column heading of the distance from the axis of rotation in CSV files
+# Column headings of CSV files, in addition to the keys of the beam.
 _HEADS = {
     "x/L": ("span", "blfract", "sec_loc", "span_loc"),
     "mass_per_length": ("mass", "mass per metre", "BMassDen", "mass_den"),
@@ -107,19 +107,19 @@ _STATION_NAMES |= {plain_name(head): name for name, heads in _HEADS.items() for 
 
 
 def read_station_file(text: DataText, more: Mapping[str, Quantity] | None = None) -> CsvTable:
-    """Read stations from a CSV file: its columns by the keys of the beam, checked to ascend.
+    """Read stations from a CSV file: its columns by keys of the beam; positions must ascend.
 
     Parameters
     ----------
     text : DataText
-        The file.
+        Text of the file.
     more : mapping, optional
-        Further places or properties, by name.
+        Further positions or properties that columns may have, by name.
 
     Raises
     ------
     ConfigError
-        At the first mistake; the message names file, line, and what was expected.
+        At the first mistake; the message names the file, the line, and what was expected.
     """
     known = PLACES | VARYING | dict(more or {})
     table = read_csv(text, known, _STATION_NAMES | {plain_name(name): name for name in more or ()})
@@ -127,16 +127,16 @@ def read_station_file(text: DataText, more: Mapping[str, Quantity] | None = None
     if len(places) != 1:
         wanted = "x/L, x [m] or r [m]" if more else "x/L or x [m]"
         found = ", ".join(column.head for column in table.columns)
-        said = f"expected one column of positions, {wanted}; the heads are {found}"
+        said = f"expected one column of positions, {wanted}; the headings are {found}"
         raise text.refusal(table.head_line, said)
     check_places(table, places[0])
     return table
 
 
 def with_station_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[str, Any]:
-    """Replace the name of a CSV file in `beam.stations` by the file's rows.
+    """Replace the name of a CSV file in `beam.stations` by the rows of the file.
 
-    Return the tables of the scene.
+    Return the tables of the scene file.
     """
     beam = data.get("beam")
     if not isinstance(beam, dict) or not isinstance(beam.get("stations"), str):
@@ -151,27 +151,27 @@ def with_station_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[s
     return data | {"beam": beam | {"stations": [heads, *rows]}}
 
 
-# Records of motions -------------------------------------------------------------------------------
+# Recorded motions ---------------------------------------------------------------------------------
 
 
 class RecordedQuantity(Quantity):
-    """A number of a record, where many have one unit, whose conversion is computed once."""
+    """A number in a recorded time series, whose unit conversion is computed only once."""
 
     def parse(self, given: object) -> float:
-        """Convert to SI."""
+        """Convert a number with a unit to SI units."""
         number, _, unit = str(given).partition(" ")
         return float(Decimal(number) * _si_value(unit, self.unit))
 
 
 @cache
 def _si_value(unit: str, of: str) -> Decimal:
-    """Return the size of a unit in SI units, exactly as a decimal."""
+    """Return the size of a unit in SI units as an exact decimal number."""
     return Decimal(repr(quantity(f"1 {unit}", of)))
 
 
 FILE = "file"
 _TIMES = "times"
-# Heads, in addition to the keys of the motion.
+# Column headings, in addition to the keys of the motion.
 _RECORD_HEADS = {
     "times": ("t", "time"),
     "speeds": ("speed", "omega"),
@@ -182,13 +182,13 @@ _RECORD_HEADS = {
 
 
 def with_record_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[str, Any]:
-    """Add the columns of the CSV files that a scene's motion names; return the tables of the scene.
+    """Add the columns of CSV files that a scene's motion names; return the tables of the scene.
 
     Raises
     ------
     ConfigError
-        At the first mistake of a file, with the line and what was expected; or if a motion that has no lists
-        names a file, or has a list beside it.
+        At the first mistake in a file, with the line and what was expected; or if a motion without time
+        series names a file, or gives a time series in addition to the file.
     """
     motion = data.get("motion")
     if not isinstance(motion, dict):
@@ -202,7 +202,7 @@ def with_record_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[st
 
 
 def _with_columns(motion: dict[str, Any], place: str, path: str | PathLike[str]) -> dict[str, Any]:
-    """Return the table of a motion with its lists from the file that it names."""
+    """Return the table of a motion with the time series from the file that it names."""
     if not isinstance(motion.get(FILE), str):
         return motion
     name, known = motion[FILE], _lists_of(motion.get("kind"))
@@ -210,14 +210,14 @@ def _with_columns(motion: dict[str, Any], place: str, path: str | PathLike[str])
         kinds = " or ".join(f'"{kind}"' for kind in KINDS if _lists_of(kind))
         raise InvalidInput(f"{place}.{FILE}", name, f"this kind of motion has no record; give kind = {kinds}")
     if given := [key for key in known if key in motion]:
-        raise InvalidInput(f"{place}.{given[0]}", "", f"the file {name} has it, too; give it once")
+        raise InvalidInput(f"{place}.{given[0]}", "", f"the file {name} has this column, too; give it once")
     columns = read_record(named_file(path, f"{place}.{FILE}", name), known)
     rest = {key: value for key, value in motion.items() if key != FILE}
     return rest | {key: [SiNumber(value) for value in values] for key, values in columns.items()}
 
 
 def _lists_of(kind: object) -> dict[str, RecordedQuantity]:
-    """Return the lists of a kind of motion that a record may give, by key."""
+    """Return the time series that a kind of motion may read from a file, by key."""
     made = KINDS.get(kind) if isinstance(kind, str) else None
     if made is None:
         return {}
@@ -230,19 +230,20 @@ def _lists_of(kind: object) -> dict[str, RecordedQuantity]:
 
 
 def read_record(path: Path, known: Mapping[str, Quantity]) -> dict[str, tuple[float, ...]]:
-    """Read the columns of a record, in SI: evenly spaced times, and numbers at each.
+    """Read a recorded motion in SI units: evenly spaced times, and numbers at each time.
 
     Parameters
     ----------
     path : Path
-        The CSV file: a line of heads with units, such as "t [s], n2 [m/s2]", then lines of numbers.
+        The CSV file: a line of headings with units, such as "t [s], n2 [m/s2]", then lines of numbers.
     known : mapping
-        Quantities that columns may have, by name; "times" is one.
+        The known quantities, by name; they include "times".
 
     Raises
     ------
     ConfigError
-        If a head lacks its unit, a cell is no number, or samples are missing; the message names the line.
+        If a heading lacks its unit, a cell is not a number, or samples are missing; the message names the
+        line.
     """
     text = read_data(path)
     names = {plain_name(head): key for key in known for head in (key, *_RECORD_HEADS.get(key, ()))}
@@ -257,7 +258,7 @@ def read_record(path: Path, known: Mapping[str, Quantity]) -> dict[str, tuple[fl
 
 
 def _check_times(table: CsvTable, times: tuple[float, ...]) -> None:
-    """Refuse times that do not ascend evenly from 0; the message names the line of the first wrong one."""
+    """Raise an error, with the line number, if times are not evenly spaced from 0."""
     try:
         check_record_times("t", times)
     except InvalidValue as error:
@@ -266,7 +267,7 @@ def _check_times(table: CsvTable, times: tuple[float, ...]) -> None:
 
 
 def as_velocity(text: object) -> float | None:
-    """Convert a text to a velocity [m/s]; None if it is none."""
+    """Convert a text to a velocity [m/s]; return None if it is not a velocity."""
     try:
         return quantity(text, "m/s") if isinstance(text, str) else None
     except InvalidInput:
@@ -274,14 +275,14 @@ def as_velocity(text: object) -> float | None:
 
 
 def with_rolling_speeds(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Convert velocities in a rolling wheel's rotation to speeds [rad/s]; return the tables of the file."""
+    """Convert velocities of a rolling wheel to rotational speeds [rad/s]; return the file's tables."""
     motion = data.get("motion")
     rotation = motion.get("rotation") if isinstance(motion, Mapping) else None
     if not isinstance(motion, Mapping) or not isinstance(rotation, Mapping):
         return data
     try:
         radius = quantity(motion.get("rolling_radius"), "m")
-    except InvalidInput:  # the check of the table reports this mistake
+    except InvalidInput:  # the check of the table reports this error later
         return data
     velocities = {key: as_velocity(value) for key, value in rotation.items()}
     if radius <= 0 or all(value is None for value in velocities.values()):
@@ -294,12 +295,12 @@ def with_rolling_speeds(data: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def load_scene(path: str | PathLike[str]) -> Scene:
-    """Read a scene from a TOML file, and the CSV files of its stations and its motion if it names some.
+    """Read a scene from a TOML file, and from the CSV files that it names for stations and motion.
 
     Parameters
     ----------
     path : str or path-like
-        The file.
+        The TOML file.
 
     Returns
     -------
@@ -308,8 +309,8 @@ def load_scene(path: str | PathLike[str]) -> Scene:
     Raises
     ------
     ConfigError
-        If there is no such file or it does not describe a scene; the message lists all mistakes, those in a
-        CSV file by line.
+        If the file does not exist or does not describe a scene; the message lists all mistakes, with line
+        numbers for CSV files.
 
     Examples
     --------
@@ -333,14 +334,14 @@ def parse_scene(text: str, source: str = "scene") -> Scene:
     Parameters
     ----------
     text : str
-        The text.
+        TOML text.
     source : str
-        Name of its origin, for messages.
+        Name of the file or other source, for messages.
 
     Raises
     ------
     ConfigError
-        If it does not describe a scene; the message lists all mistakes.
+        If the text does not describe a scene; the message lists all mistakes.
     """
     return scene_from_dict(parse(text, source), source)
 
@@ -351,15 +352,15 @@ def scene_from_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
     Parameters
     ----------
     data : mapping
-        Tables "beam" and "mount", and where wanted "motion", "model", "damping", "tip_load", "harvester" and
-        "physics", as tomllib reads them.
+        Tables "beam" and "mount", and optionally "motion", "model", "damping", "tip_load", "harvester" and
+        "physics", as tomllib returns them.
     source : str
-        Name of its origin, for messages.
+        Name of the file or other source, for messages.
 
     Raises
     ------
     ConfigError
-        If it does not describe a scene; the message lists all mistakes.
+        If the tables do not describe a scene; the message lists all mistakes.
     """
     return replace(validated(SceneInput, with_rolling_speeds(data), source).core, units=_units_of(data))
 
@@ -372,7 +373,7 @@ def _units_of(data: Mapping[str, Any]) -> DisplayUnits:
 
 
 def _speed_in(motion: Any) -> Any:
-    """Return the speed of a motion as its table gives it, or that of the rotation within it."""
+    """Return the speed in the table of a motion, or of the rotation nested in it."""
     if not isinstance(motion, Mapping):
         return motion
     inner = motion.get("speed", motion.get("rotation"))

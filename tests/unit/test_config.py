@@ -211,10 +211,10 @@ def test_stations_beside_other_keys():
 @pytest.mark.parametrize(
     ("place", "value", "message"),
     [
-        ((), "blade.csv", ' = "blade.csv": give a row of heads, ["x/L", "twist [deg]"], then rows of numb'),
+        ((), "blade.csv", ' = "blade.csv": give a row of headings, ["x/L", "twist [deg]"], then rows of num'),
         ((), ROWS[:1], ' = [["x/L", "mass_per_length [kg/m]"'),
         ((2,), 5, "[2] = 5: give a row in brackets"),
-        ((2,), [0.25, 1], "[2] = [0.25, 1]: 2 cells under 5 heads"),
+        ((2,), [0.25, 1], "[2] = [0.25, 1]: 2 cells under 5 headings"),
         ((0, 2), "twist", '[0][2] = "twist": give "twist [deg]"'),
         ((0, 2), "twist [m]", '[0][2] = "twist [m]": give "twist [deg]"'),
         ((0, 2), "Twist [deg]", '[0][2] = "Twist [deg]": unknown column; did you mean twist?'),
@@ -241,7 +241,7 @@ def test_mistake_in_stations(place, value, message):
 
 def test_a_property_is_given_once():
     said = only_mistake(changed("beam.twist", "5 deg", BY_STATIONS))
-    assert said.endswith(": twist is a key of its own, too; give it once")
+    assert said.endswith(": twist is both a column and a key; give it once")
 
 
 @pytest.mark.parametrize("motion", [{"speed": "525 rpm"}, {"speed": "525 rpm", "kind": "steady"}])

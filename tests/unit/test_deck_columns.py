@@ -30,7 +30,7 @@ def in_order(path, order):
 
 
 def test_columns_in_another_order_than_elastodyn_reads_are_warned_of(folder, finished):
-    assert not [said for said in bd.read_deck(folder / "main.dat").audit.warnings if "heads" in said]
+    assert not [said for said in bd.read_deck(folder / "main.dat").audit.warnings if "headings" in said]
     in_order(folder / "sub" / "blade.dat", (0, 1, 2, 4, 3, 5))
     deck = bd.read_deck(folder / "main.dat")
     np.testing.assert_allclose(deck.scene.beam.bending_stiffness(0.0), written.FLAP[0])  # by their heads
@@ -42,5 +42,5 @@ def test_columns_in_another_order_than_elastodyn_reads_are_warned_of(folder, fin
 def test_a_blade_file_without_the_column_that_newer_versions_lack_is_in_order(folder):
     in_order(folder / "blade.dat", (0, 2, 3, 4, 5))
     assert not [
-        said for said in bd.read_deck(folder / "blade.dat", **GIVEN).audit.warnings if "heads" in said
+        said for said in bd.read_deck(folder / "blade.dat", **GIVEN).audit.warnings if "headings" in said
     ]

@@ -173,9 +173,9 @@ def test_a_universal_file_without_its_package_says_what_to_install(read):
         ("time [s], tip [mm]\n0, 1\n1, x\n", r"line 3: expected a number for tip \[mm\], found 'x'"),
         ("position [m], moment [N]\n0, 1\n1, 2\n", r"line 1: .*\[N m\] for moment, found \[N\]"),
         ("position [m], moment [N m]\n1, 1\n0, 2\n", r"line 3: .*positions that ascend"),
-        ("position [m], shape 1\n0, 1\n1, 2\n", r"line 1: expected heads such as 'shape at 62.1 Hz'"),
+        ("position [m], shape 1\n0, 1\n1, 2\n", r"line 1: expected headings such as 'shape at 62.1 Hz'"),
         ("position [m], shape at 3 mm\n0, 1\n1, 2\n", r"line 1: shape at 3 mm"),
-        ("frequency [Hz], tip by force [m/N]\n1, 1\n2, 2\n", r"line 1: expected a head .*input = 'force'"),
+        ("frequency [Hz], tip by force [m/N]\n1, 1\n2, 2\n", r"line 1: expected a heading .*input = 'force'"),
         ("frequency [Hz], tip by tip force [mm]\n1, 1\n2, 2\n", r"line 1: .*\[m per N\].*found \[mm\]"),
     ],
 )
@@ -192,7 +192,7 @@ def test_one_speed_and_known_columns_are_asked_for(read):
     peaks = "speed [rad/s], from [s], to [s], largest tip [mm]\n40, 1, 2, 0.5\n55, 1, 2, 1.96\n"
     with pytest.raises(ValueError, match=r"speeds = 31\.4 rad/s: the file has speeds of its own; leave"):
         read(peaks, speeds=[31.4])
-    with pytest.raises(ValueError, match="line 1: there is no column 'Tip2'; the heads are time"):
+    with pytest.raises(ValueError, match="line 1: there is no column 'Tip2'; the headings are time"):
         read(HISTORY, columns={"tip": "Tip2"})
 
 

@@ -1,1 +1,1 @@
-"""Presentation of results of rotating beams: tables, files, pictures, and cautions beside the numbers."""
+"""Presentation of results of rotating beams: tables, files, pictures, and warnings."""

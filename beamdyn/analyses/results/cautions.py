@@ -1,4 +1,4 @@
-"""Cautions beside the numbers of a result: on the choice of its physics, and on a large model error."""
+"""Warnings and notes on a result: how its physical effects were chosen, and large model errors."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR, States
 
 
 def warnings_of(result: Any, tolerance: float | None = None, without: str = "") -> list[str]:
-    """Return warnings of a result, and of its model error above a tolerance, or 1 %, in words of files.
+    """Return the warnings of a result; also if its model error exceeds a tolerance, or 1 %.
 
-    Statements of the kind `without` are left out.
+    Warnings of the kind `without` are omitted.
     """
     warnings = (*getattr(result, "warnings", ()), *_of_model_error(result, tolerance))
     said = (each for each in warnings if not without or kind_of(each) != without)
@@ -28,7 +28,7 @@ def warnings_of(result: Any, tolerance: float | None = None, without: str = "") 
 
 
 def _words_of(result: Any) -> Callable[[Part], str]:
-    """Return the function that words parts of texts on a result: by the result itself, or as in files."""
+    """Return the function that words parts of a text: in the result's units, with names as in files."""
     units = result.display_units if isinstance(result, Result) else SI_UNITS
     own: Callable[[Part], str | None] = getattr(result, "in_own_words", lambda part: None)
     return lambda part: in_files(own(part) or in_terms(part, units))
@@ -40,15 +40,15 @@ def _of_model_error(result: Any, tolerance: float | None = None) -> Iterator[str
 
 
 def describe_choice(result: Result) -> list[str]:
-    """Return the sentence on how the physics of a result was chosen; empty if it was given."""
+    """Return the sentence on how physical effects were chosen automatically; empty if they were given."""
     choice = getattr(result, "physics_choice", None)
     return [] if choice is None else [choice.sentence()]
 
 
 def describe_left_out(result: Result) -> list[str]:
-    """Return the sentence on effects left out, for tables without one.
+    """Return the sentence on neglected effects, for tables that do not list them.
 
-    Empty if the result states no model error.
+    The sentence is empty if the result has no model error.
     """
     if not isinstance(result, StatesModelError) or not result.judged_value:
         return []
@@ -57,7 +57,7 @@ def describe_left_out(result: Result) -> list[str]:
 
 
 def notes_of(result: Any) -> list[str]:
-    """Return notes for a picture or a file of numbers: on large deflection, or on effects left out."""
+    """Return notes for a picture or CSV file: on large deflections, or on neglected effects."""
     scene = getattr(result, "scene", None)
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]
@@ -67,7 +67,7 @@ def notes_of(result: Any) -> list[str]:
 
 
 def _first_clause(sentence: str) -> str:
-    """Return a sentence up to its first semicolon outside brackets."""
+    """Return a sentence up to its first semicolon that is not in brackets."""
     clause, *more = sentence.split(";")
     while clause.count("(") > clause.count(")"):
         clause += ";" + more.pop(0)
@@ -80,14 +80,14 @@ def critical_label(point: bd.CriticalPoint) -> str:
 
 
 def labels_of(modes: bd.Modes) -> list[str]:
-    """Return the labels of modes, with the model error where that is large."""
+    """Return the labels of modes, with the model error if it is large."""
     large = modes.model_error > LARGE_MODEL_ERROR
     each = zip(modes.labels(), modes.model_error.tolist(), large.tolist(), strict=True)
     return [f"{label}, model error {say_size(error)}" if it else label for label, error, it in each]
 
 
 def noted(draw: Callable[[], Figure], result: Any) -> Callable[[], Figure]:
-    """Wrap a function that draws a figure, so that notes on a result stand below the figure."""
+    """Wrap a function that draws a figure, so that notes on the result are written below the figure."""
 
     def made() -> Figure:
         return note_below(draw(), notes_of(result))

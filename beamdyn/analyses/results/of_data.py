@@ -1,4 +1,4 @@
-"""Measured data beside a scene, identified numbers and designs, as tables and as columns of files."""
+"""Measured data compared with a scene, identified parameters, and designs, as tables and file columns."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from beamdyn.studies.beside_data.curve_comparison import say
 from beamdyn.studies.beside_data.single_numbers import say_value
 from beamdyn.studies.designing.target import say_number
 
-_DIGITS = 6  # largest number of digits of computed frequencies, as sentences have them
+_DIGITS = 6  # most digits of computed frequencies, as in sentences
 
 
 def comparison_columns(result: bd.FrequencyComparison) -> Columns:
-    """Make columns with a row for each measured frequency: computed value, deviation, and verdict."""
+    """Make columns with one row per measured frequency: computed value, deviation, and verdict."""
     computed = result.computed
     relative = (("uncertainty", result.allowance), ("model error", result.model_error))
     said = [_percents(each / np.where(np.isnan(computed), result.measured, computed)) for _, each in relative]
@@ -56,12 +56,12 @@ def _percents(values: np.ndarray, sign: str = "") -> list[str]:
 
 
 def _deviations(values: np.ndarray, in_digits: np.ndarray) -> list[str]:
-    """Format deviations in percent; "in its digits" where all digits of the measured value agree."""
+    """Format deviations in percent; "in its digits" if computed and measured value agree in all digits."""
     return ["in its digits" if k else cell for k, cell in zip(in_digits, _percents(values, "+"), strict=True)]
 
 
 def comparison_tables(result: bd.FrequencyComparison) -> Group:
-    """Make tables of the pairs of frequencies, and of the numbers that alone would explain deviations."""
+    """Make tables of measured and computed frequencies, and of single inputs that may explain deviations."""
     columns = comparison_columns(result)
     parts = [table_of(columns, result.display_units, keys=2)]
     if result.explanations:
@@ -81,13 +81,13 @@ def comparison_tables(result: bd.FrequencyComparison) -> Group:
 
 
 def comparison_csv(result: bd.FrequencyComparison) -> Columns:
-    """Make columns of the pairs of frequencies alone."""
+    """Make columns of the pairs of measured and computed frequencies."""
     columns = [column for column in comparison_columns(result).columns if len(column.values)]
     return Columns(*columns)
 
 
 def curve_columns(result: bd.CurveComparison) -> Columns:
-    """Make columns with a row for each curve: largest values, deviations, uncertainty and verdict."""
+    """Make columns with one row per curve: largest values, deviations, uncertainty and verdict."""
     units = result.unit
 
     def sizes(values: np.ndarray) -> list[str]:
@@ -114,14 +114,15 @@ def curve_columns(result: bd.CurveComparison) -> Columns:
 
 
 def _phase(phase: float) -> str:
-    """Format a phase [rad] in degrees, to a hundredth."""
+    """Format a phase [rad] in degrees, rounded to a hundredth."""
     return f"{round(float(np.degrees(phase)), 2) + 0.0:.3g}"
 
 
 def curve_csv(result: bd.CurveComparison) -> Columns:
-    """Make columns of measured and computed curves, with a row for each time, speed, position or frequency.
+    """Make columns of measured and computed curves, one row per time, speed, position or frequency.
 
-    Complex curves have columns of magnitude and phase; columns of the allowed deviation and the error follow.
+    Complex curves have columns for magnitude and phase.  Columns for the allowed deviation and the error
+    follow.
     """
     units = {"time": "s", "speed": "rad/s", "position": "m", "frequency": "Hz"}
     columns = [Column(result.along, result.x, units[result.along])]
@@ -138,7 +139,7 @@ def curve_csv(result: bd.CurveComparison) -> Columns:
 
 
 def identification_tables(result: bd.Identification) -> Group:
-    """Make tables of the numbers with intervals, what is undetermined, and data beside the scene found."""
+    """Make tables of identified parameters with intervals, undetermined ones, and the fit to the data."""
 
     def said(value: float, unit: str) -> str:
         own = say_value(value, unit, units=result.display_units)
@@ -158,7 +159,7 @@ def identification_tables(result: bd.Identification) -> Group:
 def _numbers(
     result: bd.Identification | bd.FoundDesign, said: Callable[[float, str], str]
 ) -> list[tuple[str, ...]]:
-    """Make rows of numbers that were sought: name, value in the scene, value found, and ends of its range."""
+    """Make rows of identified parameters: name, value in the scene, value found, and ends of its range."""
     each = zip(result.names, result.units, result.given, result.value, result.low, result.high, strict=True)
     return [
         (in_files(InputName(name)), *(said(float(value), unit) for value in values))
@@ -167,13 +168,13 @@ def _numbers(
 
 
 def numbers_csv(result: bd.Identification | bd.FoundDesign) -> Columns:
-    """Make columns with a row for each number, in SI."""
+    """Make columns with one row per parameter, in SI units."""
     names = {"number": "names", "unit": "units"} | {n: n for n in ("given", "value", "low", "high")}
     return Columns(*(Column(head, getattr(result, name)) for head, name in names.items()))
 
 
 def design_tables(result: bd.FoundDesign) -> Group:
-    """Make tables of the numbers of a design, of its targets and answers, and of what limits it."""
+    """Make tables of the design variables, of targets and results, and of the limits of the design."""
 
     def said(value: float, unit: str) -> str:
         return "-" if np.isnan(value) else in_files(say_number(value, unit), result.display_units)
@@ -207,7 +208,7 @@ def design_tables(result: bd.FoundDesign) -> Group:
 
 
 def design_csv(result: bd.FoundDesign) -> Columns:
-    """Make columns with a row for each number: values in SI, and the derivative of each answer by it."""
+    """Make columns with one row per design variable: values in SI units, and derivatives of the results."""
     slopes = zip(result.targets, result.derivative, strict=True)
     more = (Column("derivative", each, number=name_in_heads(target.name)) for target, each in slopes)
     return Columns(*numbers_csv(result).columns, *more)

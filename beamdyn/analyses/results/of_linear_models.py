@@ -1,4 +1,4 @@
-"""Responses over frequency, random responses and matrices, as tables and as columns of CSV files."""
+"""Frequency responses, random responses and matrices, as tables and as columns of CSV files."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from beamdyn.common.results.one_line import rounded_up
 from beamdyn.common.words import supported
 
 _MOST_PEAKS = 8  # largest number of peaks in a table
-_NO_WIDTH = "-"  # text of a table for a peak without a width
-_DIGITS, _DIGITS_OF_WIDTH = 8, 4  # largest number of digits of a response, and of the width of a peak
+_NO_WIDTH = "-"  # text in a table for a peak without a width
+_DIGITS, _DIGITS_OF_WIDTH = 8, 4  # most digits of a response, and of the width of a peak
 _MATRICES = ("mass", "damping", "gyroscopic", "stiffness", "stiffness_by_axial_acceleration", "input_matrix")
-_PAIRS = 6  # number of pairs of poles whose errors a table has
+_PAIRS = 6  # number of pole pairs whose errors are listed
 
 
 def response_table(result: bd.FrequencyResponse) -> Group:
@@ -52,7 +52,7 @@ def response_table(result: bd.FrequencyResponse) -> Group:
 
 
 def response_csv(result: bd.FrequencyResponse) -> Columns:
-    """Make columns of real part, imaginary part and error of each harmonic, with a row for each frequency."""
+    """Make columns of real part, imaginary part and error of each harmonic, one row per frequency."""
     parts = np.real(result.response), np.imag(result.response), result.error
     each = [Column("frequency", result.frequencies, "Hz")]
     for k, harmonic in enumerate(result.harmonics.tolist()):
@@ -64,7 +64,7 @@ def response_csv(result: bd.FrequencyResponse) -> Columns:
 
 
 def random_table(result: bd.RandomResponse) -> Group:
-    """Make a table of the root mean squares of input and response, and of the effects left out."""
+    """Make a table of the root mean squares of input and response, and of the neglected effects."""
     unit, parametric = result.unit and f" {result.unit}", result.parametric
     rows = [
         ("root mean square", f"{supported(result.rms, result.rms_error, _DIGITS)}{unit}"),
@@ -82,7 +82,7 @@ def random_table(result: bd.RandomResponse) -> Group:
 
 
 def random_csv(result: bd.RandomResponse) -> Columns:
-    """Make columns of the spectral density of the response and its error, with a row for each frequency."""
+    """Make columns of the spectral density of the response and its error, one row per frequency."""
     unit = f"{squared(result.unit)} per Hz"
     return Columns(
         Column("frequency", result.frequencies, "Hz"),
@@ -92,7 +92,7 @@ def random_csv(result: bd.RandomResponse) -> Columns:
 
 
 def squared(unit: str) -> str:
-    """Return the square of a unit that is a product of names with powers: "m2/s4" for "m/s2"."""
+    """Return the square of a unit that is a product of powers: "m2/s4" for "m/s2"."""
 
     def square(factor: str) -> str:
         name = factor.rstrip("0123456789")
@@ -102,7 +102,7 @@ def squared(unit: str) -> str:
 
 
 def matrices_table(result: bd.Matrices) -> Group:
-    """Make a table of the coordinates, with the diagonals of mass and stiffness."""
+    """Make a table of the coordinates, with the diagonals of the mass and stiffness matrices."""
     speed = result.display_units.speed_unit().say(result.speed)
     lowest = result.error[: 2 * _PAIRS : 2].tolist()
     of_pairs = ", ".join(rounded_up(each) if isfinite(each) else "not known" for each in lowest)
@@ -120,7 +120,7 @@ def matrices_table(result: bd.Matrices) -> Group:
 
 
 def matrices_csv(result: bd.Matrices) -> Columns:
-    """Make columns with a row for every entry of every matrix; indices count from 1."""
+    """Make columns with one row for every entry of every matrix; indices start at 1."""
     parts = {name: getattr(result, name) for name in _MATRICES}
     parts |= {name: getattr(result, name)[:, None] for name in ("static_load", "error")}
     rows = (

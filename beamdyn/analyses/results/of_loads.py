@@ -24,9 +24,9 @@ if TYPE_CHECKING:
     from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads
 
 _MOST_DIGITS = 7
-_DIGITS_EXPECTED = 3  # significant digits of the largest expected values, as statistics are not more exact
-_CLASSES = 10  # number of classes of cycles by their range
-_QUANTITIES = "strain", "stress", "force", "moment"  # in the order of tables
+_DIGITS_EXPECTED = 3  # significant digits: the loads are statistical
+_CLASSES = 10  # number of classes into which load cycles are divided by range
+_QUANTITIES = "strain", "stress", "force", "moment"  # quantities in the order of tables
 
 
 def static_loads_table(result: bd.StaticLoads) -> Group:
@@ -40,7 +40,7 @@ def static_loads_table(result: bd.StaticLoads) -> Group:
 
 
 def steady_loads_table(result: bd.SteadyLoads) -> Group:
-    """Make a table of the largest magnitudes along the span, at the speed with the largest moment."""
+    """Make a table of the largest load magnitudes along the span, at the speed with the largest moment."""
     stable = result.response.stable.any()
     case = int(np.nanargmax(result.moment.max(axis=(1, 2)))) if stable else 0
     speed = result.display_units.speed_unit().say(result.speeds[case], 10)
@@ -50,7 +50,7 @@ def steady_loads_table(result: bd.SteadyLoads) -> Group:
 
 
 def transient_loads_table(result: TransientLoads, window: tuple[float, float] | None = None) -> Group:
-    """Make a table of the largest values along the span, within a window or the whole run."""
+    """Make a table of the largest loads along the span, in a time window or the whole simulation."""
     start, end = window or (result.run.path.start, result.run.path.end)
     title = f"Loads of largest magnitude from {start:g} to {end:g} s, by {result.provenance.method}"
     peaks = result.path.outputs.split(result.path.peaks(start, end)[0])
@@ -69,7 +69,7 @@ def _table(
             heads = _heads(result, name)
             columns += (_load(name, head, found[:, k], error[:, k]) for k, head in enumerate(heads))
         elif found.shape[1] and np.isfinite(found).any():
-            # Strain and stress at the point of the section where they are largest.
+            # Strain and stress at that point of the cross-section where they are largest.
             k = np.nan_to_num(np.abs(found), nan=-1.0).argmax(axis=1)[:, None]
             at_largest = (np.take_along_axis(each, k, 1)[:, 0] for each in (found, error))
             columns.append(_load(name, name, *at_largest))
@@ -81,13 +81,13 @@ def _supported(value: float, error: float) -> str:
 
 
 def _load(quantity: str, head: str, values: np.ndarray, errors: np.ndarray, form: Any = _supported) -> Column:
-    """Make a column of a load in the unit of tables."""
+    """Make a column for a load, in the unit of tables."""
     scale, unit = SHOWN[quantity]
     return Column(head, scale * values, unit, error=scale * errors, form=form)
 
 
 def _heads(result: bd.SpanLoads, quantity: str) -> list[str]:
-    """Return the heads of columns of forces or moments, one for each direction of bending."""
+    """Return the headings of columns of forces or moments, one for each direction of bending."""
     words = [f"{word} ".lstrip() for word in words_of_directions(result.scene) or ("",)]
     if quantity == "moment":
         return [f"{word}moment" for word in words]
@@ -95,7 +95,7 @@ def _heads(result: bd.SpanLoads, quantity: str) -> list[str]:
 
 
 def _positions(result: bd.SpanLoads) -> Column:
-    """Make the column of positions; where loads jump, "-" or "+" names the side."""
+    """Make the column of positions; at jumps of the loads, "-" or "+" denotes the side."""
     x, unit = result.x, result.display_units.length_unit()
     jumps = np.flatnonzero(np.diff(x) == 0)
     twice = np.isin(np.arange(len(x)), [*jumps, *(jumps + 1)])
@@ -105,12 +105,12 @@ def _positions(result: bd.SpanLoads) -> Column:
 
 
 def _largest_lines(result: Any, **window: float) -> list[Text]:
-    """Format the largest value of each quantity that has values."""
+    """Format the largest value of each quantity that was computed."""
     return _lines(result, lambda name: _say_largest(result, result.largest(name, **window)))
 
 
 def _lines(result: bd.SpanLoads, say: Callable[[str], str]) -> list[Text]:
-    """Write a sentence for each quantity that has values, and what strains need where they have none."""
+    """Return a sentence on each computed quantity, and the data that are missing for strains."""
     known = [name for name in _QUANTITIES if np.isfinite(result.values(name)).any()]
     lacking = [] if "strain" in known else [f"No strains: {REMEDIES['strain']}."]
     return [*map(Text, (*map(say, reversed(known)), *lacking))]
@@ -126,7 +126,7 @@ def _say_largest(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
 
 
 def _say_component(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
-    """Describe the direction of a component, or the point of the section with its coordinates."""
+    """Describe the direction of a component, or the point of the cross-section with its coordinates."""
     named = result.components(found.quantity)[found.component]
     if found.quantity not in ("strain", "stress"):
         return f"shear, {named}" if found.quantity == "force" and found.component else named
@@ -136,7 +136,7 @@ def _say_component(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
 
 
 def random_loads_table(result: bd.RandomLoads) -> Group:
-    """Make a table of root mean squares and largest expected values along the span, and of the largest."""
+    """Make a table of root mean squares and largest expected loads along the span."""
     units, at, columns = result.display_units, np.arange(len(result.x)), [_positions(result)]
     for name in ("moment", "strain", "stress"):
         values = result.values(name)[0]
@@ -144,7 +144,7 @@ def random_loads_table(result: bd.RandomLoads) -> Group:
             continue
         if name == "moment":
             shown = [(np.full(len(values), k), head) for k, head in enumerate(_heads(result, name))]
-        else:  # strains and stresses, at the point of the section where they are largest
+        else:  # strains and stresses at that point of the cross-section where they are largest
             shown = [(np.nan_to_num(values, nan=-1.0).argmax(axis=1), name)]
         for k, head in shown:
             rms, error = (each(name)[at, k] for each in (result.rms, result.rms_error))
@@ -188,11 +188,11 @@ def _say_expected(result: bd.RandomLoads, found: bd.LargestLoad) -> str:
     )
 
 
-# Cycles -------------------------------------------------------------------------------------------------
+# Load cycles --------------------------------------------------------------------------------------------
 
 
 def cycles_table(cycles: bd.LoadCycles) -> Group:
-    """Make a table of cycles by range, in equal classes up to the largest."""
+    """Make a table of the number of load cycles in classes of equal width up to the largest range."""
     scale, unit = SHOWN[cycles.quantity]
     edges = np.linspace(0, scale * float(cycles.ranges.max(initial=0.0)) or 1.0, _CLASSES + 1)
     counts, _ = np.histogram(scale * cycles.ranges, edges, weights=cycles.counts)
@@ -206,7 +206,7 @@ def cycles_table(cycles: bd.LoadCycles) -> Group:
 
 
 def equivalents_table(equivalents: Sequence[EquivalentRange]) -> Group:
-    """Make a table of ranges of equal cycles that do the counted damage, for each Woehler exponent."""
+    """Make a table of damage-equivalent ranges of equal cycles, for each Woehler (S-N) exponent."""
     quantity, number = equivalents[0].quantity, equivalents[0].cycles
     scale, unit = SHOWN[quantity]
     ranges, errors = scale * np.array([(each.range, each.error) for each in equivalents]).T
@@ -219,7 +219,7 @@ def equivalents_table(equivalents: Sequence[EquivalentRange]) -> Group:
 
 
 def cycles_csv(result: bd.LoadCycles) -> Columns:
-    """Make columns of range, mean and count, with a row for each cycle."""
+    """Make columns of range, mean and count, one row per load cycle."""
     unit = UNITS[result.quantity]
     return Columns(
         Column(f"range_of_{result.quantity}", result.ranges, unit),
@@ -232,7 +232,7 @@ def cycles_csv(result: bd.LoadCycles) -> Columns:
 
 
 def loads_csv(result: bd.SpanLoads) -> Columns:
-    """Make columns with a row for each case and station: place, loads, strains, stresses and errors."""
+    """Make columns with one row per case and station: position, loads, strains, stresses and errors."""
     values = np.concatenate([result.values(name) for name in UNITS], axis=-1)
     errors = np.concatenate([result.error_of(name) for name in UNITS], axis=-1)
     cases, stations, _ = values.shape
@@ -246,7 +246,7 @@ def loads_csv(result: bd.SpanLoads) -> Columns:
 
 
 def _places(result: bd.SpanLoads, times: int = 1) -> tuple[Column, Column]:
-    """Make columns of position and side of each station, repeated a number of times."""
+    """Make columns of position and side of each station, repeated `times` times."""
     sides = np.where(result.inboard, "inboard", "outboard")
     return Column("position", np.tile(result.x, times), "m"), Column("side", np.tile(sides, times))
 
@@ -259,7 +259,7 @@ def _of_components(result: bd.SpanLoads, part: str, values: np.ndarray) -> Itera
 
 
 def random_loads_csv(result: bd.RandomLoads) -> Columns:
-    """Make columns with a row for each station: place, and each component's largest value with its parts."""
+    """Make columns with one row per station: position, and the largest value of each component."""
     parts = {
         "largest": lambda name: result.values(name)[0],
         "error_of_largest": lambda name: result.error_of(name)[0],
@@ -275,7 +275,7 @@ def random_loads_csv(result: bd.RandomLoads) -> Columns:
 
 
 def _components(result: bd.SpanLoads, quantity: str) -> list[str]:
-    """Return the names that the components of a quantity have in files."""
+    """Return the names of the components of a quantity in files."""
     if quantity in ("strain", "stress"):
         return [f"{quantity}_{k + 1}" for k in range(result.points.shape[1])]
     both = result.scene.physics.planes == 2

@@ -24,39 +24,39 @@ from beamdyn.modes.model_error.left_out_effects import where_worst
 if TYPE_CHECKING:
     from beamdyn.common.results.result import Result
 
-Cell: TypeAlias = "str | Text"  # content of a table's cell
-# Largest number of evenly spread rows of a printed table; peaks and changes of status come in addition.
+Cell: TypeAlias = "str | Text"  # type of a table cell: text or a number
+# Most evenly spaced rows of a printed table; rows of peaks and changes of status are added.
 _MOST_ROWS = 16
-_ROUNDING = 1e-9  # relative model error below which the error counts as rounding
-_CRITICAL_DIGITS = 12  # largest number of digits of a critical speed
-_FEW = 4  # largest number of modes of a locus whose frequencies are shown with all digits
-# Largest number of digits of a frequency: in a locus of few modes, and in one of more modes.
+_ROUNDING = 1e-9  # relative model error below which it counts as a rounding error
+_CRITICAL_DIGITS = 12  # most digits of a critical speed
+_FEW = 4  # largest number of modes over speed for which frequencies are shown with all digits
+# Most digits of a frequency over speed: for few modes, and for more modes.
 _DIGITS, _DIGITS_OF_MANY = 10, 7
-_AXES = "b1", "b2", "b3"  # axes along the beam at rest, in the direction of bending, and across
+_AXES = "b1", "b2", "b3"  # axes along the beam at rest, in the bending direction, and across
 
 
-# Parts of tables of all kinds -------------------------------------------------------------------------
+# Parts that tables of several kinds share -------------------------------------------------------------
 
 
 def said_of_model(result: Result, sentence: str) -> str:
-    """Write a sentence about the model of a result with the names and units that files have."""
+    """Return a sentence on the model of a result, with the names and units of files."""
     return in_files(sentence, result.display_units)
 
 
 def said_over_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, what: str = "") -> str:
-    """Write the sentence below a table over speeds: effects left out, each with its worst speed."""
+    """Return the sentence below a table over speeds: neglected effects, each at its worst speed."""
     effects, speeds = result.left_out_effects, result.left_out_speeds
     return said_of_model(result, effects.sentence(what, where_worst(effects, speeds), speeds))
 
 
 def between_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, error: np.ndarray) -> np.ndarray:
-    """Interpolate model errors (k,) to all speeds (S,); outside, the nearest one holds."""
+    """Interpolate model errors (k,) to all speeds (S,); outside their range, use the nearest value."""
     known = result.left_out_speeds
     return np.interp(result.speeds, known, error) if len(known) else np.full(len(result.speeds), np.nan)
 
 
 def rows_worth_showing(status: np.ndarray, *more: np.ndarray) -> np.ndarray:
-    """Return indices of rows to print: evenly spread, given ones, and both sides of changes of status."""
+    """Return indices of rows to print: evenly spaced rows, given rows, and both sides of status changes."""
     spread = evenly_spread(len(status), _MOST_ROWS)
     changed = status[1:] != status[:-1]
     change = np.flatnonzero(changed if status.ndim == 1 else changed.any(axis=1))[:_MOST_ROWS]
@@ -64,13 +64,13 @@ def rows_worth_showing(status: np.ndarray, *more: np.ndarray) -> np.ndarray:
 
 
 def selection_note(shown: np.ndarray, every: np.ndarray) -> str:
-    """Say how many of all speeds a table has; empty if it has all."""
+    """Return the note on how many of all speeds a table shows; empty if it shows all."""
     few = len(shown) < len(every)
     return f" ({len(shown)} of {len(every)} speeds; CSV and JSON have all)" if few else ""
 
 
 def csv_directions(scene: bd.Scene) -> tuple[str, ...]:
-    """Return the names of the two directions in heads of files; empty if one direction is modelled."""
+    """Return names of the two directions for column headings; empty if only one direction is modelled."""
     return ("bending", "across") if scene.physics.planes == 2 else ()
 
 
@@ -79,7 +79,7 @@ def csv_directions(scene: bd.Scene) -> tuple[str, ...]:
 
 def modes_columns(result: bd.Modes) -> Columns:
     """Make columns of the modes: frequency, errors, growth rate, status, and how each deforms the beam."""
-    # Errors in units of the eigenvalue.
+    # The errors are those of the eigenvalue, not of the frequency.
     size, rate = np.abs(result.eigenvalue) * result.error, result.growth_rate
     count, effects = len(size), result.left_out_effects
     model_errors = [_say_model_error(float(each), effects.lack_data) for each in effects.total]
@@ -100,7 +100,7 @@ def modes_columns(result: bd.Modes) -> Columns:
 
 
 def _circuit(result: bd.Modes | bd.Locus) -> str:
-    """Say whether the modes of a harvester are those of an open or a short circuit; empty for other beams."""
+    """Return whether the modes of a harvester are for open or short circuit; empty for other beams."""
     electrodes = result.scene.beam.electrodes
     if electrodes is None:
         return ""
@@ -114,7 +114,7 @@ def _say_frequency(frequency: float, error: float) -> str:
 
 
 def _kinds(result: bd.Modes) -> Iterator[Column]:
-    """Yield columns of the shares of two planes, of which tables show one, and of the kinds of the modes."""
+    """Yield columns of energy fractions in two planes, of which tables show one, and of kinds of modes."""
     drawn, words = first_drawn(result.scene), words_of_directions(result.scene)
     for k, direction in enumerate(csv_directions(result.scene)):
         shown = f"share of {words[k]}" if k == drawn else None
@@ -124,16 +124,16 @@ def _kinds(result: bd.Modes) -> Iterator[Column]:
 
 
 def _say_model_error(size: float, lacks_data: bool) -> str:
-    """Format a relative model error with one digit; with "+ ?" where the beam lacks data."""
+    """Format a relative model error with one digit; with "+ ?" if data of the beam are missing."""
     more = " + ?" if lacks_data else ""
     return "not known" if math.isnan(size) else f"{size if size >= _ROUNDING else 0.0:.0e}{more}"
 
 
 def locus_table(result: bd.Locus) -> Group:
-    """Make a table of a locus at some of its speeds: frequencies, or growth rates of unstable modes.
+    """Make a table at some speeds of natural frequencies, or of growth rates of unstable modes.
 
-    Where two planes are modelled, a letter behind each frequency tells the plane in which the mode mostly
-    bends, or, if it mostly deforms otherwise, how.
+    If two planes are modelled, a letter after each frequency denotes the plane of bending, or another
+    dominant kind of deformation such as torsion.
     """
     size, shown = np.abs(result.eigenvalue) * result.error, rows_worth_showing(result.status)
     model_errors, lacks = model_error_at(result, shown), result.left_out_effects.lack_data
@@ -167,7 +167,7 @@ def _say_largest(model_errors: np.ndarray, lacks_data: bool) -> str:
 
 
 def model_error_at(result: bd.Locus, indices: np.ndarray) -> np.ndarray:
-    """Return the model error (k, m) at speeds of given indices, by linear interpolation."""
+    """Return the model error (k, m) at speeds with given indices, by linear interpolation."""
     each = (between_speeds(result, error)[indices] for error in result.model_error.T)
     return np.stack([*each], axis=1)
 
@@ -175,7 +175,7 @@ def model_error_at(result: bd.Locus, indices: np.ndarray) -> np.ndarray:
 def _locus_cell(result: bd.Locus, size: np.ndarray, s: int, mode: int, model_error: float) -> Cell:
     """Format the frequency of a mode at speed s, or its status and growth rate.
 
-    Digits beyond the model error [Hz] are dimmed.
+    Digits smaller than the model error [Hz] are dimmed.
     """
     if result.status[s, mode] not in ("stable", "neutral"):
         return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
@@ -188,7 +188,7 @@ def _locus_cell(result: bd.Locus, size: np.ndarray, s: int, mode: int, model_err
 
 
 def _other_kinds(result: bd.Locus) -> list[str]:
-    """Return the kinds of modes in a locus other than bending."""
+    """Return the kinds of modes other than bending that occur over speed."""
     return [kind for kind in map(str, np.unique(result.kind)) if kind != BENDING]
 
 
@@ -220,7 +220,7 @@ def locus_csv(result: bd.Locus) -> Columns:
 
 
 def critical_answer(result: bd.CriticalPoint) -> Group:
-    """Say what the critical speed is, or up to which speed there is none, and what the model leaves out."""
+    """Return a sentence on the critical speed, or on the speed up to which there is none."""
     unit = result.display_units.speed_unit()
     if math.isinf(result.none_below) and math.isinf(result.speed):
         said = Text(f"no critical speed: {in_files(result.reason)}")
@@ -248,7 +248,7 @@ def critical_csv(result: bd.CriticalPoint) -> Columns:
 
 
 def limits_columns(result: bd.SettingAngleLimits) -> Columns:
-    """Make columns of both limits of the setting angle, with their error, and the top speed of the second."""
+    """Make columns of both limits of the setting angle with errors, and of the second one's top speed."""
     top = result.display_units.speed_unit().say(result.top_speed, 10)
     return Columns(
         Column("limit", ("first", "second")),
@@ -262,7 +262,7 @@ def limits_columns(result: bd.SettingAngleLimits) -> Columns:
 
 
 def bounds_columns(result: bd.FrequencyBounds) -> Columns:
-    """Make columns of the lower and upper bound of each frequency, and the way each is guaranteed."""
+    """Make columns of the lower and upper bound of each frequency, and of how each is guaranteed."""
     count = len(result.lower)
     return Columns(
         Column("mode", range(1, count + 1)),
@@ -288,7 +288,7 @@ def backbone_table(result: bd.Backbone) -> Group:
 
 
 def backbone_csv(result: bd.Backbone) -> Columns:
-    """Make columns of the frequency of small vibration, and of the coefficient with its error."""
+    """Make columns of the frequency of small vibration, and of its amplitude coefficient with error."""
     heads = ("speed", "rad/s"), "mode", ("frequency", "Hz"), "coefficient", "error"
     row = result.speed, result.mode, result.frequency, result.coefficient, result.error
     return columns_of_rows(heads, [row])
@@ -298,7 +298,7 @@ def backbone_csv(result: bd.Backbone) -> Columns:
 
 
 def equilibrium_table(result: bd.Equilibrium) -> Group:
-    """Make a table of the tip's position and slope, and of the stability of the equilibrium."""
+    """Make a table of position and slope of the tip, and of the stability of the equilibrium."""
     length, unit = result.scene.beam.length, result.display_units.length_unit()
     rows = [
         (f"tip along {axis}", supported(unit.of(x), unit.of(result.error)), f"{x / length:.4f}")
@@ -350,7 +350,7 @@ def branches_csv(result: bd.EquilibriumBranches) -> Columns:
 
 
 def terms_table(result: bd.Terms) -> Group:
-    """Make a table of all terms, of which are present and why, and of what the model leaves out."""
+    """Make a table of all terms of the equations: which are present and why, and neglected effects."""
     heads = "", "term", "symbol", "largest", "reason"
     shown = table("Terms of the equations of motion", heads, result.rows(), (0, 1, 2, 4))
     left_out = (f"Left out: {effect.name}: {in_files(effect.reason)}." for effect in result.left_out)
@@ -358,7 +358,7 @@ def terms_table(result: bd.Terms) -> Group:
 
 
 def terms_csv(result: bd.Terms) -> Columns:
-    """Make columns with a row for each term."""
+    """Make columns with one row per term of the equations of motion."""
     rows = (
         (t.name, t.symbol, " ".join(t.fields), t.quantity, t.present, t.largest, t.reason) for t in result
     )
@@ -366,7 +366,7 @@ def terms_csv(result: bd.Terms) -> Columns:
 
 
 def rotor_table(result: bd.RotorDrawing) -> Group:
-    """Make a table of lengths and angles as drawn, and of the magnification of depth and width."""
+    """Make a table of drawn lengths and angles, and of the magnification of thickness and width."""
     unit = result.display_units.length_unit()
     lengths = {"radius r of the root": result.radius, "length L of the beam": result.length}
     angles = {
@@ -383,7 +383,7 @@ def rotor_table(result: bd.RotorDrawing) -> Group:
 
 
 def rotor_csv(result: bd.RotorDrawing) -> Columns:
-    """Make columns of the beam's edge as drawn in the plane of rotation, and of its depth's magnification."""
+    """Make columns of the drawn beam edge in the plane of rotation, and of the thickness magnification."""
     rows = ((x, y, result.magnification) for x, y in result.outline.tolist())
     return columns_of_rows((("x", "m"), ("y", "m"), "depth_magnification"), rows)
 

@@ -1,4 +1,4 @@
-"""Motion in time, steady response, harvests and resonances, as tables and as columns of files."""
+"""Transients, steady-state responses, energy harvesting and resonances, as tables and file columns."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from beamdyn.common.words import supported
 from beamdyn.equations.effects import modelled_directions, words_of_directions
 from beamdyn.scene.motion import RollingWheel
 
-_DIGITS = 6  # largest number of digits of a deflection, which the modal truncation error allows
-# Relative error that is assumed for the digits of a deflection whose error is not estimated.
+_DIGITS = 6  # most digits of a deflection that the modal truncation error allows
+# Relative error that is assumed for a deflection whose error is not estimated.
 _ASSUMED_ERROR = 5e-4
 _WHERE_COMPUTED = "model_error_where_computed"
 _LARGEST = "largest tip deflection"
@@ -34,7 +34,7 @@ _WORDS = {"amplitude": _LARGEST, "largest_deflection": _LARGEST, "sum_of_lines":
 
 
 def transient_table(run: bd.Transient, window: tuple[float, float] | None = None) -> Group:
-    """Make a table of a transient: largest deflections, their errors, and what the model leaves out."""
+    """Make a table of a transient: largest deflections, their errors, and neglected effects."""
     end, unit, names = run.path.end, run.display_units.length_unit(), modelled_directions(run.scene)
     windows = {"whole run": (run.path.start, end)}
     if window is not None:
@@ -63,9 +63,9 @@ def transient_table(run: bd.Transient, window: tuple[float, float] | None = None
 def time_of_peak(
     run: bd.Transient, start: float, end: float, direction: int | None = None
 ) -> tuple[float, float]:
-    """Return the time of the largest tip deflection in a window, and its uncertainty, the sampling step [s].
+    """Return the time of the largest tip deflection in a window, and the sampling step [s], both as [s].
 
-    For a window with less than two samples, return its middle and half its length.
+    If the window contains fewer than two samples, return its centre and half its length.
     """
     inside = np.flatnonzero((run.t >= start) & (run.t <= end))
     if len(inside) < 2:
@@ -76,7 +76,7 @@ def time_of_peak(
 
 
 def _peak_cells(run: bd.Transient, start: float, end: float, direction: int | None) -> tuple[Text, Text, str]:
-    """Make cells of the largest tip deflection in a window, of its ratio to the length, and its time [s]."""
+    """Make cells of the largest tip deflection in a window: deflection, ratio to the length, and time [s]."""
     size, per_si = run.peak(start, end, direction), run.display_units.length_unit().per_si
     error = _ASSUMED_ERROR * size if math.isnan(run.time_error) else run.time_error
     error += run.mode_error * run.largest if math.isfinite(run.mode_error) else 0.0
@@ -89,7 +89,7 @@ def _peak_cells(run: bd.Transient, start: float, end: float, direction: int | No
 
 
 def transient_csv(run: bd.Transient) -> Columns:
-    """Make columns of the tip deflection over time, by direction if two are modelled, and the model error."""
+    """Make columns of the tip deflection over time, for each modelled direction, and the model error."""
     names = [f"tip_deflection_{direction}" for direction in of_modes.csv_directions(run.scene)]
     tips = zip(names or ["tip_deflection"], (run.tip, run.tip_across), strict=False)
     error = np.full(len(run.t), float(f"{float(run.model_error):.2g}"))
@@ -104,7 +104,7 @@ def transient_csv(run: bd.Transient) -> Columns:
 
 
 def _table_over_speeds(result: bd.SteadyResponse | bd.Sweep, columns: Columns, peaks_at: np.ndarray) -> Group:
-    """Make a table of columns at some speeds and at all peaks, which the column of statuses names."""
+    """Make a table of columns at some speeds and at all peaks, which the status column names."""
     shown, high = of_modes.rows_worth_showing(np.array(result.status), peaks_at), {*peaks_at.tolist()}
     states = [f"{result.status[s]}, peak" if s in high else str(result.status[s]) for s in shown.tolist()]
     status = Column("status", states)
@@ -116,7 +116,7 @@ def _table_over_speeds(result: bd.SteadyResponse | bd.Sweep, columns: Columns, p
 def _deflections(
     result: bd.SteadyResponse | bd.Sweep, error: np.ndarray, **sizes: np.ndarray
 ) -> Iterator[Column]:
-    """Yield columns of speeds and deflections; digits beyond the model error are dimmed."""
+    """Yield columns of speeds and deflections; digits smaller than the model error are dimmed."""
     words = dict(zip(of_modes.csv_directions(result.scene), words_of_directions(result.scene), strict=True))
     yield Column("speed", result.speeds, "rad/s", form=".8g")
     beyond, form = of_modes.between_speeds(result, result.model_error), partial(supported, most=_DIGITS)
@@ -126,7 +126,7 @@ def _deflections(
 
 
 def _by_direction(result: bd.SteadyResponse | bd.Sweep, sizes: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
-    """Return largest deflections in each direction by their names in files; empty if one is modelled."""
+    """Return largest deflections in each direction by name in files; empty if only one is modelled."""
     return {
         f"largest_{name}": size
         for name, size in zip(of_modes.csv_directions(result.scene), sizes, strict=False)
@@ -134,19 +134,19 @@ def _by_direction(result: bd.SteadyResponse | bd.Sweep, sizes: Iterable[np.ndarr
 
 
 def steady_table(result: bd.SteadyResponse) -> Group:
-    """Make a table of a steady response at some of its speeds, peaks included."""
+    """Make a table of a steady-state response at some of its speeds, including the peaks."""
     with np.errstate(divide="ignore"):
         peaks_at = peaks(np.log(result.amplitude), np.log(3))
     return _table_over_speeds(result, steady_columns(result), peaks_at)
 
 
 def largest_by_direction(result: bd.SteadyResponse) -> list[np.ndarray]:
-    """Return the largest tip deflection in the direction of bending and across, if two are modelled."""
+    """Return the largest tip deflection in the bending direction and across, if both are modelled."""
     return [result.largest_tip(direction) for direction in range(len(words_of_directions(result.scene)))]
 
 
 def steady_columns(result: bd.SteadyResponse) -> Columns:
-    """Make columns of the steady amplitude, by direction if two are modelled, with errors and status."""
+    """Make columns of the steady-state amplitude in each modelled direction, with errors and status."""
     error, each = result.error * result.bound, _by_direction(result, largest_by_direction(result))
     return Columns(
         *_deflections(result, error, amplitude=result.amplitude, **each, sum_of_lines=result.bound),
@@ -160,12 +160,12 @@ def steady_columns(result: bd.SteadyResponse) -> Columns:
 
 
 def sweep_table(result: bd.Sweep) -> Group:
-    """Make a table of a sweep at some of its speeds, peaks included."""
+    """Make a table of a sweep over speed at some of its speeds, including the peaks."""
     return _table_over_speeds(result, sweep_columns(result), sweep_peaks(result))
 
 
 def sweep_columns(result: bd.Sweep) -> Columns:
-    """Make columns of the largest deflection, also in each direction if two are modelled, and its errors."""
+    """Make columns of the largest deflection in each modelled direction, and its errors."""
     (start, end), each = result.window, _by_direction(result, result.peaks_by_direction.T)
     return Columns(
         *_deflections(result, result.peak_error, largest_deflection=result.peaks, **each),
@@ -177,14 +177,14 @@ def sweep_columns(result: bd.Sweep) -> Columns:
 
 
 def sweep_peaks(result: bd.Sweep) -> np.ndarray:
-    """Find the indices of the peaks of a sweep with a prominence of a quarter of its largest deflection."""
+    """Find the indices of peaks whose prominence is at least a quarter of the largest deflection."""
     return peaks(result.peaks, 0.25 * np.nanmax(result.peaks, initial=0.0))
 
 
 def peaks(values: np.ndarray, prominence: float) -> np.ndarray:
-    """Find the indices of local maxima of at least a prominence, their height over the higher valley beside.
+    """Find local maxima of at least a given prominence: the height above the higher neighbouring valley.
 
-    Values that are not finite are skipped.
+    Values that are not finite are ignored.
     """
     from scipy.signal import find_peaks
 
@@ -193,7 +193,7 @@ def peaks(values: np.ndarray, prominence: float) -> np.ndarray:
 
 
 def _model_error_of(result: bd.SteadyResponse | bd.Sweep) -> np.ndarray:
-    """Return the model error at each speed (S,); nan where it is not computed."""
+    """Return the model error at each speed (S,); nan if it was not computed."""
     at = np.isin(result.speeds, result.left_out_speeds)
     found = np.full(len(result.speeds), np.nan)
     found[at] = result.model_error if at.any() else np.nan
@@ -228,13 +228,13 @@ def harvest_columns(result: bd.Harvest) -> Columns:
 
 
 def _velocity(result: bd.Harvest) -> Iterator[Column]:
-    """Yield the column of the vehicle's velocity, if its wheel rolls."""
+    """Yield the column of the vehicle's velocity, if the wheel rolls."""
     if isinstance(wheel := result.scene.motion, RollingWheel):
         yield Column("velocity", 3.6 * wheel.rolling_radius * result.speeds, "km/h", words=None)
 
 
 def _road_columns(result: bd.Harvest) -> tuple[Column, ...]:
-    """Make the columns that a random road adds; empty without a road."""
+    """Make the columns for a random road; empty without a road."""
     if (road := result.road) is None:
         return ()
     of_rms = road.error / 2
@@ -254,7 +254,7 @@ def _road_columns(result: bd.Harvest) -> tuple[Column, ...]:
 
 
 def _harvest_tables(result: bd.Harvest) -> Group:
-    """Make the tables of steady motion, and of a random road, at some speeds with that of most power."""
+    """Make tables of steady motion, and of a random road, at some speeds including the one of most power."""
     shown = of_modes.rows_worth_showing(result.status, np.flatnonzero(result.speeds == result.best[0]))
     tables = [harvest_columns(result)]
     if result.road is not None:
@@ -266,7 +266,7 @@ def _harvest_tables(result: bd.Harvest) -> Group:
 
 
 def _panels(result: bd.Harvest) -> Figure:
-    """Draw the picture of a harvest, in panels."""
+    """Draw the results of energy harvesting in panels."""
     return figure_of(result.plot_panels, result.picture_size())
 
 
@@ -287,7 +287,7 @@ def harvest_over_time(result: bd.TransientHarvest) -> Columns:
 
 
 def crossings_columns(result: bd.Crossings) -> Columns:
-    """Make columns of resonance speeds, with the planes of the modes if two are modelled."""
+    """Make columns of resonance speeds, with the planes of the modes if two planes are modelled."""
     speed, frequency, error = (
         np.array([getattr(c, name) for c in result]) for name in ("speed", "frequency", "error")
     )
@@ -315,7 +315,7 @@ def crossings_columns(result: bd.Crossings) -> Columns:
 
 
 def _shares(result: bd.Crossings) -> Iterator[Column]:
-    """Yield columns of the shares of both planes in each mode; tables show them in one column, in percent."""
+    """Yield columns of the energy fractions of both planes in each mode; tables show one, in percent."""
     head: str | None = f"{', '.join(words_of_directions(result.scene))} [%]"
     known = [[s for s in (c.plane_share, c.second_plane_share) if s is not None] for c in result]
     cells = [" and ".join(f"{100 * a:.0f}, {100 * b:.0f}" for a, b in shares) for shares in known]

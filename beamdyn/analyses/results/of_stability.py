@@ -1,4 +1,4 @@
-"""Stability in periodic motion, as tables and as columns of files."""
+"""Stability of periodic motion, as tables and as columns of files."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from beamdyn.common.words import InputName, supported_or_range
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED
 
 _FEW_POINTS = 7  # number of points of each curve in a table
-_MOST_ROWS = 21  # largest number of values of the first number in a table
+_MOST_ROWS = 21  # largest number of values of the first input in a table
 _SI: Mapping[str, tuple[str, float]] = {}
 
 
 def multiplier_columns(result: bd.FloquetMultipliers) -> Columns:
-    """Make columns with a row for each multiplier: size, angle, error, sign; without any, of growth rate."""
+    """Make columns with one row per Floquet multiplier: size, angle, error, sign; else of the growth rate."""
     if not len(result.multipliers):
         rate, error = np.array([result.growth_rate]), np.array([result.growth_rate_error])
         return Columns(
@@ -52,14 +52,14 @@ def _multiplier_table(result: bd.FloquetMultipliers) -> Group:
 
 
 def chart_table(result: bd.StabilityChart, units: Mapping[str, tuple[str, float]] = _SI) -> Group:
-    """Make a table of where free motion is unstable along the second number, for values of the first.
+    """Make a table of unstable ranges of the second input, for values of the first input.
 
     Parameters
     ----------
     result : StabilityChart
-        The chart.
+        The stability chart.
     units : mapping, optional
-        By input: the unit in which its values are shown, and that unit in SI; others are shown in SI.
+        For some inputs, by name: display unit, and the size of this unit in SI; others are shown in SI units.
     """
     names = [(_words(each), *units.get(each.name, (each.unit, 1.0))) for each in result.inputs]
     (first, *_), (second, *_) = heads = [(f"{n} [{u}]" if u else n, u, size) for n, u, size in names]
@@ -80,12 +80,12 @@ def chart_table(result: bd.StabilityChart, units: Mapping[str, tuple[str, float]
 
 
 def _words(varied: VariedInput) -> str:
-    """Name an input as files and commands do, on a form as the form does."""
+    """Return the name of an input as in files and commands; within a form, as in the form."""
     return in_files(InputName(varied.name))
 
 
 def _where(status: np.ndarray, values: np.ndarray) -> str:
-    """Format the ranges of values without stability."""
+    """Format the ranges of values at which the motion is unstable."""
     said = []
     for state, group in groupby(zip(status.tolist(), values.tolist(), strict=True), lambda pair: pair[0]):
         within = [value for _, value in group]
@@ -96,7 +96,7 @@ def _where(status: np.ndarray, values: np.ndarray) -> str:
 
 
 def chart_columns(result: bd.StabilityChart) -> Columns:
-    """Make columns with a row for each point: both numbers, verdict, growth rate and largest multiplier."""
+    """Make columns with one row per point: both inputs, verdict, growth rate and largest multiplier."""
     grids = np.meshgrid(*(each.values for each in result.inputs), indexing="ij")
     numbers = (
         column_named(name_in_heads(each.name), grid.ravel(), each.unit, words=each.name)
@@ -113,7 +113,7 @@ def chart_columns(result: bd.StabilityChart) -> Columns:
 
 
 def limit_columns(result: bd.StabilityLimits) -> Columns:
-    """Make columns with a row for each point: curve, both numbers, error, and critical multiplier."""
+    """Make columns with one row per point: curve, both inputs, error, and critical multiplier."""
     numbers = (
         column_named(name_in_heads(each.name), values, each.unit, words=_words(each), form=".9g")
         for each, values in zip(result.chart.inputs, result.place.T, strict=True)
@@ -131,7 +131,7 @@ def limit_columns(result: bd.StabilityLimits) -> Columns:
 
 
 def _limit_table(result: bd.StabilityLimits) -> Group:
-    """Make a table of some points of each curve, evenly spread."""
+    """Make a table of some evenly spaced points of each curve."""
     rows = [np.flatnonzero(result.curve == k) for k in np.unique(result.curve)]
     few = [each[evenly_spread(len(each), _FEW_POINTS)] for each in rows]
     shown = np.concatenate([np.zeros(0, dtype=int), *few])

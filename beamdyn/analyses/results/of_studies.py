@@ -33,12 +33,12 @@ from beamdyn.equations.effects import first_drawn
 if TYPE_CHECKING:
     from beamdyn.studies.tradeoffs.measurements import Diagram
 
-_MOST_ROWS = 30  # largest number of rows in a table of a study
-_DIGITS = 10  # largest number of digits of a speed or frequency
-# Largest number of digits of a derivative, and of answers in columns side by side.
+_MOST_ROWS = 30  # largest number of rows in the table of a study
+_DIGITS = 10  # most digits of a speed or frequency
+# Most digits of a derivative, and of results in several columns.
 _DIGITS_OF_DERIVATIVES, _BESIDE = 7, 4
 _RPM = 30 / np.pi  # revolutions per minute in one rad/s
-# Relative distance of a frequency from its upper bound, below which the frequency counts as close to it.
+# Relative distance of a frequency from its upper bound, below which it counts as close to the bound.
 _NEAR = 1e-3
 _MEASUREMENT = "family", "setting", "size", "relative_error", ("time", "s"), "in_front"
 
@@ -47,7 +47,7 @@ _MEASUREMENT = "family", "setting", "size", "relative_error", ("time", "s"), "in
 
 
 def study_table(result: bd.Study) -> Group:
-    """Make a table of some designs, evenly spread: inputs in the units as typed, and answers."""
+    """Make a table of some designs, evenly spaced: inputs in the units as typed, and results."""
     columns, number, inputs = study_columns(result).columns, result.designs.count, len(result.inputs)
     shown = evenly_spread(number, _MOST_ROWS)
     typed = (result.typed_units.get(each.name, ShownUnit("", 1.0)) for each in result.inputs)
@@ -73,7 +73,7 @@ def study_table(result: bd.Study) -> Group:
 
 
 def study_columns(result: bd.Study) -> Columns:
-    """Make columns with a row for each design: inputs in SI, answers, errors, statuses.
+    """Make columns with one row per design: inputs in SI units, results, errors, statuses.
 
     The last input varies fastest.
     """
@@ -103,19 +103,19 @@ def study_columns(result: bd.Study) -> Columns:
 
 
 def _without(value: np.ndarray, status: np.ndarray) -> list[str | None]:
-    """Return the status of each design that has no answer, which tells why; None for others."""
+    """Return the status of each design without a result, which gives the reason; None for others."""
     pairs = zip(value, status, strict=True)
     return [None if np.isfinite(number) else str(state) for number, state in pairs]
 
 
 def _plain_name(label: str) -> str:
-    """Return a label as part of a head: a mode by its number, signs of combination frequencies in words."""
+    """Return a label as part of a column heading: mode number, or combination frequency in words."""
     label = label.replace("+", " plus ").replace("-", " minus ")
     return name_in_heads(label.removeprefix("mode "))
 
 
 def sensitivities_table(result: bd.Sensitivities) -> Group:
-    """Make a table of the numbers: values, derivatives of each answer, and their relative changes."""
+    """Make a table of input values, derivatives of each result, and relative changes."""
     values = [f"{a} {v:.6g} {result.unit}" for a, v in zip(result.answers, result.value, strict=True)]
     said = f"{'; '.join(values)}. Derivatives: in {result.unit} over the SI unit of the input."
     numbers = np.array([each.value for each in result.inputs])[:, None]
@@ -136,14 +136,14 @@ def sensitivities_table(result: bd.Sensitivities) -> Group:
 def _rows(
     result: bd.Sensitivities, value: np.ndarray, error: np.ndarray, shown: slice
 ) -> Iterator[Sequence[str]]:
-    """Yield a row for each input, with numbers of some answers."""
+    """Yield a row for each input, with numbers for some results."""
     for each, numbers, errors in zip(result.inputs, value[:, shown], error[:, shown], strict=True):
         cells = map(supported, numbers, errors, [_DIGITS_OF_DERIVATIVES] * len(numbers))
         yield in_files(InputName(each.name)), f"{each.value:.6g} {each.unit}".rstrip(), *cells
 
 
 def sensitivities_csv(result: bd.Sensitivities) -> Columns:
-    """Make columns with a row for each number and answer: values in SI, derivative, relative change."""
+    """Make columns with one row per input and result: values in SI units, derivative, relative change."""
     rows = []
     for k, each in enumerate(result.inputs):
         columns = (result.answers, result.value, result.derivative[k], result.error[k], result.relative[k])
@@ -156,11 +156,11 @@ def sensitivities_csv(result: bd.Sensitivities) -> Columns:
 # Trade-offs -------------------------------------------------------------------------------------------
 
 
-_TIES = 3  # largest number of settings that are named as equally fast, within the scatter of times
+_TIES = 3  # largest number of settings that are named as equally fast within the scatter of measured times
 
 
 def diagram_table(diagram: Diagram) -> Group:
-    """Make a table of the cheapest setting for each further digit, with Pareto front and reference."""
+    """Make a table of the cheapest setting per correct digit, with Pareto front and reference."""
     rows = [
         (
             f"{d.error:.0e}",
@@ -187,12 +187,12 @@ def diagram_table(diagram: Diagram) -> Group:
 
 
 def diagram_csv(diagram: Diagram) -> Columns:
-    """Make columns of the measurements of one diagram."""
+    """Make columns of errors and computing times in one diagram."""
     return columns_of_rows(_MEASUREMENT, _measurements(diagram))
 
 
 def tradeoff_csv(result: bd.Tradeoff) -> Columns:
-    """Make columns of all measurements, with the diagram of each."""
+    """Make columns of all measurements, with the name of the diagram."""
     rows = ((each.title, *row) for each in result.diagrams for row in _measurements(each))
     return columns_of_rows(("diagram", *_MEASUREMENT), rows)
 
@@ -203,7 +203,7 @@ def _measurements(diagram: Diagram) -> Iterator[Sequence[object]]:
 
 
 def _tradeoff_figure(result: bd.Tradeoff) -> Figure:
-    """Draw all diagrams, two in a row."""
+    """Draw all diagrams of error over computing time, two side by side."""
     rows = -(-len(result.diagrams) // 2)
     return figure_of(result.plot, (6.5 * min(2, len(result.diagrams)), 4.5 * rows))
 
@@ -212,18 +212,18 @@ def _tradeoff_figure(result: bd.Tradeoff) -> Figure:
 
 
 def campbell_tables(result: bd.Campbell) -> Group:
-    """Make tables of the crossings, of the margins and of the bounds, as far as there are any."""
+    """Make tables of crossings, margins and bounds, if there are any."""
     parts = crossings_columns(result), *_margins(result), *_bounds(result)
     return Group(*(table_of(columns, result.display_units) for columns in parts))
 
 
 def _scenes(result: bd.Campbell, labels: Sequence[str]) -> Column:
-    """Make the column of the scene of each row, which tables show if there are several scenes."""
+    """Make the column of scene names, which tables show if there are several scenes."""
     return Column("scene", labels, words="" if len(result.labels) > 1 else None)
 
 
 def crossings_columns(result: bd.Campbell) -> Columns:
-    """Make columns of the crossings; tables have the share of the direction that is drawn."""
+    """Make columns of the crossings; tables show the energy fraction of the direction that is drawn solid."""
     found, number = result.crossings, len(result.crossings)
     speed, frequency, error = (
         np.array(attributes(found, name), dtype=float) for name in ("speed", "frequency", "error")
@@ -251,7 +251,7 @@ def crossings_columns(result: bd.Campbell) -> Columns:
 
 
 def _shares(result: bd.Campbell) -> Iterator[Column]:
-    """Yield columns of the shares of both planes; tables have that of the direction that is drawn."""
+    """Yield columns of energy fractions of both planes; tables show the direction that is drawn solid."""
     scenes = [result.loci[result.labels.index(c.label)].scene for c in result.crossings]
     cells = [
         f"{c.plane_share[first_drawn(scene)]:.3f}" if scene.physics.planes == 2 else "-"

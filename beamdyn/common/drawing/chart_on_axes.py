@@ -1,4 +1,4 @@
-"""Drawing of charts on matplotlib's axes, for files."""
+"""Plot charts on matplotlib axes, for picture files."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from beamdyn.common.drawing.shapes import Chart
 from beamdyn.common.drawing.strokes import ink
 from beamdyn.common.results.pictures import COLOURS, Axes, Figure
 
-_LETTERS, _TITLE = 9, 11  # sizes of letters, of texts and of the title [pt]
-_OF_LABEL = 16  # largest number of letters in a line of a low chart's label
+_LETTERS, _TITLE = 9, 11  # font sizes of the texts and of the title [pt]
+_OF_LABEL = 16  # most characters in a line of the label of the y axis
 _PALE, _CURSOR = "0.6", "0.4"
-_GAP = 0.01  # distance of a text from the foot of the axes, over their height
+_GAP = 0.01  # distance of a text from the bottom of the axes, as a fraction of their height
 _BESIDE: dict[str, Any] = {"va": "bottom"}
 _ALONG: dict[str, Any] = {"ha": "right", "va": "top", "rotation": 90}
-# Height of the top of a mark's text, over that of the axes, so that it stays below a legend.
+# Height of the top of the text at a vertical line, as a fraction of the axes' height: below the legend.
 _BEHIND_LEGEND = 0.92
 
 
@@ -44,7 +44,7 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
         ax.plot(x, y, "o", color=ink(points.role).line, markerfacecolor="white", label=points.name)
     colour_of = {curve.name: colour for curve, colour in zip(chart.curves, colours, strict=True)}
     across = ax.get_xaxis_transform()
-    for mark in chart.marks:  # a vertical line, with a text beside its foot or along its top
+    for mark in chart.marks:  # a vertical line with its text, beside the bottom end or along the top end
         colour = colour_of.get(mark.curve, _CURSOR)
         ax.axvline(mark.at, color=colour, linewidth=1.2, linestyle=":" if mark.at_foot else "-.")
         height, place = (_GAP, _BESIDE) if mark.at_foot else (_BEHIND_LEGEND, _ALONG)
@@ -69,7 +69,7 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
 def plot_charts_of_one_x(
     figure: Figure, charts: Sequence[Chart], left: float, heights: Sequence[float]
 ) -> None:
-    """Plot charts of the same x below one another, without titles, in a figure right of `left`.
+    """Plot charts with a common x axis below one another in a figure, right of `left`, without titles.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def plot_charts_of_one_x(
     for row, chart in enumerate(charts):
         ax = plot_chart(figure.add_subplot(cells[row, 0]), chart)
         ax.set_title("")
-        # Wrapped, so that the label is not longer than the axes are high.
+        # The label of the y axis is wrapped, so that it is not longer than the axes are high.
         ax.set_ylabel(fill(chart.y.title, _OF_LABEL))
         if row < len(charts) - 1:
             ax.set_xlabel("")

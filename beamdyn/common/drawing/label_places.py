@@ -1,9 +1,10 @@
-"""Free places for labels: none covers another, a symbol or the end of a line, and none leaves the frame.
+"""Placement of labels so that none covers another label, a symbol or the end of a line, or leaves the frame.
 
-Each label has candidates around its anchors.  What is drawn is entered into a grid of small cells, whose sums
-over rectangles say at once how much of it a candidate would cover.  Labels choose in turn, the most
-important first, the cheapest candidate that is free; one that finds none displaces others if these find
-another place.  Nothing is random: the same drawing gives the same places.
+Each label has candidate positions around its anchor points.  The drawn lines and symbols are counted in a
+grid of small cells; sums over rectangles of cells tell how much of them a candidate would cover.  The labels
+are placed one by one, the most important first, each at its cheapest free candidate.  A label without a free
+candidate takes the place of another label, if that label can move.  Nothing is random: the same drawing gives
+the same places.
 """
 
 from __future__ import annotations
@@ -15,18 +16,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-_CELL = 2.5  # side of a cell of the grid [pt]
+_CELL = 2.5  # side of a grid cell [pt]
 _APART = 2.0  # least distance between two texts [pt]
 _GAP = 5.0  # distance from an anchor to its label [pt]
-FAR = 18.0  # distance of a label from its anchor, from which on a line connects them [pt]
-# Distances of candidates beyond the gap [pt].
+FAR = 18.0  # distance of a label from its anchor above which a line (leader) connects them [pt]
+# Distances of the candidates from the anchor, beyond the smallest distance [pt].
 _STEPS = np.array([0.0, 5.0, 12.0, 22.0, 36.0, 54.0, 78.0, 110.0, 150.0])
 _TURNS = 12  # number of directions around an anchor
-_TURNED = 9.0  # cost of a direction at a right angle to the wanted one [pt]
-_NEXT = 5.0  # cost of placing a label at the next of its anchors in place of the one before [pt]
-_COVERED = 120.0  # cost of a candidate place whose whole area covers lines of the drawing [pt]
-_FIRST = 40  # number of a label's cheapest candidate places that are tried before all others
-_TRIED = 30  # number of a label's candidate places for which another label may be moved away
+_TURNED = 9.0  # cost of a direction at right angles to the preferred one [pt]
+_NEXT = 5.0  # cost of using a label's second anchor instead of the first, and so on [pt]
+_COVERED = 120.0  # cost of a candidate place that lines of the drawing cover completely [pt]
+_FIRST = 40  # number of cheapest candidate places of a label that are tried first
+_TRIED = 30  # number of a label's candidate places for which the program tries to move another label away
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,13 +37,13 @@ class LabelRequest:
     Parameters
     ----------
     size : tuple of float
-        Width and height of its text.
+        Width and height of the label's text.
     anchors : ndarray, shape (k, 2)
-        Points at one of which it may stand, the best first.
+        Points beside which the label may stand, the best first.
     towards : tuple of float
-        Direction in which it should stand from its anchor; (0, 0) on it.
+        Preferred direction from the anchor to the label; (0, 0) to put the label on the anchor.
     priority : int
-        Labels of higher priority choose first.
+        Labels of higher priority are placed first.
     """
 
     size: tuple[float, float]
@@ -52,7 +53,7 @@ class LabelRequest:
 
 
 class Place(NamedTuple):
-    """The place of a label: its centre (2,), its anchor (2,), their distance, and the cost [pt]."""
+    """A placed label: centre (2,) and anchor (2,) [pt], distance between the two [pt], and cost [pt]."""
 
     centre: np.ndarray
     anchor: np.ndarray
@@ -62,14 +63,14 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Obstacles:
-    """Drawn lines and symbols, and the frame, on paper, where y points down and lengths are in [pt].
+    """Lines and symbols that are drawn already, and the frame; y points down, lengths are in [pt].
 
     Parameters
     ----------
     frame : tuple of float
-        Left, top, right, bottom of the area in which labels must stand.
+        Left, top, right and bottom edge of the area in which labels must stand.
     lines : ndarray, shape (n, 4)
-        Segments x, y, x, y that labels should not cover.
+        Line segments (x, y, x, y) that labels should not cover.
     points : ndarray, shape (m, 2)
         Centres of symbols, and ends of lines, that labels must not cover.
     reach : float
@@ -83,9 +84,9 @@ class Obstacles:
 
     @cached_property
     def _covered(self) -> np.ndarray:
-        """Summed-area table of cells that lines cross, from the upper left: (rows + 1, columns + 1)."""
+        """Return the summed-area table (rows + 1, columns + 1) of the cells that lines cross."""
         start, way = self.lines[:, :2], self.lines[:, 2:] - self.lines[:, :2]
-        # Number of points along each line, at most a cell apart.
+        # Number of points along each line: neighbours are at most one cell apart.
         counts = np.ceil(np.hypot(*way.T) / _CELL).astype(int) + 1
         which = np.repeat(np.arange(len(way)), counts)
         step = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
@@ -94,9 +95,9 @@ class Obstacles:
 
     @cached_property
     def _forbidden(self) -> np.ndarray:
-        """Summed-area table of cells within `reach` of symbols or ends of lines, shaped like `_covered`.
+        """Return the summed-area table (rows + 1, columns + 1) of cells near symbols and line ends.
 
-        Labels are not placed on these cells.
+        The cells lie within `reach` of a symbol or of the end of a line; no label may cover them.
         """
         side = np.linspace(-self.reach, self.reach, 2 * int(np.ceil(self.reach / _CELL)) + 1)
         dx, dy = (d.ravel() for d in np.meshgrid(side, side))
@@ -105,7 +106,7 @@ class Obstacles:
 
     @cached_property
     def _cells(self) -> np.ndarray:
-        """Numbers of columns and of rows of the grid."""
+        """Return the numbers of columns and rows of grid cells in the frame."""
         left, top, right, bottom = self.frame
         return np.array([int((right - left) / _CELL) + 2, int((bottom - top) / _CELL) + 2])
 
@@ -117,18 +118,18 @@ class Obstacles:
         return cells.cumsum(axis=0, out=cells).cumsum(axis=1, out=cells)
 
     def judge(self, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the share of boxes (k, 4) that lines cover, and whether the boxes are free of symbols."""
+        """Return the fraction of each box (k, 4) covered by lines, and whether it is clear of symbols."""
         x0, y0, x1, y1 = boxes.T
         return self._over(self._covered, boxes) * _CELL**2 / ((x1 - x0) * (y1 - y0)), self.is_free(boxes)
 
     def is_free(self, boxes: np.ndarray) -> np.ndarray:
-        """Whether boxes (k, 4) lie within the frame and cover no symbol."""
+        """Return whether each box (k, 4) lies within the frame and covers no symbol."""
         (left, top, right, bottom), (x0, y0, x1, y1) = self.frame, boxes.T
         inside = (x0 >= left) & (y0 >= top) & (x1 <= right) & (y1 <= bottom)
         return inside & (self._over(self._forbidden, boxes) == 0)
 
     def _over(self, sums: np.ndarray, boxes: np.ndarray) -> np.ndarray:
-        """Compute sums over boxes (k, 4) from a summed-area table, by its values at their corners."""
+        """Sum over the cells within each box (k, 4), by the summed-area table's values at its corners."""
         low = np.clip(((boxes[:, :2] - self.frame[:2]) / _CELL).astype(np.intp), 0, self._cells)
         high = np.clip(((boxes[:, 2:] - self.frame[:2]) / _CELL).astype(np.intp) + 1, 0, self._cells)
         (c0, r0), (c1, r1) = low.T, high.T
@@ -137,9 +138,9 @@ class Obstacles:
 
 @dataclass(eq=False)
 class _Candidates:
-    """Candidates of a label, the cheapest first: boxes (k, 4), anchors (k, 2), distances and costs (k,).
+    """Candidate places of a label, cheapest first: boxes (k, 4), anchors (k, 2), distances and costs (k,).
 
-    Before they are sorted, one object holds those of all labels, for n pairs of label and anchor: boxes (n,
+    Before sorting, one object holds the candidates of all labels, for n pairs of label and anchor: boxes (n,
     k, 4), anchors (n, 2), distances and costs (n, k).
     """
 
@@ -150,7 +151,7 @@ class _Candidates:
 
     @cached_property
     def leaders(self) -> np.ndarray:
-        """Lines from the boxes to their anchors, shape (k, 4)."""
+        """Return the leader lines from the boxes to their anchors, shape (k, 4)."""
         nearest = np.clip(self.anchors, self.boxes[:, :2], self.boxes[:, 2:])
         return np.concatenate([nearest, self.anchors], axis=1)
 
@@ -162,16 +163,16 @@ class _Candidates:
 _ANGLES = 2 * np.pi * np.arange(_TURNS) / _TURNS
 _WAYS = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=-1)
 _SPREAD = 1 / np.abs(_WAYS).clip(1e-9)
-# Directions of a box's corners from its centre.
+# Directions from the centre of a label's box to its corners.
 _CORNERS = np.array([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])
 _AWAY = np.concatenate([_WAYS, _CORNERS / np.sqrt(2.0)])
 _BESIDE = np.repeat(
     [0.0, 12.0], [_TURNS, len(_CORNERS)]
-)  # cost, by direction, of standing beside a point on which the label should stand [pt]
+)  # cost [pt], by direction, of a place beside a point that the label should cover
 
 
 def _candidates(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[_Candidates]:
-    """Make the candidates of all labels: around each anchor, by direction and distance."""
+    """Make the candidate places of all labels: around each anchor, at several directions and distances."""
     counts = [len(request.anchors) for request in requests]
     anchors = np.concatenate([request.anchors for request in requests])
     half = np.repeat([request.size for request in requests], counts, axis=0) / 2
@@ -193,24 +194,24 @@ def _candidates(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[
 
 
 def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Place candidates around each of n anchors, in s steps by t directions.
+    """Compute candidate places of labels around n anchors, at s distances in t directions.
 
     Parameters
     ----------
     half : ndarray, shape (n, 2)
-        Half the size of the label.
+        Half the width and half the height of the label.
     on_it : ndarray of bool, shape (n,)
-        Whether it should stand on the anchor.
+        Whether the label should stand on the anchor.
 
     Returns
     -------
     offsets : ndarray, shape (n, s, t, 2)
-        From the anchor to the centres of the label.
+        Vectors from the anchor to the centres of the label.
     distances : ndarray, shape (n, s, t)
-        From the anchor to the edge of the label.
+        Distances from the anchor to the edge of the label.
     """
     on_it = on_it[:, None, None]
-    # Distance from the centre to the edge of the box, (anchors, turns).
+    # Distance from the centre to the edge of the label's box, shape (anchors, directions).
     reach = (half[:, None] * _SPREAD).min(axis=2)
     out = np.where(on_it, _STEPS[:, None], _GAP + _STEPS[:, None] + reach[:, None])
     distances = np.where(on_it, np.maximum(out - reach[:, None], 0.0), _STEPS[:, None])
@@ -221,7 +222,7 @@ def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates:
-    """Select one label's free candidates, the cheapest first, from those of all labels (n, k)."""
+    """Select one label's free candidates, the cheapest first, from the candidates of all labels (n, k)."""
     which = np.flatnonzero(free[part])
     cost = every.costs[part].ravel()[which]
     order = np.argsort(cost, kind="stable")
@@ -231,7 +232,7 @@ def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates
 
 
 class _Chosen:
-    """The labels that have a place so far, with the index of the candidate that each has taken."""
+    """The labels that are placed so far, and the index of the candidate that each label uses."""
 
     def __init__(self, candidates: Sequence[_Candidates]) -> None:
         self._of = candidates
@@ -251,7 +252,7 @@ class _Chosen:
         self._boxes[label] = self._leaders[label] = np.nan
 
     def in_the_way(self, label: int, count: int | None) -> np.ndarray:
-        """Decide with which labels (n,) the first candidates (k,) of a label collide, shape (k, n)."""
+        """Return which labels (n,) collide with each of a label's first candidates (k,); shape (k, n)."""
         of = self._of[label]
         boxes = of.boxes[:count]
         found = np.zeros((len(boxes), len(self._boxes)), dtype=bool)
@@ -266,7 +267,7 @@ class _Chosen:
         return found
 
     def best(self, label: int, before: int | None = None) -> int | None:
-        """Return a label's cheapest free candidate, among the first `before` or all; None if none is free."""
+        """Return the index of a label's cheapest free candidate (of the first `before` or all), or None."""
         for count in (_FIRST, None) if before is None else (before,):
             free = ~self.in_the_way(label, count).any(axis=1)
             if free.any():
@@ -275,14 +276,14 @@ class _Chosen:
 
 
 def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Decide whether boxes (k, 4) overlap others (n, 4), shape (k, n)."""
+    """Return whether each box (k, 4) overlaps each of the other boxes (n, 4), shape (k, n)."""
     x0, y0, x1, y1 = boxes.T[..., None]
     left, top, right, bottom = others.T[:, None]
     return (x0 < right) & (left < x1) & (y0 < bottom) & (top < y1)
 
 
 def _crossing(segments: np.ndarray, boxes: np.ndarray) -> np.ndarray:
-    """Decide whether segments (k, 4) cross boxes (n, 4), shape (k, n)."""
+    """Return whether each line segment (k, 4) crosses each box (n, 4), shape (k, n)."""
     ax, ay, bx, by = segments.T[..., None]
     left, top, right, bottom = boxes.T[:, None]
     across, down = (np.where(way == 0, 1e-12, way) for way in (bx - ax, by - ay))
@@ -294,7 +295,7 @@ def _crossing(segments: np.ndarray, boxes: np.ndarray) -> np.ndarray:
 
 
 def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[Place | None]:
-    """Find free places for labels.
+    """Find places for labels that cover neither obstacles nor each other.
 
     Parameters
     ----------
@@ -306,7 +307,7 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
     Returns
     -------
     list of Place or None
-        For each label; None if there is no place for it.
+        The place of each label; None for a label without a free place.
     """
     if not requests:
         return []
@@ -318,7 +319,7 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
             chosen.take(label, best)
         else:
             _displace(label, chosen, candidates)
-    for label in order:  # labels before this one may have moved since
+    for label in order:  # labels placed earlier may have moved, so a cheaper place may be free now
         now = chosen.choice.get(label, 0)
         if now and (best := chosen.best(label, now)) is not None:
             chosen.take(label, best)
@@ -330,12 +331,12 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
 def keep_places(
     before: Sequence[Place | None], requests: Sequence[LabelRequest], obstacles: Obstacles
 ) -> list[Place | None] | None:
-    """Move labels along with their anchors; return None if any of them then collides.
+    """Move labels along with their anchor points; return None if a label then collides with anything.
 
     Parameters
     ----------
     before : sequence of Place
-        Places at which the labels stood before.
+        Earlier places of the labels.
     requests : sequence of LabelRequest
         Labels as they are now.
     obstacles : Obstacles
@@ -344,10 +345,10 @@ def keep_places(
     Returns
     -------
     list of Place, or None
-        None if all places have to be found anew: a label had none, or its place is not free any more.
+        None if a label had no place, or its place is not free any more: call `place_labels` then.
     """
     pairs = zip(before, requests, strict=True)
-    places = []  # each label keeps the offset from the anchor that is now nearest to its earlier one
+    places = []  # each label keeps its offset from its anchor point
     for place, request in pairs:
         if place is not None:
             anchor = request.anchors[np.hypot(*(request.anchors - place.anchor).T).argmin()]
@@ -367,7 +368,7 @@ def keep_places(
 
 
 def _displace(label: int, chosen: _Chosen, candidates: Sequence[_Candidates]) -> None:
-    """Give a label the place of another, if the other finds a new place; else leave the label without."""
+    """Place a label where another label is, if that one can move elsewhere; else leave it unplaced."""
     found = chosen.in_the_way(label, None)
     for candidate in np.flatnonzero(found.sum(axis=1) == 1)[:_TRIED]:
         other = int(found[candidate].argmax())

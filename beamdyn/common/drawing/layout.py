@@ -1,6 +1,6 @@
-"""Layout of drawings on paper: their scale, and the places of all texts; lengths in [pt], y points down.
+"""Layout of drawings on paper: scale of the drawing and places of all texts; lengths in [pt], y points down.
 
-On a sheet, drawings are beside one another, row by row.
+A sheet holds rows of drawings; the drawings of a row are side by side.
 """
 
 from __future__ import annotations
@@ -16,21 +16,22 @@ from beamdyn.common.drawing.label_places import FAR, LabelRequest, Obstacles, Pl
 from beamdyn.common.drawing.shapes import NORMAL, Disc, Drawing, Label, Outline, Symbol, arc, points_of_shape
 from beamdyn.common.drawing.text_width import LINE_HEIGHT, line_width, text_size, wrapped
 
-Frame = tuple[float, float, float, float]  # left, top, right and bottom on paper [pt]
-_HEADING = 11.0  # size of the title's letters [pt]
-_SMALL = 8.5  # size of the letters in the key [pt]
+Frame = tuple[float, float, float, float]  # left, top, right and bottom edge on paper [pt]
+_HEADING = 11.0  # font size of the title [pt]
+_SMALL = 8.5  # font size of the key (the list of symbols) [pt]
 _EDGE = 4.0  # distance between the frame and texts [pt]
-# Distances between the frame and the drawing, tried one after the other [pt].
+# Margins between the frame and the drawing [pt], tried from the smallest to the largest.
 _MARGINS = (14.0, 36.0, 60.0, 90.0)
-_CROWDED = 30.0  # distance of a label from its point that asks for a larger margin [pt]
-_SWATCH, _SPACE = 16.0, 14.0  # length of a sample line in the key, and distance after its text [pt]
-_BAR = 0.22  # longest scale bar, over the width of the frame
-_SMALL_DISC = 30.0  # radius of a disc up to which labels stand beside it, not on it [pt]
-# Points, relative to a movable point, at which labels would cover its handle: 16 px across on the page.
+_CROWDED = 30.0  # distance between a label and its point above which the next larger margin is tried [pt]
+_SWATCH, _SPACE = 16.0, 14.0  # length of a sample line in the key, and space after the text of an entry [pt]
+_BAR = 0.22  # length of the longest scale bar, as a fraction of the frame's width
+_SMALL_DISC = 30.0  # largest radius of a disc whose label stands beside the disc, not on it [pt]
+# Points, relative to a movable point, that labels must not cover: the page shows a handle of 16 px there.
 _HANDLE = np.vstack([np.zeros((1, 2)), arc((0, 0), 4.5, 0, 2 * np.pi, 9)])
-# Points at which labels would cover a ground symbol, relative to its point; unit: half its width, its height.
+# Points relative to a ground symbol that labels must not cover; unit: half the symbol's width, and its
+# height.
 _MARKS = np.array([(0.0, 0.0), (0.0, -2 / 17), (0.0, 0.5), (-0.7, 0.9), (0.0, 0.9), (0.7, 0.9)])
-_PADDING = (4.0, 1.0)  # room around a measured text [pt], as letters are drawn with hinting and slant
+_PADDING = (4.0, 1.0)  # clearance around a text [pt]: drawn letters differ slightly from the font tables
 
 
 @dataclass(frozen=True)
@@ -40,9 +41,9 @@ class Fit:
     Parameters
     ----------
     scale : float
-        Points of paper in a unit of the drawing.
+        Length on paper of one length unit of the drawing [pt].
     left, top : float
-        Where the origin is on paper.
+        Position of the drawing's origin on paper [pt].
     """
 
     scale: float
@@ -50,16 +51,16 @@ class Fit:
     top: float
 
     def to_paper(self, points: Any) -> np.ndarray:
-        """Convert points (..., 2) of the drawing to paper."""
+        """Convert points (..., 2) from the drawing's coordinates to paper [pt]."""
         return np.asarray(points, dtype=float) * (self.scale, -self.scale) + (self.left, self.top)
 
     def from_paper(self, places: Any) -> np.ndarray:
-        """Convert points (..., 2) on paper to the drawing's coordinates."""
+        """Convert points (..., 2) on paper [pt] to the drawing's coordinates."""
         return (np.asarray(places, dtype=float) - (self.left, self.top)) / (self.scale, -self.scale)
 
     @classmethod
     def of(cls, low: np.ndarray, high: np.ndarray, frame: Frame, margin: float) -> Fit:
-        """Fit a rectangle of the drawing into the middle of a frame, as large as a margin allows."""
+        """Fit a rectangle of the drawing into the centre of a frame, as large as the margin allows."""
         left, top, right, bottom = frame
         room = np.array([right - left, bottom - top])
         margin = min(margin, 0.3 * float(room.min()))
@@ -70,7 +71,7 @@ class Fit:
 
 
 class Text(NamedTuple):
-    """A text with its place: centre, width and height of its box, lines, symbol, role, size of letters."""
+    """A placed text: centre, width and height of its box, lines, symbol, colour role and font size."""
 
     centre: np.ndarray
     size: tuple[float, float]
@@ -81,20 +82,20 @@ class Text(NamedTuple):
 
     @property
     def box(self) -> np.ndarray:
-        """Left, top, right and bottom of the box."""
+        """Return the left, top, right and bottom edge of the text's box [pt]."""
         half = np.array(self.size) / 2
         return np.concatenate([self.centre - half, self.centre + half])
 
     @property
     def baselines(self) -> list[float]:
-        """Height of each line's baseline on paper."""
+        """Return the height of the baseline of each line of text on paper [pt]."""
         height = self.letters * LINE_HEIGHT
         first = float(self.centre[1]) - height * len(self.lines) / 2 + 0.5 * height + 0.36 * self.letters
         return [first + height * i for i in range(len(self.lines))]
 
 
 class Rule(NamedTuple):
-    """A straight line on paper: its ends (2, 2), role, width."""
+    """A straight line on paper: its end points (2, 2), colour role and width."""
 
     ends: np.ndarray
     role: str
@@ -103,24 +104,24 @@ class Rule(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """A drawing with a place for everything in it.
+    """A drawing with the places of all its texts on paper.
 
     Parameters
     ----------
     drawing : Drawing
         The drawing.
     frame : tuple of float
-        Left, top, right, bottom.
+        Left, top, right and bottom edge on paper [pt].
     fit : Fit
         Transformation from the drawing's coordinates to the paper.
     texts : tuple of Text
         All texts.
     rules : tuple of Rule
-        Lines from labels to their points, of the key and of scales.
+        Leader lines of labels, sample lines of the key, and scale bars.
     numbered : tuple of str
-        Labels without a free place: they stand in a list, with numbers that stand at their points.
+        Labels without a free place: they are listed below the drawing, and numbers mark their points.
     places : tuple of Place or None
-        Places of the labels; None for one without.
+        Places of the labels; None for a label without a place.
     """
 
     drawing: Drawing
@@ -133,27 +134,27 @@ class Layout:
 
 
 def arrange(drawing: Drawing, frame: Frame, fit: Fit | None = None) -> Layout:
-    """Find a place for everything in a drawing.
+    """Compute the layout of a drawing: its scale, and places for all its texts.
 
     Parameters
     ----------
     drawing : Drawing
         The drawing.
     frame : tuple of float
-        Left, top, right, bottom.
+        Left, top, right and bottom edge on paper [pt].
     fit : Fit, optional
-        Transformation to paper; chosen by what is drawn if not given.
+        Transformation to paper; if not given, the drawing is made as large as the frame allows.
     """
     inner, tries = _inner(drawing, frame), []
     low, high = drawing.extent()
-    # Movable points need room outside the drawing.
+    # Handles at movable points need space around the drawing.
     for margin in _MARGINS[1:] if drawing.points else _MARGINS:
         found = fit or Fit.of(low, high, inner, margin)
         requests = [_request(label, found) for label in drawing.labels]
         places = place_labels(requests, _obstacles(drawing, inner, found))
         far = [1e3 if place is None else max(place.distance - _CROWDED, 0.0) for place in places]
         tries.append((sum(far), found, places))
-        # Larger margins are tried until no label is far from its point; a given fit has no margin to choose.
+        # Larger margins are tried until every label is close to its point; a given `fit` fixes the margin.
         if fit is not None or sum(far) == 0:
             break
     _, chosen, places = min(tries, key=lambda each: each[0])
@@ -161,9 +162,9 @@ def arrange(drawing: Drawing, frame: Frame, fit: Fit | None = None) -> Layout:
 
 
 def follow(drawing: Drawing, frame: Frame, before: Layout) -> Layout:
-    """Lay out a slightly changed drawing at the same scale, with labels at their earlier offsets.
+    """Lay out a slightly changed drawing at its earlier scale, with each label at its earlier offset.
 
-    All places are found anew only if a label would cover another one, a symbol or the frame.
+    If a label would then cover another label, a symbol or the frame, all labels are placed again.
     """
     if len(before.places) == len(drawing.labels):
         requests = [_request(label, before.fit) for label in drawing.labels]
@@ -174,7 +175,7 @@ def follow(drawing: Drawing, frame: Frame, before: Layout) -> Layout:
 
 
 def _inner(drawing: Drawing, frame: Frame) -> Frame:
-    """Return the part of a frame that title and key leave free."""
+    """Return the part of a frame that remains below the title and above the key."""
     left, top, right, bottom = frame
     below = top + heading(drawing.title, right - left, bottom - top).height
     rows = bool(drawing.unit or drawing.newton) + len(_lines_of_key(drawing, frame, 0.0))
@@ -184,7 +185,7 @@ def _inner(drawing: Drawing, frame: Frame) -> Frame:
 def _composed(
     drawing: Drawing, frame: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> Layout:
-    """Make the layout of a drawing whose labels have given places."""
+    """Make the layout of a drawing from given places of its labels."""
     inner = _inner(drawing, frame)
     numbered, texts, rules, fit = _with_list(drawing, inner, fit, places, held)
     key_texts, key_rules = _key(drawing, frame, fit, inner[3])
@@ -219,7 +220,7 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
             heights = np.linspace(-0.8, 0.8, 9) * r
             half = np.sqrt(r**2 - heights**2)
             chords = np.stack([x - half, y + heights, x + half, y + heights], axis=-1)
-            segments.append(chords[: None if r < _SMALL_DISC else 0])  # labels avoid small discs only
+            segments.append(chords[: None if r < _SMALL_DISC else 0])  # labels avoid only small discs
         closed = isinstance(shape, Outline) and shape.closed
         pairs = np.vstack([along, along[:1]]) if closed else along
         lines = np.concatenate([pairs[:-1], pairs[1:]], axis=1)
@@ -232,15 +233,15 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
     within = (left + _EDGE, top + _EDGE, right - _EDGE, bottom - _EDGE)
     lines, reach = np.vstack(segments), 3 * max(right - left, bottom - top)
     middle = np.tile([(left + right) / 2, (top + bottom) / 2], 2)
-    near = (np.abs(lines - middle) < reach).all(axis=1)  # leaves out points that were moved far outside
+    near = (np.abs(lines - middle) < reach).all(axis=1)  # ignores lines that lie far outside the frame
     return Obstacles(within, lines[near], np.vstack(points))
 
 
-# Labels without a place ---------------------------------------------------------------------------
+# Labels without a free place ----------------------------------------------------------------------
 
 
 class _Listed(NamedTuple):
-    """Labels listed below a drawing, by index; height at which the list begins [pt]; fit and label places."""
+    """Labels listed below a drawing: their indices, top of the list [pt], scale, and places of all labels."""
 
     labels: list[int]
     bottom: float
@@ -251,12 +252,12 @@ class _Listed(NamedTuple):
 def _with_list(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[tuple[str, ...], list[Text], list[Rule], Fit]:
-    """Make texts and leaders of labels; those without a place get a number, and a list at the bottom."""
+    """Make texts and leader lines of labels; a label without a free place is numbered, and listed below."""
     listed, bottom, fit, places = _make_room(drawing, inner, _Listed([], inner[3], fit, places), held)
     numbers = {i: f"({number})" for number, i in enumerate(listed, 1)}
     texts, rules = [], []
     for i, (label, place) in enumerate(zip(drawing.labels, places, strict=True)):
-        if place is None:  # a number for which there is no room, either, stands in the list alone
+        if place is None:  # a label whose number has no free place, either, is only listed
             continue
         shown = Label(numbers[i], label.anchors, label.role, size=_SMALL) if i in numbers else label
         size, lines = text_size(shown.text, shown.size, shown.symbol), tuple(shown.text.split("\n"))
@@ -271,9 +272,9 @@ def _with_list(
 
 
 def _make_room(drawing: Drawing, inner: Frame, first: _Listed, held: Fit | None) -> _Listed:
-    """Shrink the drawing until a list of the labels without a place fits below it.
+    """Shrink the drawing until a list of the labels without a free place fits below it.
 
-    In the smaller drawing further labels may lose their place: the list is made again until it has them all.
+    In the smaller drawing more labels may lack a free place: the steps are repeated until all are listed.
     """
     listed, bottom, fit, places = first
     more = [i for i, place in enumerate(places) if place is None]
@@ -284,7 +285,7 @@ def _make_room(drawing: Drawing, inner: Frame, first: _Listed, held: Fit | None)
         inside = (*inner[:3], bottom)
         fit = held or Fit.of(*drawing.extent(), inside, _MARGINS[-1])
         requests = [_request(label, fit) for label in drawing.labels]
-        # In the drawing, a number in brackets stands for each label in the list.
+        # In the drawing, a number in brackets stands for each listed label.
         for number, i in enumerate(listed, 1):
             width, height = text_size(f"({number})", _SMALL)
             requests[i] = LabelRequest((width + 2, height), requests[i].anchors, requests[i].towards, 10)
@@ -294,7 +295,7 @@ def _make_room(drawing: Drawing, inner: Frame, first: _Listed, held: Fit | None)
 
 
 def _list_lines(said: Sequence[str], inner: Frame, size: float) -> list[str]:
-    """Break the list of labels into lines, as many as fit on half the frame's height."""
+    """Break the list of labels into lines; at most half the frame's height is used."""
     words = "; ".join(f"({i}) {text}" for i, text in enumerate((s.replace("\n", ", ") for s in said), 1))
     lines = wrapped(words, inner[2] - inner[0] - 2 * _EDGE - _PADDING[0], size)
     most = max(1, int((inner[3] - inner[1]) / 2 / (size * LINE_HEIGHT)))
@@ -314,7 +315,7 @@ def _rows(lines: Sequence[str], left: float, top: float, size: float, role: str)
 
 
 class Heading(NamedTuple):
-    """Lines of a title, the size of their letters, and the height that they take [pt]."""
+    """Lines of a title, their font size, and their total height [pt]."""
 
     lines: tuple[str, ...]
     letters: float
@@ -322,7 +323,7 @@ class Heading(NamedTuple):
 
 
 def heading(title: str, width: float, height: float) -> Heading:
-    """Fit a title into a frame's width [pt], on a third of its height at most."""
+    """Fit a title into a width [pt], using at most a third of the given height [pt]."""
     if not title:
         return Heading((), NORMAL, 0.0)
     room = width - 2 * _EDGE - 2 * _PADDING[0]
@@ -332,7 +333,7 @@ def heading(title: str, width: float, height: float) -> Heading:
 
 
 class _KeyItem(NamedTuple):
-    """An entry of the key: length of its line, words, role, and whether it is a scale."""
+    """An entry of the key: length of its sample line, text, colour role, and whether it is a scale bar."""
 
     length: float
     words: str
@@ -355,7 +356,7 @@ def _entries(drawing: Drawing, frame: Frame, scale: float) -> list[_KeyItem]:
 
 
 def round_below(value: float) -> float:
-    """Return the largest number 1, 2 or 5 times a power of ten that is not above a value."""
+    """Return the largest number of the form 1, 2 or 5 times a power of ten that does not exceed a value."""
     power = 10.0 ** np.floor(np.log10(value))
     return float(power * max(factor for factor in (1, 2, 5) if factor * power <= value * (1 + 1e-9)))
 
@@ -366,7 +367,7 @@ def length_text(size: float) -> str:
 
 
 def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tuple[float, _KeyItem]]]:
-    """Break the key into lines: entries with their places from the left."""
+    """Break the key into lines of entries, each entry with its distance from the left edge."""
     room = frame[2] - frame[0] - 2 * _EDGE
     lines: list[list[tuple[float, _KeyItem]]] = []
     at = np.inf
@@ -381,7 +382,7 @@ def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tup
 
 
 def _key(drawing: Drawing, frame: Frame, fit: Fit, top: float) -> tuple[list[Text], list[Rule]]:
-    """Make texts and lines of the key below the drawing: meaning of colours, scales of lengths and forces."""
+    """Make texts and lines of the key below the drawing: meanings of colours, and scale bars."""
     texts, rules = [], []
     height = _SMALL * LINE_HEIGHT + 3
     for row, line in enumerate(_lines_of_key(drawing, frame, fit.scale)):
@@ -401,36 +402,36 @@ def _key(drawing: Drawing, frame: Frame, fit: Fit, top: float) -> tuple[list[Tex
 Rows = Sequence[Sequence[Drawing]]
 WIDTH = 680.0  # width of a sheet [pt]
 _LOWEST, _HIGHEST = 300.0, 600.0  # least and largest height of a row [pt]
-_DETAIL = 0.65  # width of a detail over that of a drawing beside it
-_AROUND = 100.0  # room for title, key and labels around a drawing [pt]
+_DETAIL = 0.65  # width of a detail drawing, as a fraction of the width of the drawing beside it
+_AROUND = 100.0  # space for title, key and labels around a drawing [pt]
 _SQUARE = 320.0  # side of a square for a single drawing [pt]
 
 
 @dataclass(frozen=True)
 class Paper:
-    """Width of a sheet, and the height of each of its rows [pt]."""
+    """Size of a sheet: its width and the heights of its rows [pt]."""
 
     width: float
     heights: tuple[float, ...]
 
     @property
     def height(self) -> float:
-        """Height of all rows together [pt]."""
+        """Return the sum of the heights of all rows [pt]."""
         return sum(self.heights)
 
     @classmethod
     def of(cls, rows: Rows, width: float = WIDTH) -> Paper:
-        """Make paper for drawings; the height of each row follows from its drawings, within bounds."""
+        """Choose the height of each row from the proportions of its drawings, within bounds."""
         return cls(width, tuple(_height(row, width) for row in rows))
 
     @classmethod
     def of_squares(cls, rows: Rows) -> Paper:
-        """Make paper with a square for each drawing, as for free-body diagrams."""
+        """Make a sheet with one square per drawing, for example for free-body diagrams."""
         return cls(_SQUARE * max(map(len, rows)), (_SQUARE,) * len(rows))
 
 
 def _widths(row: Sequence[Drawing], width: float) -> list[float]:
-    """Divide the width among the drawings of a row: evenly, but less for details beside others."""
+    """Return the widths of the drawings of a row: equal, but smaller for detail drawings."""
     parts = [_DETAIL if drawing.own_scale else 1.0 for drawing in row]
     return [width * part / sum(parts) for part in parts]
 
@@ -446,23 +447,23 @@ def _height(row: Sequence[Drawing], width: float) -> float:
 
 
 def frames_of(row: Sequence[Drawing], paper: Paper, number: int) -> list[Frame]:
-    """Return the frames of the drawings of row `number`, beside one another [pt]."""
+    """Return the frames of the drawings in row `number`, side by side [pt]."""
     top, ends = sum(paper.heights[:number]), [0.0, *accumulate(_widths(row, paper.width))]
     return [(left, top, right, top + paper.heights[number]) for left, right in pairwise(ends)]
 
 
 def lay_out(rows: Rows, paper: Paper, before: Layout | None = None) -> list[Layout]:
-    """Lay out drawings on paper; those of a row have one scale, except for details.
+    """Lay out drawings on a sheet; the drawings of a row have the same scale, except for details.
 
     Parameters
     ----------
     rows : sequence of sequences of Drawing
         The drawings.
     paper : Paper
-        The paper.
+        Size of the sheet.
     before : Layout, optional
-        Last layout of the first drawing, while something moves: its scale is kept, and its labels as far as
-        their places are free.
+        Earlier layout of the first drawing, for example while the user drags a point: the scale is kept, and
+        so are the labels whose places are still free.
     """
     layouts: list[Layout] = []
     for number, row in enumerate(rows):
@@ -482,7 +483,7 @@ def lay_out(rows: Rows, paper: Paper, before: Layout | None = None) -> list[Layo
 
 
 def _at_scale(layout: Layout, scale: float) -> Layout:
-    """Lay out a drawing again at another scale, about the same middle."""
+    """Lay out a drawing again at another scale, with the same centre."""
     low, high = layout.drawing.extent()
     middle = (low + high) / 2
     x, y = layout.fit.to_paper(middle)

@@ -1,4 +1,4 @@
-"""Drawings on matplotlib's axes, for files."""
+"""Draw machine drawings on matplotlib axes, for picture files."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from matplotlib.patches import Patch
     from matplotlib.path import Path
 
-_INCH = 72.0  # length of an inch [pt]
+_INCH = 72.0  # one inch [pt]
 _EDGE = 4.0  # distance between the frame and the title [pt]
 
 
 def figure_of(rows: Rows, paper: Paper | None = None) -> Figure:
-    """Draw drawings beside one another, row by row.
+    """Make a figure with rows of drawings; the drawings of a row are side by side.
 
     Parameters
     ----------
     rows : sequence of sequences of Drawing
-        The drawings; those of a row share its width evenly, and have one scale.
+        The drawings; those of a row have equal widths and the same scale.
     paper : Paper, optional
-        Size of the figure; follows from the drawings if not given.
+        Size of the figure; if not given, it is chosen from the proportions of the drawings.
     """
     paper = paper or Paper.of(rows)
     width, height = paper.width, paper.height
@@ -62,27 +62,27 @@ def draw_in(figure: Figure, box: tuple[float, float, float, float], drawing: Dra
 
 
 def draw_on(ax: Axes, drawing: Drawing, fit: Fit | None = None) -> Axes:
-    """Draw a drawing on axes, whose place in their figure must be final: labels are placed for their size.
+    """Draw a drawing on axes whose size is final, as labels are placed for this size.
 
     Parameters
     ----------
     ax : Axes
-        Axes on which to draw, in the drawing's unit; the title stands within them.
+        Axes on which to draw, in the drawing's length unit; the title is drawn inside the axes.
     drawing : Drawing
         The drawing.
     fit : Fit, optional
-        Transformation to paper; chosen by what is drawn if not given.
+        Transformation to paper; if not given, the drawing is made as large as the axes allow.
 
     Returns
     -------
     Axes
-        The axes that were given, without ticks.
+        The given axes, without ticks.
     """
     return _fill(ax, arrange(drawing, frame_of(ax), fit))
 
 
 def _fill(ax: Axes, layout: Layout) -> Axes:
-    """Draw a layout on axes that are as large as its frame."""
+    """Draw a layout on axes that have the size of its frame."""
     left, top, right, bottom = layout.frame
     drawing, fit = layout.drawing, layout.fit
     low, high = fit.from_paper([(left, bottom), (right, top)])
@@ -93,7 +93,7 @@ def _fill(ax: Axes, layout: Layout) -> Axes:
                  pad=-_EDGE, va="top", linespacing=LINE_HEIGHT)  # fmt: skip
     for stroke in strokes_of(layout):
         _draw(ax, stroke, fit)
-    for text in layout.texts[len(above.lines) :]:  # the first texts are those of the title
+    for text in layout.texts[len(above.lines) :]:  # the first texts are the lines of the title
         for line in letters_of(text):
             _write(ax, line, fit)
     return ax
@@ -107,12 +107,12 @@ def frame_of(ax: Axes) -> Frame:
 
 
 def _literal(text: str) -> str:
-    """Escape a text, so that matplotlib reads no formula in it."""
+    """Escape a text, so that matplotlib does not read parts of it as a formula."""
     return text.replace("$", r"\$")
 
 
 def _draw(ax: Axes, stroke: Stroke, fit: Fit) -> Patch:
-    """Draw a path or a circle, whose points are converted from paper to the axes."""
+    """Draw a path or a circle; its points are converted from paper [pt] to the units of the axes."""
     from matplotlib.colors import to_rgba
     from matplotlib.patches import Circle, PathPatch
 

@@ -14,25 +14,25 @@ from typing import Any
 
 import numpy as np
 
-NORMAL = 9.0  # size of letters where a drawing asks for no other size [pt]
+NORMAL = 9.0  # default font size [pt]
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """A line through points, or an area.
+    """An open or closed line through points, with or without a filled area.
 
     Parameters
     ----------
     points : ndarray, shape (k, 2)
-        The points; the line has a gap where they are not numbers.
+        The points; the line has a gap at points that are nan.
     role : str
-        Role that gives its colour: a name in `beamdyn.common.drawing.strokes`.
+        Role that determines the colour: a name in `beamdyn.common.drawing.strokes`.
     width : float
         Width of the line [pt]; 0 for none.
     dash : tuple of float
         Lengths of dashes and gaps [pt]; empty for a solid line.
     closed, filled : bool
-        Whether the line is closed, and whether the area within is coloured.
+        Whether the line is closed, and whether the enclosed area is filled.
     """
 
     points: Any
@@ -45,7 +45,7 @@ class Outline:
 
 @dataclass(frozen=True, eq=False)
 class Disc:
-    """A circle; its parameters are as for `Outline`."""
+    """A circle; its parameters `role`, `width`, `dash` and `filled` are as for `Outline`."""
 
     centre: Any
     radius: float
@@ -56,24 +56,24 @@ class Disc:
 
     @property
     def around(self) -> np.ndarray:
-        """Points of the circle, shape (73, 2)."""
+        """Return points on the circle, shape (73, 2)."""
         return arc(self.centre, self.radius, 0.0, 2 * np.pi, 73)
 
 
 @dataclass(frozen=True, eq=False)
 class Symbol:
-    """A symbol of a fixed size on paper.
+    """A symbol whose size on paper is fixed.
 
     Parameters
     ----------
     kind : {"pin", "ground", "dot", "cross", "diamond"}
-        For a pin, a pin's support, a point, a centre, a contact.
+        Meaning: a pin joint, a fixed support of a pin joint, a point, a centre, a contact point.
     at : array of two floats
-        Its position.
+        Position of the symbol.
     role : str
-        As for `Outline`.
+        Role that determines the colour.
     size : float
-        Its width [pt].
+        Width of the symbol [pt].
     """
 
     kind: str
@@ -89,15 +89,15 @@ class Arrow:
     Parameters
     ----------
     foot, tip : array of two floats
-        Its ends.
+        End points of the arrow.
     role : str
-        As for `Outline`.
+        Role that determines the colour.
     name : str
-        Name of what it shows, such as a force.
+        Name of the quantity that the arrow shows, such as a force.
     width : float
-        Width of its shaft [pt].
+        Width of the shaft [pt].
     both : bool
-        Whether both ends have heads, as in a dimension line.
+        Whether both ends have arrowheads, as in a dimension line.
     """
 
     foot: Any
@@ -109,7 +109,7 @@ class Arrow:
 
     @property
     def vector(self) -> np.ndarray:
-        """Vector from foot to tip."""
+        """Return the vector from foot to tip."""
         return np.subtract(self.tip, self.foot)
 
 
@@ -122,17 +122,17 @@ class Label:
     text : str
         The text, of one or more lines.
     anchors : ndarray, shape (k, 2)
-        Points at one of which it may stand, the best first.
+        Points beside which the text may stand, the best first.
     role : str
-        As for `Outline`.
+        Role that determines the colour.
     towards : tuple of float
-        Direction in which it should stand from its point; (0, 0) for on it.
+        Preferred direction from the point to the text; (0, 0) to put the text on the point.
     symbol : str
         Symbol before the text, such as "N_1".
     priority : int
-        Labels of higher priority choose first.
+        Labels of higher priority are placed first.
     size : float
-        Size of its letters [pt].
+        Font size [pt].
     """
 
     text: str
@@ -145,7 +145,7 @@ class Label:
 
     @property
     def said(self) -> str:
-        """Symbol and text of the label."""
+        """Return symbol and text of the label as one string."""
         return f"{self.symbol.replace('_', '')} {self.text}".strip()
 
 
@@ -159,27 +159,27 @@ class Drawing:
     Parameters
     ----------
     shapes : sequence
-        Shapes, the lowest first.
+        Shapes in drawing order: later ones cover earlier ones.
     labels : sequence of Label
-        Texts.
+        Texts at points of the drawing.
     title : str
         Title.
     words : str
-        Description for screen readers.
+        Description of the drawing for screen readers.
     unit : {"m", "mm", ""}
-        Unit of its coordinates; "" for a sketch without a scale.
+        Unit of the coordinates; "" for a sketch that is not to scale.
     newton : float
-        Length of an arrow for 1 N, in the drawing's unit; 0 where there are no forces.
+        Length of an arrow that shows a force of 1 N, in the drawing's unit; 0 if there are no forces.
     key : mapping
-        Meaning of roles, in words; only roles of its shapes are listed.
+        Meaning of each colour role in words; the key lists only roles that occur in the drawing.
     points : mapping
-        Points (x, y) that can be moved, by their names.
+        Points (x, y) that the user can drag, by name.
     room : ndarray, shape (k, 2)
-        Further points that must fit into the picture, such as those of other positions.
+        Further points that must fit into the picture, such as points of other positions of the mechanism.
     own_scale : bool
-        Whether its scale differs from that of others in its row, as in a detail.
+        Whether the drawing has its own scale, different from other drawings in its row, as a detail does.
     scale : str
-        Scale of the deflections in words, where it differs from that of lengths.
+        Scale of the deflections in words, if deflections are drawn at another scale than lengths.
     """
 
     shapes: Sequence[DrawnShape]
@@ -196,19 +196,19 @@ class Drawing:
 
     @property
     def legend(self) -> dict[str, str]:
-        """Meaning of each role that is drawn."""
+        """Return the meaning of each colour role that occurs in the drawing."""
         drawn = {shape.role for shape in self.shapes}
         return {role: words for role, words in self.key.items() if role in drawn}
 
     @property
     def arrows(self) -> dict[str, np.ndarray]:
-        """Vectors of named arrows, in the drawing's unit, by name."""
+        """Return the vectors of the named arrows, in the drawing's unit, by name."""
         return {s.name: s.vector for s in self.shapes if isinstance(s, Arrow) and s.name}
 
     def extent(self) -> tuple[np.ndarray, np.ndarray]:
-        """Compute least and greatest coordinates (2,) of shapes and `room`.
+        """Compute the smallest and the largest coordinates (2,) of all shapes and of the points `room`.
 
-        Without any, they are those of a unit square.
+        An empty drawing has the extent of a unit square.
         """
         room = np.reshape(np.asarray(self.room, dtype=float), (-1, 2))
         points = np.vstack([room, *map(points_of_shape, self.shapes)])
@@ -219,7 +219,7 @@ class Drawing:
 
 
 def points_of_shape(shape: DrawnShape) -> np.ndarray:
-    """Return points (k, 2) along a shape."""
+    """Return points (k, 2) along the outline of a shape."""
     if isinstance(shape, Outline):
         return np.asarray(shape.points, dtype=float).reshape(-1, 2)
     if isinstance(shape, Disc):
@@ -230,14 +230,14 @@ def points_of_shape(shape: DrawnShape) -> np.ndarray:
 
 
 def arc(centre: Any, radius: float, start: float, end: float, count: int = 41) -> np.ndarray:
-    """Return points (count, 2) of an arc between two angles from x towards y [rad]."""
+    """Return points (count, 2) on a circular arc between two angles [rad], measured from x towards y."""
     angle = np.linspace(start, end, count)
     return np.asarray(centre, dtype=float) + radius * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
 # Charts ----------------------------------------------------------------------------------------------
 
-# Largest number of points of a curve on the page: more cannot be seen, and take time to send.
+# Largest number of points of a curve sent to the page: more could not be seen, and would slow it down.
 _MOST_POINTS = 400
 
 
@@ -248,13 +248,13 @@ class ChartAxis:
     Parameters
     ----------
     name : str
-        Name of its quantity.
+        Name of the quantity on the axis.
     unit : str
-        Unit of its numbers; "" for none.
+        Unit of the numbers; "" for a dimensionless quantity.
     logarithmic : bool
-        Whether its scale is logarithmic.
+        Whether the scale is logarithmic.
     low, high : float, optional
-        Its limits; chosen by the curves if not given.
+        Limits of the axis; chosen to show all curves if not given.
     """
 
     name: str
@@ -265,7 +265,7 @@ class ChartAxis:
 
     @property
     def title(self) -> str:
-        """Name and unit of the axis."""
+        """Return name and unit of the quantity on the axis."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
@@ -278,15 +278,15 @@ class ChartCurve:
     name : str
         Name in the legend and beside the mouse pointer.
     x, y : ndarray, shape (n,)
-        Its points, in the units of the axes; a gap where y is not finite.
+        Points of the curve, in the units of the axes; the curve has a gap where y is not finite.
     dashed : bool
-        Whether it is dashed.
+        Whether the curve is dashed.
     pale : bool
-        Whether it is grey and thin, as a reference for others.
+        Whether the curve is thin and grey, as a reference for other curves.
     points : bool
-        Whether its points are marked.
+        Whether each point has a marker.
     most : int
-        Largest number of points drawn; a curve with more keeps its ends and the extremes of its parts.
+        Largest number of points drawn; of a curve with more points, the ends and local extremes are drawn.
     """
 
     name: str
@@ -300,7 +300,7 @@ class ChartCurve:
 
 @dataclass(frozen=True)
 class ChartPoints:
-    """Points of a chart, each with a text.
+    """Single points of a chart, each with a text.
 
     Parameters
     ----------
@@ -309,7 +309,7 @@ class ChartPoints:
     at : sequence of (x, y, words)
         Coordinates of each point, and the text shown when the mouse pointer is on it.
     role : str
-        Role that gives their colour: a name in `beamdyn.common.drawing.strokes`.
+        Role that determines the colour: a name in `beamdyn.common.drawing.strokes`.
     """
 
     name: str
@@ -319,18 +319,18 @@ class ChartPoints:
 
 @dataclass(frozen=True)
 class ChartMark:
-    """A vertical line with a text at its top, or at its foot where curves pass the top.
+    """A vertical line with a text at its top end, or at its bottom end where curves would cover the top.
 
     Parameters
     ----------
     at : float
-        Its x.
+        Position of the line on the x axis.
     text : str
         The text.
     at_foot : bool
-        Whether the text is at its foot.
+        Whether the text is at the bottom end.
     curve : str
-        Name of the curve that it belongs to, whose colour it has; "" for none.
+        Name of a curve whose colour the line gets; "" for a grey line.
     """
 
     at: float
@@ -350,24 +350,24 @@ class ChartBand:
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """Curves over a common x.
+    """A chart of curves over the same x axis.
 
     Parameters
     ----------
     title : str
-        Title.
+        Title of the chart.
     x, y : ChartAxis
         The axes.
     curves : sequence of ChartCurve
-        Curves.
+        The curves.
     points : sequence of ChartPoints
         Single points.
     marks : sequence of ChartMark
-        Vertical lines.
+        Vertical lines with texts.
     bands : sequence of ChartBand
-        Grey bands.
+        Grey bands over intervals of x.
     cursor : float, optional
-        The x of a cursor, such as the present time of a player.
+        Position of a cursor on the x axis, such as the time at which an animation stands.
     """
 
     title: str
@@ -381,13 +381,13 @@ class Chart:
 
     @property
     def colour_numbers(self) -> list[int | None]:
-        """Number of each curve's colour, counted from 0; None for pale curves."""
+        """Return the number of each curve's colour, counted from 0; None for grey curves."""
         numbers = count()
         return [None if curve.pale else next(numbers) for curve in self.curves]
 
     @property
     def words(self) -> str:
-        """Description of the chart for screen readers."""
+        """Return a description of the chart for screen readers."""
         names = ", ".join(each.name for each in (*self.curves, *self.points))
         marks = "; ".join(mark.text.replace("\n", " ") for mark in self.marks)
         over = f"{self.y.title} over {self.x.title}"

@@ -1,4 +1,4 @@
-"""Sketches that explain symbols: lengths, angles and forces marked on a schematic drawing."""
+"""Sketches that explain symbols: lengths, angles and forces in a schematic drawing."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from beamdyn.common.drawing.layout import Paper, Rows
 from beamdyn.common.drawing.shapes import Arrow, Drawing, DrawnShape, Label, Outline, Symbol, arc
 from beamdyn.common.drawing.text_width import typeset
 
-Sketcher = Callable[[Mapping[str, str]], Rows]  # a function from the entries of a form to rows of drawings
+Sketcher = Callable[[Mapping[str, str]], Rows]  # function that makes rows of drawings from a form's texts
 
-WIDTH = 272.0  # width of the paper [pt], that of a form, so that letters are about as large as the form's
+WIDTH = 272.0  # width of a sketch [pt]: the width of a form, so that both have letters of about the same size
 _LETTERS = 11.0
-# Least and largest height of a row, and room around the drawing [pt].
+# Smallest and largest height of a row, and space around the drawing [pt].
 _LOWEST, _HIGHEST, _AROUND = 84.0, 200.0, 32.0
 _THIN, _DASHED = 0.8, (4.0, 2.5)
-_ALONG = np.array([0.5, 0.36, 0.64, 0.24, 0.76])  # shares of a length beside which its symbol may stand
+_ALONG = np.array([0.5, 0.36, 0.64, 0.24, 0.76])  # fractions of a length beside which its symbol may stand
 
 Point = tuple[float, float] | np.ndarray
 
 
 class Sketch:
-    """A schematic drawing to which shapes and symbols are added; it has no scale.
+    """A schematic drawing, not to scale, to which shapes and symbols are added step by step.
 
     Attributes
     ----------
     shapes, labels : list
-        Shapes and labels so far.
+        Shapes and labels added so far.
     room : list of points
         Further points that must fit into the picture.
     """
@@ -44,7 +44,7 @@ class Sketch:
         self.shapes += shapes
 
     def say(self, symbol: str, at: Any, towards: Point = (0.0, 0.0), role: str = "text") -> None:
-        """Write a symbol, such as "alpha1", at one of several points."""
+        """Write a symbol, such as "alpha1", beside one of several points."""
         way = float(towards[0]), float(towards[1])
         self.labels.append(Label("", at, role, way, typeset(symbol), priority=1, size=_LETTERS))
 
@@ -53,41 +53,41 @@ class Sketch:
         self.add(Outline(np.array(points, dtype=float), "axis", _THIN, _DASHED))
 
     def length(self, symbol: str, start: Point, end: Point, towards: Point) -> None:
-        """Mark the length between two points, with its symbol beside it."""
+        """Draw a dimension line between two points, with a symbol beside it."""
         ends = np.array([start, end], dtype=float)
         self.add(Arrow(ends[0], ends[1], "dimension", symbol, 1.0, both=True))
         self.say(symbol, ends[0] + _ALONG[:, None] * (ends[1] - ends[0]), towards)
 
     def angle(self, symbol: str, centre: Point, radius: float, start: float, end: float) -> None:
-        """Mark an angle from `start` to `end` [rad], with its symbol outside the arc."""
+        """Draw an arc from angle `start` to angle `end` [rad], with a symbol outside the arc."""
         way = arc(centre, radius, start, end)
         self.add(Outline(way[:-5], "dimension", 1.0), Arrow(way[-8], way[-1], "dimension", symbol, 1.0))
         middle = arc(centre, radius, start + 0.5 * (end - start), start + 0.3 * (end - start), 2)
         self.say(symbol, middle, middle[0] - np.asarray(centre, dtype=float))
 
     def arrow(self, symbol: str, foot: Point, tip: Point, role: str = "load") -> None:
-        """Draw a force or a direction of motion, with its symbol at the free end."""
+        """Draw an arrow for a force or a direction of motion, with a symbol at the free end."""
         ends = np.array([foot, tip], dtype=float)
         self.add(Arrow(ends[0], ends[1], role, symbol, 1.8))
         self.say(symbol, np.stack([ends[0], ends.mean(axis=0)]), ends[0] - ends[1], role)
 
     def moment(self, symbol: str, centre: Point, radius: float, start: float, end: float, role: str) -> None:
-        """Draw a moment or a rotation about a point, as an arc between two angles [rad]."""
+        """Draw an arc-shaped arrow for a moment or a rotation about a point, between two angles [rad]."""
         way = arc(centre, radius, start, end)
         self.add(Outline(way[:-5], role, 1.6), Arrow(way[-8], way[-1], role, symbol, 1.6))
         self.say(symbol, way[[20, 12, 28]], way[20] - np.asarray(centre, dtype=float), role)
 
     def axis(self, at: Point) -> None:
-        """Mark an axis that is seen along its direction."""
+        """Draw the symbol of an axis of rotation that is normal to the drawing."""
         self.add(Symbol("cross", at, "axis", 9.0))
 
     def drawing(self, title: str, words: str) -> Drawing:
-        """Make the drawing, with a title and a description for screen readers."""
+        """Return the finished drawing, with a title and a description for screen readers."""
         return Drawing(tuple(self.shapes), tuple(self.labels), title, words, unit="", room=self.room)
 
 
 def wall(middle: Point, half: Point, back: Point) -> list[DrawnShape]:
-    """Draw a wall, hatched on one side; `half` leads from its middle to an end, `back` along a hatch line."""
+    """Draw a hatched wall; `half` is the vector from its centre to an end, `back` along a hatch line."""
     at, way, behind = (np.asarray(each, dtype=float) for each in (middle, half, back))
     ends = np.array([at - way, at + way])
     ticks = ends[0] + np.linspace(0, 1, 6)[:, None] * (ends[1] - ends[0])
@@ -95,12 +95,12 @@ def wall(middle: Point, half: Point, back: Point) -> list[DrawnShape]:
 
 
 def symbols_in(rows: Rows) -> set[str]:
-    """Return the symbols that are written in drawings, as `typeset` makes them."""
+    """Return the symbols that occur in drawings, in the notation of `typeset`."""
     return {label.symbol for row in rows for drawing in row for label in drawing.labels if label.symbol}
 
 
 def sketch_paper(rows: Rows) -> Paper:
-    """Make paper for sketches, as wide as a form and no higher than needed."""
+    """Choose the sheet size for sketches: the width of a form, and only the height that is needed."""
     return Paper(WIDTH, tuple(_height(row, WIDTH / len(row)) for row in rows))
 
 

@@ -1,7 +1,7 @@
-"""Strokes of a layout (paths, circles and letters on paper) and their colours, for every kind of file.
+"""Paths, circles and letters of a layout on paper, with their colours, for every picture format.
 
-Lengths are in [pt], from the top left of the paper.  Writers of files draw these strokes, and know no shapes
-of machines.
+Lengths are in [pt], from the top left corner of the paper.  The modules for SVG and matplotlib draw these
+simple elements only, so that neither has to handle shapes of machines.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from beamdyn.common.drawing.shapes import Arrow, Disc, DrawnShape, Outline, Symb
 
 
 class Ink(NamedTuple):
-    """Colours of a role: of lines and letters, and of areas; on light and on dark ground."""
+    """Colours of a role: one for lines and letters, one for areas, each for light and for dark background."""
 
     line: str
     dark_line: str
@@ -25,13 +25,13 @@ class Ink(NamedTuple):
     dark_area: str = "none"
 
 
-# Okabe and Ito's colours, which colour-blind people can tell apart; lighter on dark ground.
+# The palette of Okabe and Ito, which colour-blind people can tell apart; lighter on a dark background.
 BLACK = Ink("#000000", "#f2f2f2", "#000000", "#f2f2f2")
 BLUE = Ink("#0072b2", "#62b8ee", "#0072b2", "#62b8ee")
 VERMILION = Ink("#c65000", "#ff9350", "#c65000", "#ff9350")
 GREEN = Ink("#00805c", "#3ecfa0", "#00805c", "#3ecfa0")
 GREY = Ink("#4d4d4d", "#c4c4c4", "#4d4d4d", "#c4c4c4")
-AREA = 0.7  # opacity of areas, so that what lies behind can be seen
+AREA = 0.7  # opacity of filled areas: shapes behind them remain visible
 INKS = {
     "paper": Ink("#ffffff", "#16191d", "#ffffff", "#16191d"),
     "text": Ink("#333333", "#dddddd"),
@@ -67,26 +67,26 @@ INKS = {
 
 
 def ink(role: str) -> Ink:
-    """Return the colours of a role; raise ValueError for an unknown one."""
+    """Return the colours of a role; raise ValueError for an unknown role."""
     if role not in INKS:
         raise ValueError(f"role is {role!r}; it must be one of {', '.join(INKS)}")
     return INKS[role]
 
 
 def colour(name: str) -> str:
-    """Return a colour on light ground: of a role's lines by its name, of its areas by "ROLE-area"."""
+    """Return a colour on light background: of lines for the name of a role, of areas for "ROLE-area"."""
     role = name.removesuffix("-area")
     return ink(role).line if name == role else ink(role).area
 
 
 GROUND = "paper-area"
-HALO = 2.6  # width of the ground's colour around letters [pt]
-_HEAD, _HALF = 9.0, 3.3  # length and half width of an arrow's head [pt]
+HALO = 2.6  # width of the background-coloured outline of letters [pt]
+_HEAD, _HALF = 9.0, 3.3  # length and half the width of an arrowhead [pt]
 _THIN = 1.2  # width of the lines of symbols [pt]
 
 
 class Pen(NamedTuple):
-    """How a line is drawn and an area filled: names of colours (see `colour`), "" for nothing."""
+    """Style of a line and of a filled area: names of colours (see `colour`), "" for no line or no fill."""
 
     line: str = ""
     width: float = 1.0
@@ -97,7 +97,7 @@ class Pen(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Polylines:
-    """Lines through points, each an array of shape (k, 2); each ends where it begins if they are closed."""
+    """Lines through points, each line an array of shape (k, 2); a closed line returns to its first point."""
 
     runs: Sequence[np.ndarray]
     pen: Pen
@@ -114,7 +114,7 @@ class Circle:
 
 
 class Letters(NamedTuple):
-    """A line of letters: a symbol before the words, the middle of its baseline, size, colour."""
+    """A line of text: symbol before the text, centre of the baseline, font size and colour."""
 
     symbol: str
     words: str
@@ -128,7 +128,7 @@ Stroke = Polylines | Circle
 
 
 def strokes_of(layout: Layout) -> Iterator[Stroke]:
-    """Yield all lines and areas of a layout, the lowest first."""
+    """Yield all lines and areas of a layout in drawing order."""
     for shape in layout.drawing.shapes:
         yield from _SHAPES[type(shape)](shape, layout.fit)
     for rule in layout.rules:
@@ -136,7 +136,7 @@ def strokes_of(layout: Layout) -> Iterator[Stroke]:
 
 
 def letters_of(text: Text) -> list[Letters]:
-    """Return the lines of a text that have letters."""
+    """Return the lines of a text that are not blank."""
     lines = zip(text.lines, text.baselines, strict=True)
     made = [
         Letters(text.symbol if i == 0 else "", line, float(text.centre[0]), y, text.letters, text.role)
@@ -146,7 +146,7 @@ def letters_of(text: Text) -> list[Letters]:
 
 
 def _pen(shape: Outline | Disc) -> Pen:
-    """Return the pen of a shape; discs are opaque, and hide what lies beneath them."""
+    """Return the line style of a shape; discs are opaque, and hide shapes below them."""
     line, fill = shape.role if shape.width else "", f"{shape.role}-area" if shape.filled else ""
     return Pen(line, shape.width, shape.dash, fill, AREA if isinstance(shape, Outline) else 1.0)
 
@@ -191,7 +191,7 @@ _ROUND: dict[str, Callable[[str], Pen]] = {
     "pin": lambda line: Pen(line, _THIN, fill=f"{line}-area"),
     "dot": lambda line: Pen(fill=line),
 }
-# Symbols of straight lines, for half width 1: their points, whether the line is closed, and the pen.
+# Symbols made of straight lines, for half width 1: points, whether the line is closed, and line style.
 _ANGULAR: dict[str, tuple[Any, bool, Callable[[str], Pen]]] = {
     "ground": ([[(0, 0), (1, 1.7), (-1, 1.7)]], True, lambda line: Pen(fill=line)),
     "cross": ([[(-1, 0), (1, 0)], [(0, -1), (0, 1)]], False, lambda line: Pen(line, _THIN)),

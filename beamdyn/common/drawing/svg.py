@@ -1,4 +1,4 @@
-"""Drawings as SVG, without scripts; their colours follow the reader's preference for light or dark."""
+"""Write drawings as SVG without scripts; colours follow the reader's choice of a light or dark theme."""
 
 from __future__ import annotations
 
@@ -17,33 +17,33 @@ _DARK = "@media (prefers-color-scheme: dark)"
 
 
 def svg_of(rows: Rows, paper: Paper | None = None) -> str:
-    """Return drawings as the text of an SVG file, with colours for the reader's preference, light or dark.
+    """Return drawings as the text of an SVG file; colours follow the reader's light or dark theme.
 
     Parameters
     ----------
     rows : sequence of sequences of Drawing
-        Rows of drawings that stand beside one another.
+        Rows of drawings; those of a row are side by side.
     paper : Paper, optional
-        Size of the picture; follows from the drawings if not given.
+        Size of the picture; if not given, it is chosen from the proportions of the drawings.
 
     Returns
     -------
     str
         The text, which begins with an XML declaration.  Its root element has role, title and description, and
-        an id computed from the content; points that can be moved have ids, too.
+        an id computed from the content; points that the user can drag have ids, too.
     """
     paper = paper or Paper.of(rows)
     return as_file(element(lay_out(rows, paper), paper))
 
 
 def as_file(made: str) -> str:
-    """Return the text of an SVG file: an element as `element` makes it, with the colours that it needs."""
+    """Return the text of an SVG file from an SVG element, with the colours that the element uses."""
     style = f"<style>{page_colours('.machine')}{_DARK}{{{page_colours('.machine', dark=True)}}}</style>"
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{made.replace("<desc", f"{style}<desc", 1)}\n'
 
 
 def element(layouts: Sequence[Layout], paper: Paper) -> str:
-    """Write layouts as an SVG element, in the colours of the page: see `page_colours`."""
+    """Return layouts as an SVG element that uses the colours of the web page: see `page_colours`."""
     body = "".join(part for layout in layouts for part in _parts(layout))
     name = f"d{crc32(body.encode()):08x}"
     grips = "".join(_grip(name, *point, layouts[0].fit) for point in layouts[0].drawing.points.items())
@@ -60,14 +60,14 @@ def element(layouts: Sequence[Layout], paper: Paper) -> str:
 
 
 def _grip(name: str, point: str, at: Any, fit: Fit) -> str:
-    """Write an invisible circle around a movable point."""
+    """Return an invisible SVG circle around a point that the user can drag."""
     x, y = fit.to_paper(at)
     known = f"{name}-{'-'.join(point.split())}"
     return f'<circle id="{escape(known)}" class="grip" cx="{x:.4f}" cy="{y:.4f}" r="7" fill="none"/>'
 
 
 def page_colours(selector: str, dark: bool = False) -> str:
-    """Write style rules that set the colours of the drawings in the elements of a CSS selector."""
+    """Return CSS rules that set the colours of all drawings below a CSS selector."""
     values = [
         (role, (i.dark_line, i.dark_area) if dark else (i.line, i.area)) for role, i in strokes.INKS.items()
     ]
@@ -76,7 +76,7 @@ def page_colours(selector: str, dark: bool = False) -> str:
 
 
 def _paint(name: str) -> str:
-    """Write a colour as a CSS variable, with its value on light ground as default."""
+    """Return a colour as a CSS variable, with the colour for light background as default."""
     return f"var(--{name},{strokes.colour(name)})"
 
 
@@ -107,7 +107,7 @@ def _stroke(stroke: strokes.Stroke) -> str:
 
 
 def _pen(pen: strokes.Pen) -> str:
-    """Write the SVG attributes of a line, and of the area within it."""
+    """Return the SVG attributes of a line and of its filled area."""
     opacity = f' fill-opacity="{pen.opacity}"' if pen.fill and pen.opacity < 1 else ""
     dash = f' stroke-dasharray="{" ".join(f"{d:g}" for d in pen.dash)}"' if pen.dash else ""
     line = f' stroke="{_paint(pen.line)}" stroke-width="{pen.width:g}"{dash}' if pen.line else ""
@@ -119,7 +119,7 @@ def _pairs(points: np.ndarray) -> str:
 
 
 def _letters(line: strokes.Letters) -> str:
-    """Write a line of letters, stretched to its measured width whatever font the reader has."""
+    """Return a line of text as SVG, stretched to its computed width, as the reader's font may differ."""
     symbol, words = line.symbol, line.words
     gap = " " if symbol and words else ""
     width = (symbol_width(symbol) + line_width(f"{gap}{words}")) * line.size

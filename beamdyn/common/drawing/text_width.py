@@ -1,4 +1,4 @@
-"""Lettering: symbols in italics with Greek letters and subscripts, and widths of texts in DejaVu Sans."""
+"""Typesetting of symbols (italics, Greek letters, subscripts), and widths of texts in DejaVu Sans."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def typeset(symbol: str) -> str:
     Returns
     -------
     str
-        The letter, and behind an underscore the index, if there is one.
+        The letter, followed by an underscore and the index if there is one.
     """
     found = re.fullmatch(r"([^\W\d_]+)_?(\w*)", symbol)
     if found is None:
@@ -43,15 +43,15 @@ def _html(symbol: str) -> str:
 
 
 FAMILY = "'DejaVu Sans', Verdana, sans-serif"
-LINE_HEIGHT = 1.22  # height of a line over the size of its letters
-SUBSCRIPT = 0.7  # size of a subscript over that of the letters
-_EM = 2048  # number of the font's units of length in the size of its letters
+LINE_HEIGHT = 1.22  # height of a line of text, as a multiple of the font size
+SUBSCRIPT = 0.7  # size of a subscript, as a fraction of the font size
+_EM = 2048  # length units of the font per em (the font size)
 
 
 @cache
 def _font() -> Any:
-    """Load the font at the size at which lengths are in its own units."""
-    from matplotlib import get_data_path  # imported here, because it is slow to import
+    """Load the font at such a size that widths are in the font's own length unit."""
+    from matplotlib import get_data_path  # imported here, because matplotlib is slow to import
     from matplotlib.ft2font import FT2Font
 
     font = FT2Font(f"{get_data_path()}/fonts/ttf/DejaVuSans.ttf")
@@ -61,34 +61,34 @@ def _font() -> Any:
 
 @cache
 def _letter_width(letter: str) -> float:
-    """Return the width of a letter over its size; 1 for a letter that the font lacks."""
+    """Return the width of a letter as a fraction of the font size; 1 for a letter that the font lacks."""
     known = _font().get_char_index(ord(letter))
     return _font().load_char(ord(letter)).linearHoriAdvance / 65536 / _EM if known else 1.0
 
 
 @lru_cache(maxsize=4096)
 def line_width(text: str) -> float:
-    """Compute the width of a line over the size of its letters, without kerning."""
+    """Compute the width of a line of text as a multiple of the font size, without kerning."""
     return sum(map(_letter_width, text))
 
 
 def symbol_width(symbol: str) -> float:
-    """Compute the width of a symbol such as "N_1", whose part behind the underscore is a subscript."""
+    """Compute the width of a symbol such as "N_1"; the part after the underscore is a subscript."""
     letter, _, index = symbol.partition("_")
     return line_width(letter) + SUBSCRIPT * line_width(index)
 
 
 def text_size(text: str, size: float, symbol: str = "") -> tuple[float, float]:
-    """Compute width and height of a text of one or more lines, with a symbol before the first.
+    """Compute width and height of a text of one or more lines, with a symbol before the first line.
 
     Parameters
     ----------
     text : str
         The text.
     size : float
-        Size of its letters [pt].
+        Font size [pt].
     symbol : str
-        Symbol written before the words.
+        Symbol written before the text.
 
     Returns
     -------
@@ -109,9 +109,9 @@ def wrapped(text: str, width: float, size: float) -> list[str]:
     text : str
         The text, of one or more lines.
     width : float
-        Room for a line [pt].
+        Largest width of a line [pt].
     size : float
-        Size of the letters [pt].
+        Font size [pt].
     """
     lines: list[str] = []
     for given in text.split("\n"):
@@ -127,7 +127,7 @@ def wrapped(text: str, width: float, size: float) -> list[str]:
 
 
 def shortened(text: str, width: float, size: float) -> str:
-    """Cut a text with dots at its end if it is wider than a width [pt], in letters of a size [pt]."""
+    """Cut a text that is wider than `width` [pt] at a font size [pt], and end it with dots."""
     if size * line_width(text) <= width:
         return text
     dots = line_width("…")

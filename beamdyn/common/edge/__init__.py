@@ -1,1 +1,1 @@
-"""Parts shared by files, commands and screens: units, descriptions of inputs, tables, reports, exit codes."""
+"""Modules shared by files, commands and forms: units, descriptions of inputs, tables, reports, exit codes."""

@@ -1,6 +1,6 @@
-"""Options that several commands share: files that they write, and inputs that are varied or uncertain.
+"""Options that several commands share: output files, and inputs that are varied or have a tolerance.
 
-Files are tried before anything is computed.
+Each output file is checked before anything is computed.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 Flag = Annotated[bool, Parameter(negative="")]
 
-_TABLES = (".csv", ".tsv", ".txt", "")  # suffixes of tables; a name without a suffix may be a table
+_TABLES = (".csv", ".tsv", ".txt", "")  # suffixes of table files; "" for a file name without suffix
 _SUFFIXES = {
     "json": (".json", ".txt", ""),
     "csv": _TABLES,
@@ -43,7 +43,7 @@ _SUFFIXES = {
 
 
 class Files:
-    """Files to write: base of the options that commands of all kinds share."""
+    """Output files: base class of the options that commands of all kinds share."""
 
     plot: Path | None = None
     json: Path | None = None
@@ -53,11 +53,11 @@ class Files:
 
     @property
     def draws(self) -> bool:
-        """Whether a picture is wanted."""
+        """Return whether the options request a picture."""
         return self.plot is not None or self.report is not None
 
     def check(self, *inputs: str | Path | None, **more: Path | None) -> None:
-        """Refuse, before anything is computed, a file that cannot be written or would destroy another.
+        """Raise an error, before anything is computed, if a file cannot be written or would replace an input.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class Outputs(Files):
 @Parameter(name="*")
 @dataclass(frozen=True)
 class AnswerFiles(Files):
-    """Files to write of an answer that is one number or a list in words.
+    """Output files for a result that is one number, or a list of words.
 
     Parameters
     ----------
@@ -148,18 +148,18 @@ def write(
     draw: Callable[[], Figure] | None = None,
     report: Report | None = None,
 ) -> None:
-    """Write the requested files.
+    """Write the result into the files that the options request.
 
     Parameters
     ----------
     result : Result
-        The result, for the JSON file.
+        Result of the command, for the JSON file.
     outputs : Outputs
         The files, which have been checked.
     rows : iterable of sequence
-        Rows of the CSV file, heads first.
+        Rows of the CSV file; the first row holds the column headings.
     draw : callable, optional
-        Makes the picture.
+        Draws the picture, and returns it.
     report : Report, optional
         Contents of the HTML report.
     """
@@ -174,15 +174,15 @@ def write(
 
 
 def write_table(path: Path, rows: Iterable[Sequence[object]]) -> None:
-    """Write rows as text, separated by commas, or by tabs in a file named .tsv."""
-    # Imported here, since it loads numpy, which help does without.
+    """Write rows into a text file, separated by commas, or by tabs if the file's suffix is .tsv."""
+    # Imported here, since the import loads numpy, which is not needed to show help.
     from beamdyn.common.edge.rendering import csv_text
 
     write_text(path, csv_text(rows, "\t" if path.suffix.lower() == ".tsv" else ","))
 
 
 def check_folder(option: str, folder: Path) -> None:
-    """Refuse, before anything is computed, a folder that cannot be made or written in."""
+    """Raise an error, before anything is computed, if a folder cannot be made or written into."""
     there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
     if not there.is_dir():
         raise ValueError(f"--{option} = {folder}: {there} is a file; give a folder")
@@ -193,15 +193,15 @@ def check_folder(option: str, folder: Path) -> None:
 
 
 def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
-    """Return a function that makes a figure with what `draw` draws on axes."""
+    """Return a function that makes a figure, and calls `draw` with the axes of this figure."""
     return partial(figure_of, draw)
 
 
 def _named_by(scene: Path) -> list[Path]:
-    """Return the files of stations or records that a scene file names; empty for other files."""
+    """Return the CSV files of cross-sections or recorded motions that a scene file names; else none."""
     try:
         tables = tomllib.loads(scene.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError, RecursionError):  # the error is reported when the file is read
+    except (OSError, ValueError, RecursionError):  # the error is reported later, on reading
         return []
     named = []
     for *path, key in (("beam", "stations"), ("motion", "file"), ("motion", "rotation", "file")):
@@ -219,14 +219,14 @@ _MOST_WORKERS = 128
 
 
 def folder(_: object, tokens: Sequence[Token]) -> Path:
-    """Convert the name of a folder; refuse an empty one, which would mean the current folder."""
+    """Convert the name of a folder to a path; refuse an empty name, which would mean the current folder."""
     if not tokens[0].value.strip():
         raise ValueError("the name is empty; give a folder, or leave the option out.")
     return Path(tokens[0].value)
 
 
 Folder = Annotated[Path | None, Parameter(converter=folder)]
-SomeFolder = Annotated[Path, Parameter(converter=folder)]  # a folder that has a default
+SomeFolder = Annotated[Path, Parameter(converter=folder)]  # a folder option that has a default folder
 
 
 def _check_workers(_: object, value: object) -> None:
@@ -263,24 +263,24 @@ class VaryOptions:
 
     @property
     def combine(self) -> Literal["product", "zip"]:
-        """The way in which inputs are combined: each with each, or taken together."""
+        """Return "product" if inputs are combined each with each, "zip" if taken together."""
         return "zip" if self.together else "product"
 
     @property
     def options(self) -> dict[str, object]:
-        """Options that are not at their defaults, for the head of a report."""
+        """Return the options that differ from their defaults, for the heading of a report."""
         given: dict[str, object] = {"vary": self.vary or None, "store": self.store}
         given["workers"] = self.workers if self.workers > 1 else None
         return given | {"together": True if self.together else None}
 
     def check(self) -> None:
-        """Refuse options that have no effect unless an input is varied."""
+        """Raise an error for options that have no effect unless an input is varied."""
         for name in ("together", "workers", "store"):
             if not self.vary and getattr(self, name) != getattr(NOTHING_VARIED, name):
                 raise ValueError(f"--{name} goes with {OPTION}: there is one design only")
 
     def runner(self, kind: str, versions: tuple[str, ...], progress: Callable[[int, int], Any]) -> TaskRunner:
-        """Make the runner of the designs' tasks; `kind` and `versions` are as for `TaskRunner`."""
+        """Return the object that computes all designs in processes, and stores results; see `TaskRunner`."""
         from beamdyn.common.parallel.tasks import TaskRunner
 
         return TaskRunner(self.workers, None, self.store, kind, versions, progress)
@@ -293,7 +293,7 @@ NOTHING_VARIED = VaryOptions()
 
 
 def _whole(_: object, tokens: Sequence[Token]) -> int:
-    """Read a whole number; cyclopts alone would cut 2.5 down to 2."""
+    """Read a whole number; the option parser cyclopts would silently cut 2.5 down to 2."""
     text = tokens[0].value.strip()
     if not (text.isascii() and text.isdecimal()):
         raise ValueError(f'"{text}" is not a whole number of 0 or more.')
@@ -325,13 +325,13 @@ class SpreadOptions:
 
     @property
     def options(self) -> dict[str, object]:
-        """Options that are not at their defaults, for the head of a report."""
+        """Return the options that differ from their defaults, for the heading of a report."""
         given: dict[str, object] = {"spread": self.spread or None}
         given["samples"] = self.samples if self.samples != DEFAULT_SAMPLES else None
         return given | {"seed": self.seed or None}
 
     def check(self, varying: VaryOptions) -> None:
-        """Refuse options that do not go with each other, or with the inputs that are varied."""
+        """Raise an error for options that contradict each other, or inputs both varied and with tolerance."""
         for name in ("samples", "seed"):
             if not self.spread and getattr(self, name) != getattr(NO_SPREAD, name):
                 raise ValueError(f"--{name} goes with {SPREAD}: no random designs are drawn without it")
@@ -341,7 +341,7 @@ class SpreadOptions:
         if both:
             name = min(both)
             raise ValueError(
-                f"{name} is given to {OPTION} and to {SPREAD}: an input is varied, or has a spread"
+                f"{name} is given to {OPTION} and to {SPREAD}: an input is varied, or has a tolerance"
             )
         if varying.vary or varying.together:
             given = OPTION if varying.vary else "--together"

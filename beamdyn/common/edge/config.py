@@ -1,7 +1,7 @@
-"""Reading of TOML files with units into objects of the core, which takes SI floats.
+"""Reading of TOML files with units into objects of the package, whose numbers are floats in SI units.
 
-All mistakes of a file are reported in one message.  Tables of files are made from classes of the core, so
-that no input is described twice.
+All mistakes of a file are reported in one message.  The keys that a table of a file may have follow from the
+fields of a dataclass of the package, so that no input is described twice.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class ConfigError(ValueError):
     Parameters
     ----------
     source : str
-        Name of the file, or of another origin of the text.
+        Name of the file, or another description of where the text is from.
     mistakes : sequence of str
         One sentence each: the key's path, the value, what is wrong and the remedy.
     paths : sequence of str
@@ -87,24 +87,24 @@ class ConfigError(ValueError):
 
 
 class MissingValue(InvalidValue):
-    """Raised for a value that must be given and is not; the message names field and bound."""
+    """Raised for a missing value that is required; the message names the field and the allowed range."""
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """Return the message, each part of it worded by `word`."""
+        """Return the message; the function `word` words each of its parts for Python, files or forms."""
         return f"{self.field}: missing; {worded(self.bound, word)}"
 
 
 class CoreSection(Section):
-    """A table of a file from which an object of the package is made; what that refuses is a mistake in it."""
+    """A table of a file that describes an object of the package; errors of the object name the table."""
 
     @cached_property
     def core(self) -> Any:
-        """Make the core object."""
+        """Make the object of the package that the table describes."""
         raise NotImplementedError
 
     @model_validator(mode="after")
     def _core_accepts(self) -> CoreSection:
-        with np.errstate(all="ignore"):  # numpy's warnings would not help a person who mistyped an exponent
+        with np.errstate(all="ignore"):  # numpy's warnings do not help a user who mistyped an exponent
             self.core  # noqa: B018
         return self
 
@@ -121,13 +121,13 @@ def read(path: str | PathLike[str]) -> str:
     """
     file = as_path("path", path, "a TOML file")
     try:
-        # With or without the byte order mark that some editors prepend.
+        # Some editors put a byte order mark at the start of the text; it is skipped.
         return file.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise ConfigError(str(path), ["there is no such file; check the name and the folder"]) from None
     except OSError as error:
         raise ConfigError(str(path), [f"it cannot be read ({error.strerror}); give a TOML file"]) from None
-    except ValueError:  # the content is not UTF-8, or the name is none that a file can have
+    except ValueError:  # the content is not UTF-8, or no file can have this name
         raise ConfigError(str(path), ["it is not text in UTF-8; give a TOML file"]) from None
 
 
@@ -163,9 +163,9 @@ def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model
     model : type of BaseModel
         The model.
     data : mapping
-        Tables, as tomllib reads them.
+        Tables of the file, as tomllib returns them.
     source : str
-        Name of their origin, for messages.
+        Name of the file, for messages.
 
     Raises
     ------
@@ -180,7 +180,7 @@ def validated(model: type[Model], data: Mapping[str, Any], source: str) -> Model
 
 
 _MOST_KEYS = 24  # largest number of known keys that a message lists
-_LONGEST_KEY = 60  # length of the longest key that a message shows whole
+_LONGEST_KEY = 60  # length of the longest key that a message shows in full
 _WORDS = {
     "bool_type": "give true or false",
     "dict_type": "give a table",
@@ -190,7 +190,7 @@ _WORDS = {
 
 
 def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
-    """Write one mistake as a sentence, and return the path of the input that it is about."""
+    """Return the sentence about one mistake, and the path of the input with the mistake."""
     loc, context, given = error["loc"], error.get("ctx", {}), error["input"]
     place, path = _path(loc), _path(loc, indices=False)
     match error["type"]:
@@ -223,7 +223,7 @@ def _mistake(model: type[BaseModel], error: ErrorDetails) -> tuple[str, str]:
 
 
 def _missing_table(path: str, known: Sequence[Input]) -> str:
-    """Say which table to give, with its required keys if it is of one kind; "" if no table is missing."""
+    """Name the missing table with its required keys; return "" if no table is missing."""
     keys = [each for each in known if each.path.startswith(f"{path}.")]
     needed = [each.name for each in keys if each.required and each.path == f"{path}.{each.name}"]
     of_one_kind = needed and len({each.section for each in keys}) == 1
@@ -232,7 +232,7 @@ def _missing_table(path: str, known: Sequence[Input]) -> str:
 
 
 def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: Any) -> tuple[str, str]:
-    """Write a refusal by the core with the file's keys and value; return sentence and path of the input."""
+    """Return the sentence on an invalid value, with key and value of the file, and the path of the input."""
     if isinstance(reason, InvalidInput) and not reason.field:
         return say(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
@@ -243,7 +243,7 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
 
 
 def _place_in(field: str, key: str) -> str:
-    """Return the path of an input, with the end of a core field's name that it lacks: ".values[1]"."""
+    """Return the path of an input, extended by the end of a longer field name, such as ".values[1]"."""
     parts = (field.removeprefix(name) for name in wholes_of(field) if f".{key}".endswith(f".{name}"))
     if (part := next(parts, None)) is not None:
         return key + part
@@ -251,7 +251,7 @@ def _place_in(field: str, key: str) -> str:
 
 
 def _found(given: Any, place: str) -> Any:
-    """Return the entry at a place of a table, such as "width.values[1]"; None if there is nothing."""
+    """Return the entry of nested tables at a path such as "width.values[1]"; None if there is none."""
     for key, index in re.findall(r"([^.\[\]]+)|\[(\d+)\]", place):
         try:
             given = given[int(index) if index else key]
@@ -262,12 +262,12 @@ def _found(given: Any, place: str) -> Any:
 
 @contextmanager
 def in_words_of_file(model: type[BaseModel], tables: Mapping[str, Any], source: str) -> Iterator[None]:
-    """Reword refusals by the core of values that a file gives: with the key, and the value as written.
+    """In this context, reword errors about a file's values: with the key, and the value as written.
 
     Raises
     ------
     ConfigError
-        In place of an `InvalidValue` about one of the inputs of a model; others are raised as they are.
+        In place of an `InvalidValue` about an input of the model; other errors are raised unchanged.
     """
     try:
         yield
@@ -278,14 +278,14 @@ def in_words_of_file(model: type[BaseModel], tables: Mapping[str, Any], source: 
 
 
 def said_of(refusal: InvalidValue, place: str, given: Any) -> str:
-    """Write a refusal by the core, with the place in a file and the value as the file has it."""
+    """Return the message on an invalid value, with its path in the file and the value as written there."""
     kind = type(refusal) if isinstance(refusal, InvalidInput | MissingValue) else InvalidInput
     said: dict[str, Any] = vars(refusal if given is not None else in_millimetres(refusal)) | {"field": place}
     return say(_as_written(kind(**said), given))
 
 
 def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
-    """Return the refusal with the value as the file writes it, and the limit in the same unit."""
+    """Return the error with the value as written in the file, and with the limit in the same unit."""
     value, unit = refusal.value, refusal.unit
     if isinstance(given, list) and isinstance(value, tuple | list):
         return replace(refusal, value=given)
@@ -293,23 +293,23 @@ def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
         return refusal
     try:
         if not math.isclose(abs(quantity(given, unit)), abs(value), rel_tol=1e-9):
-            return refusal  # the refusal is about another number, which was computed from the one in the file
-    except InvalidInput:  # other units, such as a length that stands for a fraction
+            return refusal  # the error is about a number computed from the one in the file
+    except InvalidInput:  # the units differ, for example where a file gives a length in place of a fraction
         return replace(refusal, value=given)
     return replace(refusal.in_unit(*unit_as_written(given, unit)), value=given)
 
 
 def _path(loc: Iterable[int | str], indices: bool = True) -> str:
-    """Return a TOML path; pydantic's tags of alternatives, in angle brackets, are left out."""
+    """Return the path of a key in TOML, without the labels that pydantic adds in angle brackets."""
     keys = (part for part in loc if not str(part).startswith("<"))
     parts = [f".{key}" if isinstance(key, str) else f"[{key}]" * indices for key in keys]
     return "".join(parts).removeprefix(".")
 
 
 def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Describe an unknown key: where it belongs, or the nearest known key, or all known ones."""
+    """Describe an unknown key: name its table, the most similar known key, or all known keys."""
     table, key, known = _path(loc[:-1], indices=False), str(loc[-1]), describe(model)
-    prefix = table and f"{table}."  # empty at the top level, so that every key begins with it
+    prefix = table and f"{table}."  # no table name at the top level of the file
     inside = [i.path.removeprefix(prefix).partition(".")[0] for i in known if i.path.startswith(prefix)]
     names = [*dict.fromkeys(inside)] or ["polynomial", "stations", "values"]
     kinds = [show(i.choices[0]) for i in known if i.path == f"{table}.kind" and key in i.section.model_fields]
@@ -327,18 +327,18 @@ def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
     return f"{f'{_path(loc[:-1])}.{shown}'.removeprefix('.')}: unknown key; {remedy}"
 
 
-# Tables that are made from classes of the core -------------------------------------------------------
+# Tables that follow from dataclasses of the package -------------------------------------------------
 
 
 class MadeSection(CoreSection):
-    """A table made from a core class; its keys follow from the arguments of the class."""
+    """A table that describes an object of the package; its keys follow from the arguments of the class."""
 
     made: ClassVar[type]
-    key_of: ClassVar[Mapping[str, str]]  # keys by argument; "tip[0]" and "tip[1]" are those of a pair
+    key_of: ClassVar[Mapping[str, str]]  # key of each argument; "tip[0]" and "tip[1]" for a pair
 
     @property
     def given(self) -> dict[str, Any]:
-        """Return the arguments of the core class."""
+        """Return the values of the table as arguments for the class of the package."""
         given: dict[str, Any] = {}
         for name, key in self.key_of.items():
             value, (argument, pair, _) = getattr(self, key), name.partition("[")
@@ -349,7 +349,7 @@ class MadeSection(CoreSection):
 
     @cached_property
     def core(self) -> Any:
-        """Make the core object."""
+        """Make the object of the package that the table describes."""
         with of_file(self.key_of):
             return self.made(**self.given)
 
@@ -360,19 +360,19 @@ Base = TypeVar("Base", bound=MadeSection)
 def section_of(
     made: type, kind: str = "", tables: Mapping[type, Any] | None = None, base: type[Base] = MadeSection
 ) -> type[Base]:
-    """Make the class of a table of a file, from a core class whose objects the table describes.
+    """Make the pydantic class of a file's table from a dataclass whose objects the table describes.
 
     Parameters
     ----------
     made : type
         A dataclass; its fields are annotated with `Described`, or are dataclasses of such fields.
     kind : str
-        Value of the key ``kind`` that tells the table from its alternatives; there is none if empty.
+        Value of the key ``kind``, by which alternatives of a table differ; if empty, there is no such key.
     tables : mapping, optional
-        How to read fields where that does not follow from their annotation: by the class of a field, an
-        annotation for pydantic; by the class of a description, the class of the `Quantity` to use.
+        How to read fields whose annotation does not suffice: an annotation for pydantic, for each class of a
+        field; a class derived from `Quantity`, for each class of a description.
     base : type of MadeSection
-        Base class, which may have further keys.
+        Base class of the new class; its fields are keys, too.
 
     Returns
     -------
@@ -389,19 +389,19 @@ def section_of(
 def fields_of(
     made: Callable[..., Any], tables: Mapping[type, Any] | None = None, leave_out: Collection[str] = ()
 ) -> dict[str, Any]:
-    """Return annotations and defaults, by key, for the table of a core class or function.
+    """Return the keys of a file's table, with annotations and defaults, from a dataclass or function.
 
     Parameters
     ----------
     made, tables
         As for `section_of`.
     leave_out : collection of str
-        Arguments that have no key.
+        Names of arguments that files cannot give.
 
     Raises
     ------
     TypeError
-        If an argument is not described.
+        If an argument has no `Described` in its annotation.
     """
     defaults = signature(made).parameters
     fields: dict[str, Any] = {}
@@ -417,7 +417,7 @@ def fields_of(
 
 
 def one_of_kinds(sections: Mapping[str, type[MadeSection]]) -> Any:
-    """Return the annotation of a table with alternatives, told apart by ``kind``; by default the first."""
+    """Return the annotation of a table whose alternatives differ in ``kind``; the first is the default."""
     usual, *_ = sections
     tagged = (Annotated[section, Tag(f"<{kind}>")] for kind, section in sections.items())
 
@@ -431,7 +431,7 @@ def one_of_kinds(sections: Mapping[str, type[MadeSection]]) -> Any:
 
 
 def _arguments(made: Callable[..., Any]) -> dict[str, Any]:
-    """Return annotations by argument; a pair whose numbers are described apart has two, such as "tip[0]"."""
+    """Return the annotation of each argument; "tip[0]" and "tip[1]" for a pair with two descriptions."""
     hints, arguments = get_type_hints(made, include_extras=True), {}
     for name in signature(made).parameters:
         parts = get_args(hints.get(name))
@@ -443,13 +443,13 @@ def _arguments(made: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _key(name: str, hint: Any) -> str:
-    """Return the key of an argument: "tip_x" and "tip_y" for a pair "tip", unless described otherwise."""
+    """Return the key of an argument: as described, or its name; "tip_x" and "tip_y" for a pair "tip"."""
     described = description(hint)
     return described.key if described and described.key else name.replace("[0]", "_x").replace("[1]", "_y")
 
 
 def _refuse_truth(given: object) -> object:
-    """Refuse a truth value, which would otherwise pass for the number that equals it."""
+    """Refuse True and False, which pydantic would otherwise read as the numbers 1 and 0."""
     if isinstance(given, bool):
         raise InvalidInput("", given, "give a number")
     return given
@@ -460,7 +460,7 @@ def _is_described(hint: Any) -> bool:
 
 
 def _annotation(hint: Any, tables: Mapping[type, Any]) -> Any:
-    """Return the annotation for pydantic that corresponds to an annotation of the core's classes."""
+    """Return the annotation for pydantic that corresponds to the annotation of a dataclass field."""
     kinds, described = kinds_of(hint), description(hint)
     kind, parts = kinds[0], get_args(kinds[0])
     read: Any

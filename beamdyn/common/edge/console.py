@@ -1,4 +1,4 @@
-"""What commands write to the console: tables that are never cut, and a line of progress."""
+"""Console output of commands: tables whose numbers are never cut, and a progress line."""
 
 from __future__ import annotations
 
@@ -34,24 +34,24 @@ if TYPE_CHECKING:
 
 SILENCE = 1.0  # computing time after which the progress line appears [s]
 
-# The progress line that is in use in this context; None if there is none.
+# The progress line that is shown in this context; None if there is none.
 _LINE: ContextVar[_ProgressLine | None] = ContextVar("line", default=None)
 
 
 class Pace:
-    """Estimate of the remaining time from steps in the last half of the elapsed time: steps may speed up."""
+    """Estimates the remaining time from the steps done in the last half of the elapsed time."""
 
     def __init__(self) -> None:
         self._times: list[float] = []
         self._counts: list[int] = []
 
     def note(self, now: float, done: int) -> None:
-        """Store how many steps are done at a time [s]."""
+        """Store the number of steps that are done at a time [s]."""
         self._times.append(now)
         self._counts.append(done)
 
     def left(self, now: float, total: int) -> float | None:
-        """Return the time [s] that the remaining steps take; None until a step has ended."""
+        """Return the estimated time [s] for the remaining steps; None before the first step is done."""
         if not self._times or self._counts[-1] == self._counts[0]:
             return None
         last, done = self._times[-1], self._counts[-1]
@@ -61,7 +61,7 @@ class Pace:
 
 
 class _ProgressLine:
-    """The progress line: the elapsed time, and a bar with the remaining time where steps are counted."""
+    """A line with the elapsed time and, if steps are counted, a progress bar and the remaining time."""
 
     def __init__(self, what: str) -> None:
         self._what, self._began = what, time.monotonic()
@@ -69,13 +69,13 @@ class _ProgressLine:
         self._lock, self._timer, self._shown = RLock(), None, None
 
     def begin(self) -> None:
-        """Show the line after a second, unless it is hidden before."""
+        """Show the line after one second, unless `hide` is called before."""
         self._timer = Timer(SILENCE, self._show)
         self._timer.daemon = True
         self._timer.start()
 
     def hide(self) -> None:
-        """Remove the line from the screen; keep the counts."""
+        """Remove the progress line from the screen; keep the counts of steps."""
         with self._lock:
             timer, self._timer = self._timer, None
             shown, self._shown = self._shown, None
@@ -85,7 +85,7 @@ class _ProgressLine:
             shown.stop()
 
     def count(self, done: int, total: int) -> None:
-        """Store the number of steps that are done, and of all."""
+        """Store the number of steps that are done, and the total number."""
         with self._lock:
             self._done, self._total = done, total
             self._pace.note(time.monotonic(), done)
@@ -94,7 +94,7 @@ class _ProgressLine:
 
     def _show(self) -> None:
         with self._lock:
-            if self._timer is None:  # the line was hidden while this waited
+            if self._timer is None:  # the line was hidden while this thread waited
                 return
             self._shown = _bar(self._pace)
             self._shown.add_task(self._what, total=None, count="")
@@ -111,7 +111,7 @@ def _bar(pace: Pace) -> Progress:
     from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn, TimeElapsedColumn
 
     class Remaining(ProgressColumn):
-        """A column with the remaining time, where steps are counted."""
+        """Column of the progress line that shows the remaining time, if steps are counted."""
 
         max_refresh = 0.5
 
@@ -124,7 +124,7 @@ def _bar(pace: Pace) -> Progress:
 
     counted = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[count]}")
     screen = Console(stderr=True, force_terminal=True)
-    # Without this, output redirected to a file would be printed on the terminal.
+    # rich must not redirect standard output, or it would print redirected output on the terminal.
     return Progress(
         *counted, TimeElapsedColumn(), Remaining(),
         console=screen, transient=True, redirect_stdout=False, redirect_stderr=False,
@@ -133,12 +133,12 @@ def _bar(pace: Pace) -> Progress:
 
 @contextmanager
 def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
-    """Show progress during the work in this context, if standard error is a terminal.
+    """Show a progress line during the work in this context, if standard error is a terminal.
 
     Parameters
     ----------
     what : str
-        Name of the work, such as "designs". A line within another one takes its place.
+        Name of the work, such as "designs". A progress line that is started within another one replaces it.
 
     Yields
     ------
@@ -161,7 +161,7 @@ def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Hide the progress line in this context, so that something can be printed; it returns after a second."""
+    """Hide the progress line in this context, to print text; it is shown again after a second."""
     line = _LINE.get()
     if line is None:
         yield
@@ -175,12 +175,12 @@ def quiet() -> Iterator[None]:
 
 # Tables ----------------------------------------------------------------------------------------------
 
-_BETWEEN, _EDGES = 3, 1  # characters that a column has beside its text, and a table beside its columns
+_BETWEEN, _EDGES = 3, 1  # additional characters per column (spaces and rules), and per table
 _WORDS = 16  # least width of a column of words, in characters
 _PIPE_WIDTH = 120  # width of tables that go to a file or another program
 
 
-# ASCII text for characters of tables that a console without Unicode may lack.
+# ASCII replacements for characters of tables that a console without Unicode cannot show.
 _SPELLED = {
     "ω": "omega", "ζ": "zeta", "η": "eta", "Λ": "Lambda", "Ω": "ohm", "µ": "u", "μ": "u", "ᵀ": "^T",
     "²": "^2", "³": "^3", "±": "+-", "°": " deg", "·": "*", "×": "x", "─": "-",
@@ -188,7 +188,7 @@ _SPELLED = {
 
 
 def spell(text: str, encoding: str) -> str:
-    """Replace characters that an encoding lacks: "omega^2" where it has no Greek letters."""
+    """Replace characters that an encoding lacks, for example the Greek letter omega by "omega"."""
 
     def spelled(character: str) -> str:
         if character.encode(encoding, "ignore"):
@@ -204,7 +204,7 @@ def spell(text: str, encoding: str) -> str:
 
 
 def spell_output(stream: TextIOWrapper) -> None:
-    """Set a stream to replace the characters that its encoding lacks."""
+    """Make a stream replace the characters that its encoding lacks."""
 
     def replaced(error: UnicodeError) -> tuple[str, int]:
         assert isinstance(error, UnicodeEncodeError)
@@ -215,17 +215,17 @@ def spell_output(stream: TextIOWrapper) -> None:
 
 
 class Terminal(Console):
-    """A console on standard output that lays columns out for the characters that it can show.
+    """A console for standard output whose column widths allow for characters that the terminal cannot show.
 
     If the reader of a pipe closes it, as `head` does, the command goes on without output.
     """
 
     def render_str(self, text: str, **options: Any) -> Text:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """Convert a string to rich's text, with characters that the console can show."""
+        """Convert a string to rich's text; characters that the console cannot show are replaced."""
         return super().render_str(spell(text, self.encoding), **options)
 
     def print(self, *objects: Any, **options: Any) -> None:
-        """Print objects; raise an OSError that names the standard output if that fails."""
+        """Print objects; raise an OSError that names the standard output if it cannot be written."""
         try:
             with quiet():
                 super().print(*objects, **options)
@@ -233,7 +233,7 @@ class Terminal(Console):
             raise OSError(f"the standard output cannot be written ({error.strerror or error})") from None
 
     def on_broken_pipe(self) -> None:
-        """Discard further output, and let the command finish."""
+        """Stop writing when the reader of a pipe has closed it, and let the command finish."""
         self.quiet = True
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
@@ -241,7 +241,7 @@ class Terminal(Console):
 
 
 def console() -> Terminal:
-    """Make a console on standard output, without markup."""
+    """Make a console for standard output that does not interpret markup in texts."""
     width = None if sys.stdout.isatty() else _PIPE_WIDTH
     return Terminal(width=width, markup=False, highlight=False, emoji=False)
 
@@ -256,18 +256,18 @@ def show(parts: Iterable[RenderableType]) -> None:
 class FittedTable(Table):
     """A table whose numbers are never cut.
 
-    Where it is wider than the screen its headings are broken between words; where that does not suffice its
-    columns stand in several tables below each other, each with the key columns, or with the number of the row
-    where there is no room for these.
+    If the table is wider than the screen, headings are broken between words.  If it is still too wide, the
+    columns are split into several tables below each other.  Each of them repeats the key columns, or shows
+    the row number if there is no room for the key columns.
 
     Parameters
     ----------
     columns : sequence of str
         Headings.
     left : sequence of int
-        Columns of words, which are flush left and may be wrapped; numbers are flush right.
+        Indices of columns with words, which are left-aligned and may be wrapped; numbers are right-aligned.
     keys : int
-        Number of first columns that identify a row.
+        Number of key columns: the first columns, which identify a row.
     """
 
     def __init__(self, columns: Sequence[str], left: Sequence[int], keys: int = 1) -> None:
@@ -277,7 +277,7 @@ class FittedTable(Table):
             self.add_column(heading, justify="left" if i in left else "right", no_wrap=i not in left)
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the table, or the parts into which it is split if it is too wide."""
+        """Yield the table, or the several tables into which it is split if it is too wide for the screen."""
         room, places = options.max_width, [*range(len(self.columns))]
         if _total([self._width(i) for i in places]) <= room:
             yield from super().__rich_console__(console, options)
@@ -298,7 +298,7 @@ class FittedTable(Table):
             yield from self._part([*keys, *group], needed, numbered).__rich_console__(console, options)
 
     def _width(self, i: int, broken: bool = False) -> int:
-        """Return the least width of a column, in characters; with `broken` its heading may be broken."""
+        """Return the least width of a column in characters; if `broken`, the heading may be wrapped."""
         texts = [cell.plain if isinstance(cell, Text) else str(cell) for cell in self.columns[i].cells]
         heading = str(self.columns[i].header)
         lines = [line for text in texts for line in text.split("\n")]
@@ -306,14 +306,14 @@ class FittedTable(Table):
         return whole if self.columns[i].no_wrap else min(whole, _WORDS)
 
     def _part(self, places: Sequence[int], needed: Sequence[int], numbered: bool) -> Table:
-        """Make a table of some columns, with the numbers of the rows in front if `numbered`."""
+        """Make a table from some of the columns, with row numbers in front if `numbered`."""
         made = Table(box=self.box, padding=self.padding)
         if numbered:
             made.add_column("", justify="right", no_wrap=True)
         for i in places:
             column = self.columns[i]
             heading = "\n".join(textwrap.wrap(str(column.header), needed[i]))
-            # Cells are cut only where not even one column has room.
+            # Cells are cut only if the screen is too narrow for a single column.
             overflow = "fold" if column.no_wrap else "ellipsis"
             made.add_column(heading, justify=column.justify, no_wrap=column.no_wrap, overflow=overflow)
         cells = [[*self.columns[i].cells] for i in places]
@@ -324,15 +324,15 @@ class FittedTable(Table):
 
 
 def _total(widths: Sequence[int]) -> int:
-    """Return the width of a table with columns of these widths."""
+    """Return the width of a table whose columns have these widths, in characters."""
     return sum(widths) + _BETWEEN * len(widths) + _EDGES
 
 
-BEYOND = "dim"  # style of digits that the error of a number does not support
+BEYOND = "dim"  # style of digits that are smaller than the number's error
 
 
 def set_apart(text: str, error: float) -> Text:
-    """Return a number's text, with the digits beyond an absolute error dimmed."""
+    """Return the text of a number; digits smaller than its absolute error are dimmed."""
     sure = count_sure(text, error)
     return Text.assemble(text[:sure], (text[sure:], BEYOND))
 
@@ -344,7 +344,7 @@ def table(
     left: Sequence[int] = (0,),
     keys: int = 1,
 ) -> Group:
-    """Make a table of text; where it is too wide for the screen, several below each other.
+    """Make a table of texts; it is split into several tables if it is too wide for the screen.
 
     Parameters
     ----------
@@ -355,7 +355,7 @@ def table(
     rows : iterable of sequences of str or Text
         Cells; an empty row draws a line.
     left : sequence of int
-        Columns that are flush left, such as words; numbers are flush right.
+        Indices of columns that are left-aligned, such as words; numbers are right-aligned.
     keys : int
         Number of first columns that identify a row.
 
@@ -374,10 +374,10 @@ def table(
 
 
 def table_of(columns: Columns, units: DisplayUnits, title: str = "", keys: int = 1) -> Group:
-    """Make a table of a result's columns in display units, with the sentences that go with them.
+    """Make a table from the columns of a result in display units, followed by the notes on these columns.
 
-    Words stand at the left, numbers at the right.  A `title` replaces that of the columns; the first `keys`
-    columns identify a row.
+    Words are left-aligned, numbers right-aligned.  A given `title` replaces the title of the columns.  The
+    first `keys` columns identify a row.
     """
     shown = [_for_people(column, units) for column in columns.columns if column.words is not None]
     left = [i for i, column in enumerate(shown) if isinstance(next(iter(column.values), None), str)]
@@ -392,7 +392,7 @@ def _for_people(column: Column, units: DisplayUnits) -> Column:
 
 
 def _cells(column: Column) -> Sequence[str | Text]:
-    """Return the cells of a column in a table: as given, or else formatted values."""
+    """Return the text of each cell of a column: the given text, or else the formatted value."""
     given = column.cells
     if given is None:
         return _values(column)
@@ -402,7 +402,7 @@ def _cells(column: Column) -> Sequence[str | Text]:
 
 
 def _values(column: Column) -> Sequence[str | Text]:
-    """Format the values of a column for a table."""
+    """Format the values of a column for a table, with the digits that their errors support."""
     form = column.form or (".6g" if column.error is None else supported)
     if isinstance(form, str):
         return [each if isinstance(each, str) else format(each, form) for each in column.plain]
@@ -412,7 +412,7 @@ def _values(column: Column) -> Sequence[str | Text]:
 
 
 def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
-    """Make a table of comparisons, with a line where the first two words of `Comparison.what` change."""
+    """Make a table of comparisons, with a rule where the first two words of `Comparison.what` change."""
     cells: list[list[str]] = []
     topics: list[list[str]] = []
     for row in rows:

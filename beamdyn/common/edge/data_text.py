@@ -1,7 +1,7 @@
-"""Text files of numbers: those that other programs write, with numbers as FORTRAN reads them, and CSV files.
+"""Reading of text files with numbers: input files of other programs (FORTRAN notation), and CSV files.
 
-A CSV file has a line of heads with units, such as "r [m], EI flap [N m2]".  Messages name the file, the line
-and what was expected there.
+A CSV file has a line of column headings with units, such as "r [m], EI flap [N m2]".  Error messages name the
+file, the line and what was expected there.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from beamdyn.common.results.files import as_path
 # FORTRAN reads 1.0D+03 and 1.0+03 as 1.0e+03.
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:(?:[eEdDqQ]|(?=[+-]))([+-]?\d+))?", re.ASCII)
 _WORD = re.compile(r"'[^']*'|\"[^\"]*\"|[^\s,]+")
-_MOST_BYTES = 20_000_000  # largest number of bytes of a file; an input deck has some ten thousand
+_MOST_BYTES = 20_000_000  # largest size of a file in bytes; typical input files have some 10,000 bytes
 # Encodings by the byte order mark at the start of a file.
 _ENCODINGS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 
@@ -40,34 +40,34 @@ class DataText:
     path : Path
         The file.
     lines : tuple of str
-        Its lines; the first is line 1.
+        Lines of the file; the first one is line 1.
     """
 
     path: Path
     lines: tuple[str, ...]
 
     def refusal(self, line: int, sentence: str) -> ConfigError:
-        """Return the error with a sentence about a line."""
+        """Return an error about a line: file, line number and sentence."""
         return ConfigError(str(self.path), [f"line {line}: {sentence}"])
 
     def lacking(self, sentence: str) -> ConfigError:
-        """Return the error with a sentence about something that the file lacks."""
+        """Return an error that the file ends without some required content."""
         return self.refusal(len(self.lines), f"the file ends here, {sentence}")
 
     def is_comment(self, line: int) -> bool:
-        """Whether a line is empty, or a comment that begins with # or !."""
+        """Return whether a line is empty, or a comment that begins with # or !."""
         plain = self.lines[line - 1].lstrip()
         return not plain or plain[0] in "#!"
 
     def words(self, line: int) -> list[str]:
-        """Split a line into words as FORTRAN does, at blanks, tabs and commas; quoted text stays together."""
+        """Split a line into words as FORTRAN does, at blanks, tabs and commas; quoted text is not split."""
         return _WORD.findall(self.lines[line - 1])
 
 
 def read_data(path: str | PathLike[str]) -> DataText:
     """Read a text file line by line.
 
-    Its comments may be in any encoding: what is not UTF-8 is read as Latin-1.
+    Comments may be in any encoding: a file that is not UTF-8 is read as Latin-1.
 
     Parameters
     ----------
@@ -91,20 +91,20 @@ def read_data(path: str | PathLike[str]) -> DataText:
         reason = getattr(error, "strerror", None) or error
         raise ConfigError(str(file), [f"it cannot be read ({reason}); give a text file"]) from None
     if len(content) > _MOST_BYTES:
-        raise ConfigError(str(file), ["it is longer than 20 MB; give a deck or a table"])
+        raise ConfigError(str(file), ["it is longer than 20 MB; give an input file or a table"])
     try:
         text = content.decode(_ENCODINGS.get(content[:2], "utf-8-sig"))
     except UnicodeDecodeError:
         text = content.decode("latin-1")
     if "\0" in text:
-        raise ConfigError(str(file), ["it is no text; give a deck or a table saved as text"])
+        raise ConfigError(str(file), ["it is no text; give an input file or a table saved as text"])
     if not text.strip():
-        raise ConfigError(str(file), ["the file is empty; give a deck or a table"])
+        raise ConfigError(str(file), ["the file is empty; give an input file or a table"])
     return DataText(file, tuple(text.splitlines()))
 
 
 def named_file(path: str | PathLike[str], key: str, name: str) -> Path:
-    """Return the path of a file that a key of another file names, relative to that file.
+    """Return the path of a file that is named in another file, relative to that other file.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def named_file(path: str | PathLike[str], key: str, name: str) -> Path:
 
 
 def to_number(word: str) -> float | None:
-    """Read a word as FORTRAN reads a number, such as 1.0D+03; None if it is not a number, or too large."""
+    """Convert a word such as 1.0D+03 to a float as FORTRAN does; None if it is no number, or too large."""
     match = _NUMBER.fullmatch(word)
     if match is None:
         return None
@@ -131,14 +131,14 @@ def to_number(word: str) -> float | None:
 
 
 def as_decimal(word: str) -> str:
-    """Rewrite a number with e before its exponent, where FORTRAN may write another letter or none."""
+    """Rewrite a number with the exponent letter e, where FORTRAN may write another letter or none."""
     match = _NUMBER.fullmatch(word)
     assert match is not None
     return match[1] + (f"e{match[2]}" if match[2] else "")
 
 
 def number_at(text: DataText, line: int, word: str, name: str) -> float:
-    """Return the number in a word; raise an error that says what was expected."""
+    """Convert a word in a line to a number; raise an error that names the expected quantity."""
     number, advice = to_number(word), ""
     if number is not None and abs(number) <= MOST:
         return number
@@ -155,25 +155,25 @@ def number_at(text: DataText, line: int, word: str, name: str) -> float:
 
 
 def quote(word: str) -> str:
-    """Quote a word in a message, shortened if it is long."""
+    """Put a word in quotation marks for a message, shortened if it is long."""
     return f"'{word if len(word) <= 40 else word[:37] + '...'}'"
 
 
-# Values followed by their names -------------------------------------------------------------------
+# Lines with a value followed by its name ----------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class NamedValue:
-    """A value with its name and line.
+    """A value with its name and line number in an input file.
 
     Parameters
     ----------
     name : str
-        Its name, as written.
+        Name of the value, as written.
     word : str
         The value, as written, without quotes.
     line : int
-        Its line.
+        Number of the line.
     """
 
     name: str
@@ -182,24 +182,24 @@ class NamedValue:
 
 
 def plain_name(name: str) -> str:
-    """Return a name in lower case without brackets, colons, underscores and blanks, which programs vary."""
+    """Return a name in lower case without brackets, colons, underscores and blanks, in which files differ."""
     return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
 def named_values(text: DataText, names: Collection[str]) -> dict[str, NamedValue]:
-    """Read lines such as ``0.48  BldFlDmp(1) - damping`` or ``1.75 hub_rad: hub radius``.
+    """Read values that are followed by their names, as in ``0.48  BldFlDmp(1) - damping``.
 
     Parameters
     ----------
     text : DataText
         The file.
     names : collection of str
-        The names looked for, as `plain_name` makes them.
+        The names to be found, as `plain_name` returns them.
 
     Returns
     -------
     dict
-        Values by plain name, for those names that the file has.
+        The values that the file has, by plain name.
 
     Raises
     ------
@@ -216,22 +216,22 @@ def named_values(text: DataText, names: Collection[str]) -> dict[str, NamedValue
                 there = f"{words[1].rstrip(':')} stands in line {found[key].line}, too"
                 raise text.refusal(line, f"{there}; expected each name once")
             found[key] = NamedValue(words[1].rstrip(":"), words[0].strip("'\""), line)
-        elif keys and keys[0] in names:  # either a line whose value is missing, or a comment
+        elif keys and keys[0] in names:  # either the value is missing, or the line is a comment
             bare.setdefault(keys[0], NamedValue(words[0].rstrip(":"), "", line))
     return bare | found
 
 
 def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapping[str, str]) -> None:
-    """Refuse a file that lacks some names, or their values.
+    """Raise an error if a file lacks some of the required names, or the values of these names.
 
     Parameters
     ----------
     text : DataText
         The file.
     found : mapping
-        Values that it has, by plain name.
+        Values of the file, by plain name.
     names : mapping
-        Names that it must have, as shown in messages, by plain name.
+        Required names as shown in messages, by plain name.
 
     Raises
     ------
@@ -243,22 +243,22 @@ def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapp
             raise text.refusal(found[key].line, f"expected a value before {found[key].name}, found none")
     if missing := [shown for key, shown in names.items() if key not in found]:
         some = ", ".join(missing[:4]) + (f" and {len(missing) - 4} more" if len(missing) > 4 else "")
-        raise text.lacking(f"without a line for {some}; expected a value and this name behind it")
+        raise text.lacking(f"without a line for {some}; expected a value followed by this name")
 
 
 def named_number(text: DataText, named: NamedValue) -> float:
-    """Return the number of a named value."""
+    """Convert the word of a named value to a float."""
     return number_at(text, named.line, named.word, named.name)
 
 
 def check_named(text: DataText, named: NamedValue, good: bool, wanted: str) -> None:
-    """Refuse a named value unless `good` is true; `wanted` says what was expected."""
+    """Raise an error about a named value if `good` is false; `wanted` describes valid values."""
     if not good:
         raise text.refusal(named.line, f"expected {named.name} {wanted}, found {quote(named.word)}")
 
 
 def named_count(text: DataText, named: NamedValue, least: int = 2) -> int:
-    """Return the whole number of a named value, which must not be less than `least`."""
+    """Convert the word of a named value to a whole number; raise an error if it is less than `least`."""
     number = named_number(text, named)
     if number != int(number) or number < least:
         said = f"expected a whole number of {least} or more for {named.name}, found {quote(named.word)}"
@@ -268,7 +268,7 @@ def named_count(text: DataText, named: NamedValue, least: int = 2) -> int:
 
 # CSV files -------------------------------------------------------------------------------------------
 
-_INNER = r"(?:[^\[\]()]|\([^\[\]()]*\))*"  # pattern of the text within brackets, such as the unit (m/s2)2/Hz
+_INNER = r"(?:[^\[\]()]|\([^\[\]()]*\))*"  # pattern of a text within brackets, such as the unit "(m/s2)2/Hz"
 _HEAD = re.compile(rf"\s*([^\[\]()]*?)\s*(?:[\[(]({_INNER})[\])]\s*)?")
 _DELIMITERS = ",;\t"
 
@@ -280,13 +280,13 @@ class CsvColumn:
     Parameters
     ----------
     head : str
-        Its head, without the unit.
+        Heading of the column, without the unit.
     name : str
-        Name of its quantity, among those asked for; empty if it is none of them.
+        Name of the quantity in the column; empty if the quantity is not known.
     unit : str
-        Its unit, as written.
+        Unit of the column, as written.
     values : tuple of float
-        Numbers: in SI where `name` is not empty, else as written; nan where a cell may be empty, and is.
+        Numbers: in SI units if the quantity is known, else as written; nan for an empty cell.
     written : tuple of str
         The cells as written.
     """
@@ -307,11 +307,11 @@ class CsvTable:
     text : DataText
         The file.
     head_line : int
-        Number of the line with the heads.
+        Line number of the column headings.
     lines : tuple of int
         Line number of each row.
     columns : tuple of CsvColumn
-        The columns, in their order.
+        The columns, from left to right.
     """
 
     text: DataText
@@ -320,7 +320,7 @@ class CsvTable:
     columns: tuple[CsvColumn, ...]
 
     def named(self) -> dict[str, CsvColumn]:
-        """Return the columns whose quantity is known, by its name."""
+        """Return the columns with a known quantity, by the name of the quantity."""
         return {column.name: column for column in self.columns if column.name}
 
 
@@ -331,7 +331,7 @@ def read_csv(
     may_lack: Collection[str] = (),
     least_rows: int = 2,
 ) -> CsvTable:
-    """Read a CSV file with heads and units.
+    """Read a CSV file that has column headings with units.
 
     Lines that are empty or begin with # or ! are comments.  Columns are separated by commas, semicolons
     or tabs.
@@ -341,24 +341,25 @@ def read_csv(
     text : DataText
         The file.
     known : mapping
-        Quantities that columns may have, by name.
+        Known quantities, by name.
     names : mapping
-        Names of quantities by heads, as `plain_name` writes these; several may stand for one quantity.
+        Name of the quantity for each heading, as `plain_name` returns it; several headings may mean the same
+        quantity.
     may_lack : collection of str
         Quantities whose cells may be empty.
     least_rows : int
-        Fewest rows of numbers.
+        Smallest number of rows of numbers.
 
     Raises
     ------
     ConfigError
-        At the first head or cell that is wrong; the message names file, line, and what was expected.
+        At the first wrong heading or cell; the message names the file, the line, and what was expected.
     """
     lines = [line for line in range(1, len(text.lines) + 1) if not text.is_comment(line)]
     if not lines:
-        raise text.lacking("expected a line of heads with their units in brackets")
+        raise text.lacking("expected a line of column headings with units in brackets")
     head_line, *rest = lines
-    # The head line without the brackets of units, in which separators do not count.
+    # The heading line without units in brackets, as a unit may contain a column separator.
     outside = re.sub(r"[\[(][^\])]*[\])]", "", text.lines[head_line - 1])
     delimiter = max(_DELIMITERS, key=outside.count)
     heads = [_read_head(text, head_line, cell, known, names) for cell in _cells(text, head_line, delimiter)]
@@ -369,7 +370,7 @@ def read_csv(
             raise text.refusal(head_line, f"{same} is the same column as {first}; give one")
     if len(rest) < least_rows:
         count = {1: "a row", 2: "two rows"}.get(least_rows, f"{least_rows} rows")
-        raise text.lacking(f"expected {count} of numbers at least below the heads")
+        raise text.lacking(f"expected {count} of numbers at least below the headings")
     cells = [_row_of_cells(text, line, _cells(text, line, delimiter), heads) for line in rest]
     rows = [_read_row(text, line, each, heads, may_lack) for line, each in zip(rest, cells, strict=True)]
     columns = zip(heads, zip(*rows, strict=True), zip(*cells, strict=True), strict=True)
@@ -380,14 +381,14 @@ def read_csv(
 def _cells(text: DataText, line: int, delimiter: str) -> list[str]:
     try:
         (cells,) = csv.reader([text.lines[line - 1]], delimiter=delimiter, skipinitialspace=True)
-    except csv.Error:  # a cell longer than csv's limit, as in a long line of text without separators
+    except csv.Error:  # a cell exceeds the csv module's limit: a long line without separators
         most = csv.field_size_limit()
         raise text.refusal(line, f"a cell has more than {most} characters; give a number in each") from None
     return [cell.strip() for cell in cells]
 
 
 class _ColumnHead(NamedTuple):
-    """A head as written: name of its quantity (empty if not known), unit, and the quantity itself."""
+    """A column heading: name of the quantity (empty if not known), unit as written, and quantity."""
 
     head: str
     name: str
@@ -398,11 +399,11 @@ class _ColumnHead(NamedTuple):
 def _read_head(
     text: DataText, line: int, cell: str, known: Mapping[str, Quantity], names: Mapping[str, str]
 ) -> _ColumnHead:
-    """Read a head; refuse a unit that is missing, unknown or of another kind."""
+    """Read a column heading; raise an error if its unit is missing, unknown or of another quantity."""
     match = _HEAD.fullmatch(cell)
     if match is None or not match[1] or to_number(cell) is not None:
-        raise text.refusal(line, f"expected a head with its unit in brackets, found {quote(cell)}")
-    # Spelling of units in wind-turbine files: N m2 is read for Nm^2 and N-m^2.
+        raise text.refusal(line, f"expected a heading with its unit in brackets, found {quote(cell)}")
+    # Wind-turbine files write N m2 also as Nm^2 or N-m^2.
     head, unit = match[1], re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", " ", (match[2] or "").strip())
     unit, plain = re.sub(r"\b([kMG]?N)m(?![a-z])", r"\1 m", unit), plain_name(head)
     if not (name := names.get(plain, "")):
@@ -425,18 +426,18 @@ def _read_head(
 
 
 def _row_of_cells(text: DataText, line: int, cells: list[str], heads: list[_ColumnHead]) -> list[str]:
-    """Return the cells of a line, one for each head."""
+    """Return the cells of a line; raise an error unless there is one cell for each column heading."""
     if len(cells) == len(heads) + 1 and not cells[-1]:  # some programs end each line with a separator
         cells = cells[:-1]
     if len(cells) != len(heads):
-        raise text.refusal(line, f"expected {len(heads)} cells under the heads, found {len(cells)}")
+        raise text.refusal(line, f"expected {len(heads)} cells under the headings, found {len(cells)}")
     return cells
 
 
 def _read_row(
     text: DataText, line: int, cells: list[str], heads: list[_ColumnHead], may_lack: Collection[str]
 ) -> list[float]:
-    """Read the numbers of a line, in SI where the column is known."""
+    """Convert the cells of a line to numbers, in SI units if the quantity of the column is known."""
     row = []
     for cell, (head, name, unit, quantity) in zip(cells, heads, strict=True):
         if not cell and name in may_lack:
@@ -452,7 +453,7 @@ def _read_row(
 
 
 def check_places(table: CsvTable, name: str) -> None:
-    """Refuse positions that do not ascend; one given twice must be a jump in the values of other columns.
+    """Raise an error if positions do not ascend; a repeated position must be a jump of other quantities.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Running of commands: their exit codes, and messages of failure."""
+"""Run commands: convert errors to messages and exit codes."""
 
 from __future__ import annotations
 
@@ -30,21 +30,21 @@ Shell = Literal["bash", "zsh", "fish"]
 
 
 def examples(*lines: str) -> str:
-    """Write the end of a command's help: examples that can be typed as they are, and the exit codes."""
+    """Return the end of a command's help: examples that can be typed as they are, and exit codes."""
     head = _EXAMPLES.format("Example" if len(lines) == 1 else "Examples")
     return "\n\n".join([head, *(f"`{line}`" for line in lines), EXIT_CODES])
 
 
 class NoAnswer(Exception):
-    """Raised when the model has no answer; the message says why, and where."""
+    """Raised when the model has no solution; the message says why, and for which input."""
 
 
 class Interrupted(Exception):
-    """Raised by Ctrl-C or SIGTERM; the message says what is done and how to go on."""
+    """Raised on Ctrl-C or SIGTERM; the message says what has been done, and how to resume."""
 
 
 def add_completion(app: App) -> None:
-    """Add the command `completion` to the command line of a program.
+    """Add the command `completion`, which sets up completion by the Tab key, to a command line.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     except CycloptsError as error:
         return _complain(name, say_mistake(app, error, given), BAD_INPUT)
     except (NoAnswer, ArithmeticError, ValueError, OSError) as error:
-        # Imported here, since it loads numpy, which help does without.
+        # Imported here, since the import loads numpy, which is not needed to show help.
         from beamdyn.common.edge.refusal_words import as_typed, is_no_answer
 
         if isinstance(error, NoAnswer) or is_no_answer(error):
@@ -115,8 +115,8 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
 
 @contextmanager
 def _terminated_as_interrupted() -> Iterator[None]:
-    """Let a request to terminate (SIGTERM), as from a scheduler, end the command as Ctrl-C does."""
-    if threading.current_thread() is not threading.main_thread():  # only the main thread can set a handler
+    """In this context, let SIGTERM (a request to terminate, as from a scheduler) act like Ctrl-C."""
+    if threading.current_thread() is not threading.main_thread():  # Python allows signal handlers only there
         yield
         return
 
@@ -132,25 +132,25 @@ def _terminated_as_interrupted() -> Iterator[None]:
 
 @contextmanager
 def _as_sentences(name: str) -> Iterator[None]:
-    """Print warnings of the packages as sentences, without their place in the code."""
+    """In this context, print warnings of the packages as plain sentences, without file and line."""
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
         if category is UserWarning:
             warn(name, [str(message)])
-        else:  # a warning of another package, for developers
+        else:  # a warning from another package, which only developers need
             usual(message, category, *place)
 
     with warnings.catch_warnings():
-        warnings.simplefilter("default", UserWarning)  # independent of filters set outside
-        # A command prints the warnings of its result itself.
+        warnings.simplefilter("default", UserWarning)  # shown whatever warning filters the user has set
+        # The warnings stored in a result are printed by the command, not here.
         warnings.simplefilter("ignore", OutsideLinearTheory)
         warnings.showwarning = show
         yield
 
 
 def _complain(name: str, sentence: str, code: int) -> int:
-    """Print a sentence on standard error, if it can be written, and return the exit code."""
+    """Print an error message on standard error, if possible, and return the exit code."""
     if sys.stderr is not None:
         with suppress(OSError), quiet():
             print(f"{name}: {sentence}", file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""Wording of sentences and typing mistakes in the terms of files and commands, without slow imports."""
+"""Wording of messages and of typing mistakes in terms of files and options, without slow imports."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ from beamdyn.common.words import InputName, Named, Part, Setting, Words, worded
 
 TYPED: ContextVar[tuple[App, Sequence[str]] | None] = ContextVar("typed", default=None)
 
-# Command lines that cannot be understood -------------------------------------------------------------
+# Command lines with mistakes ---------------------------------------------------------------------------
 
 
-# Names that people use for options, and the options' own names.
+# Synonyms that people type for options, and the real names of these options.
 _OTHER_NAMES = {"--sweep": "--vary", "--result": "--what"}
 _KINDS: dict[Any, str] = {float: "a number", int: "a whole number", bool: "a value of a switch"}
 
 
 def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
-    """Say what cannot be understood in a command line, and where help is.
+    """Print what is wrong in a command line, and how to get help.
 
     Parameters
     ----------
     app : App
         The program.
     error : CycloptsError
-        Why its command line cannot be understood.
+        The error that the command-line parser raised.
     given : sequence of str
         The words after the program's name.
     """
@@ -51,7 +51,7 @@ def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
     elif isinstance(error, UnusedCliTokensError) and error.unused_tokens:
         said = _say_too_many(error.unused_tokens, given)
     elif isinstance(error, CoercionError) and error.target_type in _KINDS and error.token and not error.msg:
-        option = error.token.keyword  # the oldest supported cyclopts leaves out the text given to a switch
+        option = error.token.keyword  # the oldest supported cyclopts omits the text given to a flag
         joined = next((text.partition("=")[2] for text in given if text.startswith(f"{option}=")), "")
         wanted = _KINDS[error.target_type]
         said = f'Invalid value for {option}: "{error.token.value or joined}" is not {wanted}.'
@@ -61,13 +61,13 @@ def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
 
 
 def check_names(given: Sequence[str]) -> None:
-    """Refuse an empty word in place of a file's name, which would mean the current folder."""
+    """Raise an error for an empty file name, which would mean the current folder."""
     if any(not word.strip() and not before.startswith("-") for before, word in pairwise(given)):
         raise ValueError('one of the names is empty (""); give the name of a file')
 
 
 def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
-    """Say which words belong to no option; most often the shell has parted a unit from its number."""
+    """Print the words that belong to no option; often a blank separates a unit from its number."""
     first = next((i for i, word in enumerate(given) if word == words[0]), 0)
     option, value = given[first - 2 : first] if first > 1 else ("", "")
     example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""
@@ -76,7 +76,7 @@ def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
 
 
 def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
-    """Say that an option is unknown, and which may be meant: that of a synonym, or one with such a value."""
+    """Describe an unknown option; suggest a known one: by a synonym, or by the value typed after it."""
     option = (error.token.keyword or error.token.value).partition("=")[0]
     if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
         return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"
@@ -92,7 +92,7 @@ _HEADING: ContextVar[Callable[[str], str] | None] = ContextVar("heading", defaul
 
 
 def in_files(text: str, units: Any = None) -> str:
-    """Write a text in the terms of files and commands; its speeds in a display unit, if units are given.
+    """Rewrite a message in terms of files and options; convert speeds to a display unit if units are given.
 
     `Physics(shear=True)` becomes "[physics] shear = true", on a form "Physics: shear = true".
     """
@@ -100,7 +100,7 @@ def in_files(text: str, units: Any = None) -> str:
 
 
 def word(part: Part, units: Any = None) -> str:
-    """Write a part of a text in the terms of files, or within `on_form` in those of a form."""
+    """Rewrite a part of a message in terms of files or, within the context `on_form`, of forms."""
     if isinstance(part, Setting) and (heading := _HEADING.get()) is not None:
         return part.on_form(heading(part.table))
     if isinstance(part, InputName) and _HEADING.get() is not None:
@@ -111,7 +111,7 @@ def word(part: Part, units: Any = None) -> str:
 
 
 def say(error: Exception) -> str:
-    """Return the message of an error in the terms of files and commands."""
+    """Return the message of an error in terms of files and options."""
     composed, (first, *_) = getattr(error, "worded", None), (*error.args, "")
     if composed is not None:
         return composed(word)
@@ -120,7 +120,7 @@ def say(error: Exception) -> str:
 
 @contextmanager
 def on_form(heading: Callable[[str], str]) -> Iterator[None]:
-    """In this context, name settings in messages as a form does; `heading` returns a table's heading."""
+    """In this context, word messages for a form; `heading` returns the heading of a table in the form."""
     before = _HEADING.set(heading)
     try:
         yield

@@ -1,4 +1,4 @@
-"""HTML reports: inputs, results, drawings and warnings in one file that needs no other."""
+"""HTML reports: inputs, results, drawings and warnings in one self-contained file."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ pre { background: #f4f4f4; padding: 1rem; white-space: pre-wrap; overflow-wrap: 
 
 @dataclass(frozen=True)
 class Question:
-    """A command with its options and its input file, as a report shows them.
+    """A command with its options and its input file, as shown in a report.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Question:
 
     @classmethod
     def of(cls, command: str, file: object, text: str, **options: object) -> Question:
-        """Make the report's record of a command: its words, its options and the text of its file.
+        """Make the record of a command: its words, its options and the text of its input file.
 
         Options that are None, False or an empty tuple are left out.
         """
@@ -51,30 +51,30 @@ class Question:
             for given in value if isinstance(value, tuple) else (value,):
                 if given is not None and given is not False:
                     words += [option] if given is True else [option, str(given)]
-        # One line, so that it can be a comment.
+        # The command is written as one line, so that it can be a comment.
         line = "".join(c if c.isprintable() else " " for c in shlex.join(words))
         return cls(f"{command}: {file}", f"# {line}\n\n{text}")
 
     @classmethod
     def on_file(cls, command: str, file: str | Path, **options: object) -> Question:
-        """Make a question from a file; raise `ConfigError` if the file cannot be read."""
+        """Make the record of a command from its file; raise `ConfigError` if it cannot be read."""
         return cls.of(command, file, read(file), **options)
 
 
 @dataclass(frozen=True)
 class Report:
-    """Contents of a command's HTML report, besides its main drawing.
+    """Contents of a command's HTML report, except for the main drawing.
 
     Parameters
     ----------
     question : Question
         The command and its input.
     tables : sequence of rich renderables
-        Tables and sentences, as printed.
+        Tables and sentences, as printed on the console.
     warnings : sequence of str
-        Warnings, and why there is no answer.
+        Warnings, and reasons for missing results.
     more : sequence of (title, callable)
-        Further parts; each callable returns HTML.
+        Further sections; each callable returns the section's content as HTML.
     """
 
     question: Question
@@ -83,7 +83,7 @@ class Report:
     more: Sequence[tuple[str, Callable[[], str]]] = ()
 
     def page(self, draw: Callable[[], Figure] | None) -> str:
-        """Write the report as HTML, with a main drawing unless `draw` is None."""
+        """Return the report as HTML, with the main drawing unless `draw` is None."""
         tables = html(self.tables) + further(self.more)
         title = self.question.title
         made = "" if draw is None else picture(drawing(draw), title)
@@ -92,19 +92,19 @@ class Report:
 
 
 def further(parts: Iterable[tuple[str, Callable[[], str]]]) -> str:
-    """Write further parts as HTML, each under its title."""
+    """Return further sections as HTML, each below its title."""
     return "\n".join(f"<h3>{escape(title)}</h3>{make()}" for title, make in parts)
 
 
 def report_page(title: str, inputs: str, parts: Iterable[tuple[str, Sequence[str], str, str]]) -> str:
-    """Return the HTML page of a report, which needs no other file.
+    """Return a report as a self-contained HTML page.
 
     Parameters
     ----------
     title : str
         Title of the report.
     inputs : str
-        The design as TOML.
+        The input file as TOML text.
     parts : iterable of (name, warnings, tables, drawing)
         Content for each screen; tables are HTML, drawings are elements as `picture` makes them.
     """

@@ -1,4 +1,4 @@
-"""Sweeps: results over varied inputs of a file, also as columns; designs can be solved one by one."""
+"""Parameter sweeps: results over varied inputs of a file; the designs can be solved one by one."""
 
 from __future__ import annotations
 
@@ -20,27 +20,27 @@ from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.result import Result
 from beamdyn.common.words import at_any
 
-MOST_ONE_BY_ONE = 2000  # largest number of designs that are solved one by one, which takes minutes
-_CHUNK = 16  # number of designs in a task
-_MOST_NAMED = 4  # largest number of results that a line of text names
+MOST_ONE_BY_ONE = 2000  # largest number of designs that are solved one by one, which takes some minutes
+_CHUNK = 16  # number of designs that a worker process receives at a time
+_MOST_NAMED = 4  # largest number of results that are named in one line of text
 
 
 @dataclass(frozen=True)
 class Output:
-    """A number of an answer that a sweep can show.
+    """A scalar result that a sweep can show.
 
     Parameters
     ----------
     name : str
-        Its name on the command line and in files.
+        Name of the result on the command line and in files.
     words : str
-        Description, for people.
+        Description of the result in words.
     of : callable
-        Returns the number, in SI, when given an answer.
+        Function that takes the solution of a design, and returns the number in SI units.
     unit : str
-        Unit in which it is shown.
+        Unit in which the number is shown.
     scale : float
-        Size of that unit in SI.
+        Size of that unit in SI units.
     """
 
     name: str
@@ -50,39 +50,40 @@ class Output:
     scale: float = 1.0
 
     def shown(self, result: Any) -> Any:
-        """Return the value or values of an answer, in the unit shown."""
+        """Return the number (or an array of numbers) from a solution, in the unit in which it is shown."""
         return np.asarray(self.of(result)) / self.scale
 
     @property
     def label(self) -> str:
-        """Name and unit, for tables and pictures."""
+        """Return name and unit of the result, for tables and pictures."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
 
 @dataclass(frozen=True)
 class InputSweep(Result):
-    """Results over inputs.
+    """Results of a parameter sweep.
 
-    Arrays have shape (n1, ..., nd), with an axis for each of the d inputs, or (n,) where the inputs are taken
-    together.
+    Arrays have shape (n1, ..., nd), with one axis for each of the d inputs; or shape (n,) if the first design
+    takes the first value of each input, the second design the second values, and so on.
 
     Attributes
     ----------
     inputs, units : tuple of str
         Keys of the inputs, and the units in which their values are given.
     values : tuple of ndarray, shape (n,)
-        Values of each input, in its unit.
+        Values of each input, in the input's unit.
     results, result_units : tuple of str
         Names of the results and their units.
     found : tuple of ndarray, shape (n1, ..., nd)
-        Values of each result, in its unit; nan or inf where there is none.
+        Values of each result, in the result's unit; nan or inf where there is none.
     warnings : tuple of str
-        Where there is no answer, and why.
+        Designs without a result, and the reason.
     combine : {"product", "zip"}
-        Whether the inputs are combined each with each, or taken together.
+        Whether every value is combined with every value of the other inputs, or the n-th values of all inputs
+        make a design.
     refused, unanswered : tuple of (int, str)
-        Designs that are refused, and those that lack a result, such as a brake that locks: row of each (the
-        last input changes fastest) and the reason.
+        Designs with invalid inputs, and designs without a result, such as a brake that locks: the row number
+        of each (the last input changes fastest) and the reason.
     """
 
     inputs: tuple[str, ...]
@@ -97,7 +98,7 @@ class InputSweep(Result):
     unanswered: tuple[tuple[int, str], ...] = ()
 
     def headline(self) -> Iterator[str]:
-        """Yield results, number of designs and inputs, the parts of the result's one-line summary.
+        """Yield results, number of designs and inputs for the one-line summary of the result.
 
         See `Result.headline`.
         """
@@ -107,13 +108,13 @@ class InputSweep(Result):
 
     @property
     def designs(self) -> Designs:
-        """The designs, with values in the units in which they were given."""
+        """Return the designs, with input values in the units in which the user gave them."""
         each = zip(self.inputs, self.units, self.values, strict=True)
         return Designs([VariedInput(*one) for one in each], self.combine)
 
 
 def chosen(outputs: Sequence[Output], names: str, option: str = "--what") -> list[Output]:
-    """Return the outputs whose names stand in a text, separated by commas, each once.
+    """Return the outputs whose names are listed in a text, separated by commas, each once.
 
     Parameters
     ----------
@@ -127,7 +128,7 @@ def chosen(outputs: Sequence[Output], names: str, option: str = "--what") -> lis
     Raises
     ------
     ValueError
-        If a name is unknown, or none is given; the message lists the names or says which is meant.
+        If a name is unknown, or none is given; the message lists all names, or suggests a similar one.
     """
     known = {output.name: output for output in outputs}
     wanted = [name.strip() for name in names.split(",") if name.strip()]
@@ -146,25 +147,25 @@ def swept(
     warnings: Sequence[str] = (),
     refused: Mapping[int, str] | None = None,
 ) -> InputSweep:
-    """Make the result of a sweep.
+    """Make the result of a parameter sweep.
 
     Parameters
     ----------
     designs : Designs
         The designs.
     outputs : sequence of Output
-        The outputs that are wanted.
+        The requested outputs.
     found : sequence of ndarray, shape (N,) or ()
-        Values of each output in all N designs, in the unit shown.
+        Values of each output in all N designs, in the output's unit.
     warnings : sequence of str
-        Warnings besides that of refused designs.
+        Warnings other than the one on designs with invalid inputs.
     refused : mapping of int to str, optional
-        Designs that are refused, by row, and why.
+        The reason for each design with invalid inputs, by row number.
 
     Raises
     ------
     NoAnswer
-        If all are refused; the message says why the first is.
+        If all designs have invalid inputs; the message gives the reason for the first one.
     """
     refused, said = dict(sorted((refused or {}).items())), []
     if refused:
@@ -189,11 +190,11 @@ def swept(
     )
 
 
-# Rows of files and tables --------------------------------------------------------------------------------
+# Rows of output files and tables -------------------------------------------------------------------------
 
 
 def sweep_csv(swept: InputSweep) -> Columns:
-    """Make columns with a row for each design: inputs, results, and why some have none."""
+    """Make columns with one row per design: inputs, results, and the reason if a result is missing."""
     rows, why = [*sweep_rows(swept)], dict(swept.refused)
     cells = [*zip(*rows, strict=True)]
     named = zip(columns(swept), cells, strict=True)
@@ -210,26 +211,26 @@ def sweep_rows(swept: InputSweep) -> Iterator[list[float]]:
 
 
 def columns(swept: InputSweep) -> list[tuple[str, str]]:
-    """Return names and units of the columns: inputs, then results."""
+    """Return names and units of the columns: inputs first, then results."""
     inputs = ((path.partition(".")[2] or path).replace(".", "_") for path in swept.inputs)
     return [*zip(inputs, swept.units, strict=True), *zip(swept.results, swept.result_units, strict=True)]
 
 
-# Designs that are solved one by one, where the model takes no arrays of inputs -----------------------
+# Designs that are solved one by one, as the model cannot solve arrays of inputs at once --------------
 
 
 @dataclass(frozen=True)
 class SolvedCases:
-    """Results of the designs of a task.
+    """Results of the designs of one task.
 
     Parameters
     ----------
     values : ndarray, shape (r, n)
-        The r results of each of the n designs, in the units shown; nan where there is none.
+        The r results of each of the n designs, in the units of the outputs; nan where there is none.
     refused : tuple of int
-        Designs without an answer, counted within the task.
+        Indices, within the task, of the designs without a solution.
     why : tuple of str
-        Reason why each of these designs has no answer.
+        The reason why each of these designs has no solution.
     """
 
     values: np.ndarray
@@ -239,18 +240,18 @@ class SolvedCases:
 
 @dataclass(frozen=True)
 class CaseTask:
-    """A task: some designs of a sweep, which a worker solves one by one.
+    """Some of the designs of a sweep, which a worker process solves one by one.
 
     Parameters
     ----------
     tables : mapping
-        The design whose inputs are varied, as the parser of files gives it.
+        The input file as nested tables, of which some inputs are varied.
     axes : sequence of Axis
         The d inputs that are varied.
     given : ndarray, shape (n, d)
-        Their values in each of the n designs [the axes' units].
+        Values of these inputs in each of the n designs [units of the axes].
     outputs : tuple of str
-        Names of the results that are wanted.
+        Names of the requested results.
     """
 
     tables: Mapping[str, Any]
@@ -270,20 +271,21 @@ def one_by_one(
     combine: str = "product",
     run: TaskRunner | None = None,
 ) -> InputSweep:
-    """Solve the designs of varied inputs one by one.
+    """Solve all combinations of the varied inputs, one design after the other.
 
     Parameters
     ----------
     tables : mapping
-        The design whose inputs are varied, as the parser of files gives it.
+        The input file as nested tables, of which some inputs are varied.
     axes : sequence of Axis
         The inputs that are varied.
     outputs : sequence of Output
-        The outputs that are wanted.
+        The requested outputs.
     solve : callable
         Solves the designs of a task, as `solve_cases` does.
     combine : {"product", "zip"}
-        Whether the inputs are combined each with each, or taken together.
+        Whether every value is combined with every value of the other inputs, or the n-th values of all inputs
+        make a design.
     run : TaskRunner, optional
         Runs the tasks; by default in this process.
 
@@ -294,12 +296,12 @@ def one_by_one(
     Raises
     ------
     NoAnswer
-        If no design has an answer; the message says why the first has none.
+        If no design has a solution; the message gives the reason for the first design.
     """
     designs, run = designs_of(axes, combine), run or TaskRunner()
     results, refusals = np.full((len(outputs), designs.count), np.nan), dict[int, str]()
     names = tuple(output.name for output in outputs)
-    sent = []  # axes without classes of tables: a class made while a file was read cannot be unpickled
+    sent = []  # without the classes of tables: a class that is made while a file is read cannot be pickled
     for axis in axes:
         entry = replace(axis.input, section=Section)
         if isinstance(entry, Coordinate):
@@ -326,9 +328,9 @@ def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> Solv
     task : CaseTask
         The designs.
     outputs : sequence of Output
-        The outputs that designs have.
+        All outputs that the model offers.
     solve : callable
-        Returns the answer of a design, given as tables.
+        Function that takes a design as nested tables, and returns its solution.
     """
     wanted = {output.name: output for output in outputs}
     values, refused = np.full((len(task.outputs), len(task.given)), np.nan), dict[int, str]()
@@ -343,12 +345,12 @@ def solve_cases(task: CaseTask, outputs: Sequence[Output], solve: Solve) -> Solv
 
 
 def placed(tables: Mapping[str, Any], axes: Sequence[Axis], values: Sequence[float]) -> dict[str, Any]:
-    """Return the tables of a design with other values [units of the axes] of some inputs."""
+    """Return the tables of a design with new values [units of the axes] of the varied inputs."""
     given = {
         axis.input.path: f"{value:.15g} {axis.unit}" if axis.unit else float(value)
         for axis, value in zip(axes, values, strict=True)
     }
-    missing: dict[str, Any] = {}  # points of which one coordinate is varied, with the defaults of both
+    missing: dict[str, Any] = {}  # points with one varied coordinate, filled up with defaults
     for axis in axes:
         if isinstance(axis.input, Coordinate):
             of, there = axis.input.of, part_at(tables, axis.input.of.path)

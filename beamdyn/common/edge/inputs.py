@@ -1,6 +1,7 @@
-"""Tables of inputs: each input is described once, for files, commands, forms and documentation.
+"""Descriptions of inputs, shared by files, commands, forms and documentation.
 
-Messages of the core, which takes SI floats, are reworded for files: their keys, and degrees for radians.
+The computing classes take floats in SI units; their error messages are reworded for users of files, with the
+keys of the file, and degrees in place of radians.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ from beamdyn.common.inputs.described import Described
 
 
 class Section(BaseModel):
-    """A table of inputs: strict types, no unknown keys, frozen.
+    """A table of a file: types are not converted, unknown keys are errors, and objects cannot be changed.
 
-    An instance pickles even if `section_of` made its class, which then stands in no module under its name.
+    Instances can be pickled even if `section_of` made their class, which no module contains by name.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, arbitrary_types_allowed=True)
@@ -42,7 +43,7 @@ class Section(BaseModel):
         return (_empty_section, (type(self).__module__, known), self.__getstate__())
 
 
-# The class of each table, by its name and keys; of several equal classes the first one made.
+# Class of each table, by name and keys; if classes are equal, only the first one is kept.
 _SECTIONS: dict[str, type[Section]] = {}
 
 
@@ -51,39 +52,39 @@ def _known_as(section: type[Section]) -> str:
 
 
 def _empty_section(module: str, known: str) -> Section:
-    """Make a section without values, which pickle fills."""
-    import_module(module)  # the import defines the class, unless the module was imported before
+    """Make a table object without values; unpickling then sets them."""
+    import_module(module)  # the import defines the class, unless the module is already imported
     section = _SECTIONS[known]
     return section.__new__(section)
 
 
 class SiNumber(float):
-    """A number in SI whose unit a file states elsewhere, such as in the head of a column."""
+    """A number in SI units; the file states the unit elsewhere, such as in a column heading."""
 
 
 @dataclass(frozen=True)
 class Quantity(Described):
-    """A number of a file, for ``Annotated[float, Quantity("m", "L", "length")]``.
+    """A number with a unit in a file, for ``Annotated[float, Quantity("m", "L", "length")]``.
 
-    A pydantic model takes it as text with a unit ("50 mm"), or bare where its unit is "", and holds the
-    value in SI.
+    Files give it as text with a unit ("50 mm"), or as a plain number if `unit` is "".  The pydantic model
+    stores the value in SI units.
     """
 
-    # Units that are accepted besides those of the quantity's kind.
+    # Units that are accepted although they belong to another kind of quantity.
     further_units: ClassVar[tuple[str, ...]] = ()
 
     def parse(self, given: object) -> float:
-        """Convert to SI and check the bounds.
+        """Convert a text or number from a file to SI units, and check its bounds.
 
         Raises
         ------
         InvalidInput
-            If the value is not such a quantity or is out of bounds; the error's `field` is empty.
+            If the value is not a quantity of this kind, or is out of bounds; the error's `field` is empty.
         """
         return self.within_bounds(given, self.convert(given))
 
     def convert(self, given: object) -> float:
-        """Convert a value to SI without checking bounds."""
+        """Convert a text or number from a file to SI units, without checking the bounds."""
         if isinstance(given, SiNumber):
             return float(given)
         if self.infinite and given in ("inf", math.inf):
@@ -98,11 +99,11 @@ class Quantity(Described):
         raise InvalidInput("", given, "give a finite number, without a unit or quotes")
 
     def in_unit(self, value: float, unit: str) -> float:
-        """Convert a value in SI to another unit; raise `InvalidInput` for a unit of another kind."""
+        """Convert a value in SI units to a given unit; raise `InvalidInput` for a unit of another kind."""
         return value / quantity(f"1 {unit}", self.unit)
 
     def within_bounds(self, given: object, value: float) -> float:
-        """Return a value; refuse one that is out of bounds."""
+        """Return a value if it is within the bounds; else raise an error that shows the text in the file."""
         if not self.is_within_bounds(value):
             unit, convert = unit_as_written(given, self.unit)
             raise InvalidInput(
@@ -115,12 +116,12 @@ class Quantity(Described):
 
 
 class SlopeQuantity(Quantity):
-    """The angle of a slope, which may be given by its rise: "5 %" is a rise of 5 in 100 along the level."""
+    """The angle of a slope, also given as a gradient: "5 %" is a rise of 5 m over 100 m of level."""
 
     further_units = ("%",)
 
     def convert(self, given: object) -> float:
-        """Convert the angle, or the rise in %, to rad."""
+        """Convert an angle with a unit, or a gradient in %, to rad."""
         if isinstance(given, str) and given.rstrip().endswith("%"):
             try:
                 return math.atan(real("", float(given.rstrip()[:-1])) / 100)
@@ -129,36 +130,36 @@ class SlopeQuantity(Quantity):
         return super().convert(given)
 
     def in_unit(self, value: float, unit: str) -> float:
-        """Convert the angle [rad] to another unit, or to a rise in %."""
+        """Convert the angle [rad] to another unit of angles, or to a gradient in %."""
         return 100 * math.tan(value) if unit == "%" else super().in_unit(value, unit)
 
 
 @dataclass(frozen=True)
 class WholeNumber(Quantity):
-    """A whole number, such as a count, which stays an int."""
+    """A whole number, such as a count, stored as an int."""
 
     _: KW_ONLY
     whole: bool = True
 
     def parse(self, given: object) -> int:
-        """Read the number and check its bounds; see `Quantity.parse`."""
+        """Read a whole number and check its bounds; see `Quantity.parse`."""
         return int(super().parse(given))
 
 
 @dataclass(frozen=True)
 class Lines(Quantity):
-    """A text of several lines, such as that of a file."""
+    """A text of several lines, such as the content of a file."""
 
     unit: str = ""
 
     def parse(self, given: object) -> str:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """Return a text unchanged; refuse anything else."""
+        """Return a text unchanged; raise an error for any other object."""
         if not isinstance(given, str):
             raise InvalidInput("", given, "give a text")
         return given
 
 
-_SHOWN = {"rad": "deg"}  # units in which values are shown to people, by the SI unit
+_SHOWN = {"rad": "deg"}  # usual units in which quantities are shown to users, by SI unit
 
 
 @dataclass(frozen=True)
@@ -168,19 +169,19 @@ class Input:
     Parameters
     ----------
     path : str
-        Where it stands, such as "beam.thickness".
+        Path of the input in a file, such as "beam.thickness".
     section : type of Section
-        The table that holds it; where tables are alternatives, this tells them apart.
+        Class of the table that contains the input; alternative tables have different classes.
     kind : type
-        Its type annotation, without the description.
+        Type annotation, without the description.
     quantity : Quantity
         Symbol, unit, bounds and meaning.
     choices : tuple
-        The values allowed, if they are few.
+        The allowed values, if only a few are allowed.
     required : bool
-        Whether it must be given.
+        Whether the file must give the input.
     default : object
-        Value if it is not given, in SI.
+        Value if the file does not give the input, in SI units.
     """
 
     path: str
@@ -193,12 +194,12 @@ class Input:
 
     @property
     def name(self) -> str:
-        """The last part of the path."""
+        """Return the name of the input, which is the last part of its path."""
         return self.path.rpartition(".")[2]
 
     @property
     def help(self) -> str:
-        """Meaning, unit, bounds and meaning of inf, in one phrase; angles in degrees, as in files."""
+        """Return meaning, unit and bounds of the input in one phrase; angles in degrees, as in files."""
         q = self.quantity
         shown = _SHOWN.get(q.unit, q.unit)
         bounds = q.bounds if shown == q.unit else q.bounds_as(lambda bound: q.in_unit(bound, shown))
@@ -215,17 +216,17 @@ def _each(_: str, models: Sequence[type[BaseModel]]) -> Sequence[type[BaseModel]
 
 
 def describe(model: type[BaseModel], prefix: str = "", choose: Choice = _each) -> list[Input]:
-    """List all inputs of a model and of the models within it, in their order.
+    """List all inputs of a pydantic model and of the models nested in it, in the order of the fields.
 
     Parameters
     ----------
     model : type of BaseModel
-        Its fields are quantities, plain types with a `description`, or further models.
+        Model whose fields are quantities, plain types with a `description`, or further models.
     prefix : str
-        Put before each path.
+        Text to put before each path.
     choose : callable
-        ``choose(path, models)``: which models to describe of a table with alternatives, such as two kinds of
-        beam, given its path and the models of all.
+        ``choose(path, models)`` selects which of the alternative models of a table to describe, such as two
+        kinds of beam, from the path of the table and all its models.
 
     Returns
     -------
@@ -235,26 +236,26 @@ def describe(model: type[BaseModel], prefix: str = "", choose: Choice = _each) -
     return _describe_all(model, prefix, choose) if chosen else [*_described(model, prefix)]
 
 
-@lru_cache(maxsize=256)  # cached, as forms ask at each change of a field
+@lru_cache(maxsize=256)  # cached, because a form calls this at each change of a field
 def _described(model: type[BaseModel], prefix: str) -> tuple[Input, ...]:
     return tuple(_describe_all(model, prefix, _each))
 
 
 @lru_cache(maxsize=256)
 def _has_alternatives(model: type[BaseModel]) -> bool:
-    """Whether a table within the model has several alternative models."""
+    """Return whether a table within the model has several alternative models."""
     tables = [_models_of(field) for field in model.model_fields.values()]
     return any(len(models) > 1 or any(map(_has_alternatives, models)) for models in tables)
 
 
 def _models_of(field: FieldInfo) -> list[type[BaseModel]]:
-    """Return the models of the table that a field holds, one for each alternative; empty without a table."""
+    """Return the models (one for each alternative) of the table in a field; empty if it holds no table."""
     parts = [*parts_of(field.annotation), *field.metadata]
     return [part for part in parts if isinstance(part, type) and issubclass(part, BaseModel)]
 
 
 def _describe_all(model: type[BaseModel], prefix: str, choose: Choice) -> list[Input]:
-    """List the inputs of a model; those of tables within it take the table's place."""
+    """List the inputs of a model; a nested table is replaced by its inputs."""
     found: list[Input] = []
     for name, field in model.model_fields.items():
         path = prefix + name
@@ -272,27 +273,27 @@ def _describe_all(model: type[BaseModel], prefix: str, choose: Choice) -> list[I
 
 
 def parts_of(annotation: Any) -> Iterator[Any]:
-    """Yield an annotation and its parts, recursively."""
+    """Yield a type annotation and all annotations within it, recursively."""
     yield annotation
     for part in get_args(annotation):
         yield from parts_of(part)
 
 
-# Messages of the core in the words of files ----------------------------------------------------------
+# Error messages in terms of input files ------------------------------------------------------------
 
-_SUSPECT = 12.0  # number of decades from 1, above which a number may be mistyped
+_SUSPECT = 12.0  # distance of a number from 1, in decades, above which its exponent may be mistyped
 _FAR = "far too large or too small beside the others: the results leave the range of numbers"
 _CHECK = "check its exponent and its unit"
 
 
 @contextmanager
 def of_file(keys: Mapping[str, str]) -> Iterator[None]:
-    """Reword `InvalidValue` errors in this context: keys of a file for arguments, and angles in degrees.
+    """In this context, reword `InvalidValue` errors: keys of a file for argument names, degrees for radians.
 
     Parameters
     ----------
     keys : mapping
-        Keys by the names of the arguments that they stand for, e.g. ``{"lining[0]": "lining_start"}``.
+        Key of the file for each argument name, e.g. ``{"lining[0]": "lining_start"}``.
     """
     try:
         yield
@@ -305,12 +306,13 @@ def of_file(keys: Mapping[str, str]) -> Iterator[None]:
 
 @contextmanager
 def in_range(design: BaseModel) -> Iterator[None]:
-    """Raise a ValueError for an overflow in this context, of which a mistyped exponent is the likely cause.
+    """In this context, convert an overflow to a ValueError, as a mistyped exponent is the likely cause.
 
     Parameters
     ----------
     design : BaseModel
-        The design that is computed. The message names its number farthest from 1, if that is far enough.
+        The inputs of the computation. The message names the largest or smallest number, if its exponent is
+        unusual.
 
     Raises
     ------
@@ -329,7 +331,7 @@ def in_range(design: BaseModel) -> Iterator[None]:
 
 
 def _numbers(given: object, path: str = "") -> Iterator[tuple[str, float]]:
-    """Yield the numbers of a design, each with its path, such as "pad[0]"."""
+    """Yield the numbers among the inputs, each with its path, such as "pad[0]"."""
     match given:
         case float():
             yield path, given
@@ -344,17 +346,17 @@ def _numbers(given: object, path: str = "") -> Iterator[tuple[str, float]]:
 
 
 def _decades(number: float) -> float:
-    """Return how far a size is from 1, in decades; 0 for zero."""
+    """Return the distance of a number's absolute value from 1 in decades; 0 for zero."""
     return abs(math.log10(abs(number))) if number and math.isfinite(number) else 0.0
 
 
 def in_degrees(error: InvalidValue) -> InvalidValue:
-    """Convert the numbers of an error about an angle to degrees."""
+    """Convert the numbers in an error about an angle from rad to degrees."""
     return error.in_unit("deg", math.degrees)
 
 
 def in_millimetres(error: InvalidValue) -> InvalidValue:
-    """Convert the numbers of an error about a length below a metre to mm; others are unchanged."""
+    """Convert the numbers in an error about a length below 1 m to mm; leave other errors unchanged."""
     short = error.unit == "m" and isinstance(error.value, float) and abs(error.value) < 1
     return error.in_unit("mm", lambda metres: 1e3 * metres) if short else error
 
@@ -368,19 +370,19 @@ def in_unit_of(error: InvalidValue, text: str) -> InvalidValue:
 
 
 def wholes_of(field: str) -> Iterator[str]:
-    """Yield a field and the wholes it is part of: "width.values[1]", "width.values" and "width"."""
+    """Yield a path and all paths that contain it: "width.values[1]", "width.values", "width"."""
     yield field
     if (cut := max(field.rfind("."), field.rfind("["))) > 0:
         yield from wholes_of(field[:cut])
 
 
 def without_indices(field: str) -> str:
-    """Return a field without indices, as inputs are described: "point_mass.mass" for "point_mass[0].mass"."""
+    """Return a path without indices, as in descriptions: "point_mass.mass" for "point_mass[0].mass"."""
     return re.sub(r"\[\d+\]", "", field)
 
 
 def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
-    """Return the path of the input that an error of the core is about; empty if there is no single one.
+    """Return the path of the input that an error is about; empty if no single input can be named.
 
     Parameters
     ----------
@@ -398,7 +400,7 @@ def path_of(error: Exception, paths: Iterable[str], table: str = "") -> str:
 
 
 def _path_ending(field: str, paths: list[str], table: str) -> str:
-    """Return the only path within a table that ends with a field; empty if there are none or several."""
+    """Return the only path in a table that ends with the field's name; empty if there is none or several."""
     exact = f"{table}.{field}".lstrip(".")
     ends = {path for path in paths if field and f".{path}".endswith(f".{field}")}
     inside = {path for path in ends if path.startswith(table and f"{table}.")}

@@ -1,4 +1,4 @@
-"""Wording of refusals by the core, which takes SI floats, in terms of the command that was typed."""
+"""Rewording of error messages, whose values are in SI units, in terms of the command that was typed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from beamdyn.common.edge.inputs import in_unit_of
 from beamdyn.common.edge.units import InvalidInput, last_quantity
 from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer, reason_of
 
-# Names that commands have for arguments of the core, apart from options of the same name.
+# Options whose name differs from the argument of the package that they set.
 _ELSEWHERE = {
     "combine": "--together",
     "psd.values": "--psd, values",
@@ -29,20 +29,18 @@ _ELSEWHERE = {
     "t_end": "--window",
 }
 _PHYSICS = "physics."
-_USUAL = {
-    "rad": "1 deg"
-}  # by SI unit: a quantity in the unit in which messages give a number that was not typed
+_USUAL = {"rad": "1 deg"}  # Unit in which messages give a number that was not typed, for each SI unit.
 
 
 def is_no_answer(error: Exception) -> bool:
-    """Whether an error means that the model has no answer, as for a singular linear system."""
+    """Return whether an error means that the model has no solution, as for a singular linear system."""
     return isinstance(error, ArithmeticError | NoModelAnswer | LinAlgError)
 
 
 def as_typed(error: Exception) -> str:
-    """Write a refusal with the options and keys that were typed, and its number in their unit.
+    """Return an error message with the typed options and keys, and numbers in their units.
 
-    "tolerance = 5: give ..." becomes "--tolerance = 5: give ..." where the command has that option.
+    "tolerance = 5: give ..." becomes "--tolerance = 5: give ..." if the command has this option.
     """
     if isinstance(error, LinAlgError):
         return f"{error}; check the size of each value"
@@ -52,7 +50,7 @@ def as_typed(error: Exception) -> str:
     text = _text_of(name)
     named = replace(error, field=name, other=_name(error.other))
     if error.field == "combine" or (error.field == "scene.motion" and error.value):
-        return f"{name}: {named.advice(word)}"  # the value in the message is not one that was typed
+        return f"{name}: {named.advice(word)}"  # omits the value, which differs from the typed one
     if error.field == "scene.motion":
         return f"{name}: missing: {named.advice(word)}"
     if isinstance(error.value, float) and error.unit:
@@ -64,14 +62,14 @@ def as_typed(error: Exception) -> str:
 
 
 def _says_more(text: str, value: object) -> bool:
-    """Whether a typed text says more than the value read from it: a unit, or the words for an object."""
+    """Return whether a typed text says more than the value read from it: a unit, or an object's name."""
     if isinstance(value, float | int):
         return text == last_quantity(text) != f"{value:g}"
     return isinstance(value, tuple) or is_dataclass(value)
 
 
 def _name(field: str) -> str:
-    """Return the option or key of the running command that stands for an argument of the core."""
+    """Return the option or key of the running command that sets an argument of the package."""
     option = f"--{field.replace('_', '-')}"
     if field.startswith(_PHYSICS):
         return f"[physics] {field.removeprefix(_PHYSICS)}"
@@ -79,11 +77,11 @@ def _name(field: str) -> str:
 
 
 def _text_of(name: str) -> str:
-    """Return the text typed for an option, or for a varied input; empty if there is none."""
+    """Return the text typed for an option or a varied input; empty if there is none."""
     typed = TYPED.get()
     arguments = [] if typed is None else [str(each) for each in typed[1]]
     after = (text for before, text in pairwise(arguments) if before == name)
-    parts = (each.partition("=") for each in arguments)  # keys may be shortened as far as they stay unique
+    parts = (each.partition("=") for each in arguments)  # keys may be abbreviated if unambiguous
     joined = (text for key, _, text in parts if text and f".{name}".endswith(f".{key.strip()}"))
     return next(chain(after, joined), "")
 

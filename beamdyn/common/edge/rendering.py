@@ -1,4 +1,4 @@
-"""Rendering of figures as SVG and PNG, of tables as HTML and of rows as CSV, as text or bytes."""
+"""Conversion of figures to SVG and PNG, of tables to HTML, and of rows to CSV, as text or bytes."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from rich.text import Text
 from beamdyn.common.inputs.checks import reason_of
 
 _RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
-_SENTENCE = 36  # number of letters above which the words of a cell are styled as a sentence
-# Numbers of letters in a row above which a table takes the whole width of a page, and of a wide screen.
+_SENTENCE = 36  # number of characters above which the text of a table cell is styled as a sentence
+# Characters in a row above which a table takes the full width of a page, and of a wide screen.
 _WIDE, _WIDEST = 75, 112
-_LONG = 12  # number of rows from which a table continues in a second column where there is room
-_BETWEEN = 1.5  # width of the gap between two columns, in letters
+_LONG = 12  # number of rows above which a table continues in a second column if the screen has room
+_BETWEEN = 1.5  # width of the gap between two columns, in characters
 
-_FEW_DECADES = 1e2  # ratio of the ends of a logarithmic axis above which its minor ticks can be left out
-_MOST_PLACES = 50  # largest number of pictures whose layout is kept
-_PLACES: dict[tuple[object, ...], list[Bbox]] = {}  # places of axes, by size and labels of their picture
+_FEW_DECADES = 1e2  # ratio of the limits of a logarithmic axis above which minor ticks can be omitted
+_MOST_PLACES = 50  # largest number of pictures whose axes' positions are stored
+_PLACES: dict[tuple[object, ...], list[Bbox]] = {}  # positions of axes, by size and labels of their picture
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,25 +36,25 @@ if TYPE_CHECKING:
 
 
 def svg(figure: Figure) -> str:
-    """Return a figure as the text of an SVG file; the same figure always gives the same text."""
+    """Return a figure as the text of an SVG file; equal figures give equal texts."""
     return png(figure, "svg").decode()
 
 
 def png(figure: Figure, kind: str = "png") -> bytes:
-    """Return a figure as a PNG file, or as one of another kind."""
+    """Return a figure as the bytes of a PNG file, or of another format."""
     from matplotlib import rc_context
 
     file = io.BytesIO()
     _write_powers_plainly(figure)
     metadata = {"Date": None} if kind == "svg" else {}
     with rc_context({"svg.hashsalt": "beamdyn"}), np.errstate(all="ignore"), warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # layout engines warn where they have too little room
+        warnings.simplefilter("ignore", UserWarning)  # layout engines warn if the figure has too little space
         figure.savefig(file, format=kind, dpi=150, metadata=metadata)
     return file.getvalue()
 
 
 def _write_powers_plainly(figure: Figure) -> None:
-    """Write the powers of ten of logarithmic axes as plain text: typesetting takes a third of the time."""
+    """Write powers of ten at logarithmic axes as plain text: typesetting would take a third of the time."""
     from matplotlib.ticker import LogFormatterSciNotation
 
     class Powers(LogFormatterSciNotation):
@@ -69,10 +69,10 @@ def _write_powers_plainly(figure: Figure) -> None:
 
 
 def in_haste(figure: Figure) -> Figure:
-    """Prepare a figure for fast drawing, without a layout of its own or most minor ticks.
+    """Prepare a figure for fast drawing: reuse the positions of axes, and omit most minor ticks.
 
-    Its axes are where they were in the last picture of this process with the same labels and size.
-    Logarithmic axes over more than two decades lose their minor ticks.
+    The axes get the positions that they had in the last picture with the same labels and size.  Logarithmic
+    axes over more than two decades have no minor ticks.
     """
     for axis in (axis for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)):
         low, high = axis.get_view_interval()
@@ -85,7 +85,7 @@ def in_haste(figure: Figure) -> Figure:
         if len(_PLACES) >= _MOST_PLACES:
             _PLACES.clear()
         _PLACES[known] = [ax.get_position(original=True).frozen() for ax in figure.axes]
-    figure.set_layout_engine(None)  # by default none
+    figure.set_layout_engine(None)  # matplotlib's default: no layout engine
     for ax, place in zip(figure.axes, _PLACES[known], strict=True):
         ax.set_position(place, which="original")
     return figure
@@ -100,14 +100,14 @@ def _in_letters(power: re.Match[str]) -> str:
 
 
 def drawing(draw: Callable[[], Figure], finish: Callable[[Figure], Figure] = lambda figure: figure) -> str:
-    """Return the SVG of a drawing, or a sentence if it cannot be drawn (numbers too large).
+    """Return the SVG of a figure; or a sentence if numbers are too large to be drawn.
 
     Parameters
     ----------
     draw : callable
         Draws the figure.
     finish : callable
-        Changes the figure before it is written, such as `in_haste`.
+        Function that changes the figure before it is written, such as `in_haste`.
     """
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
@@ -118,7 +118,7 @@ def drawing(draw: Callable[[], Figure], finish: Callable[[Figure], Figure] = lam
 
 
 def picture(text: str, words: str) -> str:
-    """Return an SVG as an HTML image, which runs no scripts; a sentence instead of an SVG as a paragraph.
+    """Return an SVG as an HTML image, which runs no scripts; a sentence in place of an SVG as a paragraph.
 
     Parameters
     ----------
@@ -133,15 +133,15 @@ def picture(text: str, words: str) -> str:
 
 
 def data_url(text: str) -> str:
-    """Return an SVG as a data URL."""
+    """Return the text of an SVG file as a data URL, which embeds the image in a page."""
     return f"data:image/svg+xml;base64,{base64.b64encode(text.encode()).decode()}"
 
 
 def html(parts: Iterable[RenderableType], most: int | None = None) -> str:
-    """Write tables and sentences, as the commands print them, in HTML.
+    """Return tables and sentences of a command as HTML.
 
-    Each table with its title and sentences is a section.  Of a table with more than `most` rows the first and
-    last ones are shown, and the number of the others.
+    Each table with its title and notes is an HTML section.  Of a table with more than `most` rows, only the
+    first and the last rows are shown, with the number of omitted rows.
     """
     made = []
     for part in parts:
@@ -166,14 +166,14 @@ def _size(part: Group) -> str:
 
 
 def _rows(part: object) -> int:
-    """Return the number of rows of a table, or of the longest one of a group; else 0."""
+    """Return the number of rows of a table, or of the longest table of a group; 0 for other objects."""
     if isinstance(part, Group):
         return max(map(_rows, part.renderables), default=0)
     return part.row_count if isinstance(part, Table) else 0
 
 
 def _width(part: object) -> float:
-    """Return the width of a table, or of the widest of a group, in letters; else 0.  Heads may be broken."""
+    """Return the width in characters of a table, or of the widest in a group; 0 for other objects."""
     if isinstance(part, Group):
         return max(map(_width, part.renderables), default=0.0)
     columns = part.columns if isinstance(part, Table) else ()
@@ -184,7 +184,7 @@ def _width(part: object) -> float:
 
 
 def _table(made: Table, most: int | None) -> str:
-    """Write a table in HTML; if it has too many rows, the first and last, and how many are not shown."""
+    """Return a table as HTML; of too many rows, the first and last ones, with the number of omitted rows."""
     words = [column.justify == "left" for column in made.columns]
     cells = zip(*(column.cells for column in made.columns), strict=True)
     rows = [_row([_cell(cell) for cell in row], words, "td") for row in cells]
@@ -201,7 +201,7 @@ def _table(made: Table, most: int | None) -> str:
 
 
 def _cell(cell: object) -> str:
-    """Write a cell in HTML; digits beyond the error, at the end of a number, are dimmed."""
+    """Return a table cell as HTML; digits of a number that are smaller than its error are dimmed."""
     if not isinstance(cell, Text) or not cell.spans:
         return escape(str(cell))
     start = cell.spans[0].start
@@ -209,7 +209,7 @@ def _cell(cell: object) -> str:
 
 
 def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
-    """Write a row in HTML; cells with long words may wrap."""
+    """Return a table row as HTML; cells with long texts may be wrapped."""
     kinds = (
         ("words sentence" if len(cell) > _SENTENCE else "words") if w else "number"
         for cell, w in zip(cells, words, strict=True)

@@ -1,4 +1,4 @@
-"""Printed reports of `reproduce`: headings of papers, notes, and pictures drawn into a folder."""
+"""Console reports of the command `reproduce`: headings of papers, notes, and pictures."""
 
 from __future__ import annotations
 
@@ -12,29 +12,29 @@ from beamdyn.common.results.pictures import Axes, Figure, save_figure
 
 
 def print_heading(screen: Console, paper: Mapping[str, Any], between: str = ", ") -> None:
-    """Print title, authors, journal and year of a published file, as far as it has them."""
+    """Print title, authors, journal and year of a paper, if its file of published numbers has them."""
     people = between.join(paper.get("authors", ()))
     parts = people, paper.get("journal", ""), str(paper["year"])
     screen.print(f"{paper['title']}\n{', '.join(filter(None, parts))}", style="bold")
 
 
 def print_notes(screen: Console, notes: Iterable[str]) -> None:
-    """Print paragraphs, each followed by an empty line."""
+    """Print paragraphs, with a blank line after each."""
     for note in notes:
         screen.print(f"{note}\n")
 
 
 def draw_pictures(screen: Console, folder: Path, pictures: Mapping[str, Callable[[], Axes | Figure]]) -> None:
-    """Draw pictures into a folder, which is made if needed, and print the path of each.
+    """Draw pictures into a folder, which is created if needed, and print the path of each picture.
 
     Parameters
     ----------
     screen : Console
         Where to print.
     folder : Path
-        Folder; files of the same names are replaced.
+        Folder of the pictures; existing files with the same names are replaced.
     pictures : mapping
-        Functions that draw, by the names of the files without their ending.
+        The function that draws each picture, by file name without suffix.
     """
     folder.mkdir(parents=True, exist_ok=True)
     for name, draw in pictures.items():

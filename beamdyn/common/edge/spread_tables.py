@@ -1,4 +1,4 @@
-"""Spreads over tolerances, as tables and as rows of CSV files."""
+"""Tables and CSV rows of results whose inputs have tolerances."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ from beamdyn.common.spreading.spread_result import Spread, spread_figure
 from beamdyn.common.spreading.tolerances import Normal
 from beamdyn.common.words import percent, supported
 
-_DIGITS = 6  # largest number of digits of an answer
-# Characters: of a table's width, between columns, and of a pair of shares.
+_DIGITS = 6  # largest number of significant digits of a result
+# Numbers of characters: width of a table, gap between columns, and width of a pair of variance shares.
 _WIDTH, _GAP, _OF_SHARES = 119, 3, 20
 _HEADLINES = 6
-_SIGNS = "+-."  # signs that names keep in heads of columns
-_SMALL = 0.01  # share of a variance below which a table only says that the share is smaller
+_SIGNS = "+-."  # characters other than letters and digits that are allowed in column headings
+_SMALL = 0.01  # share of the variance below which a table says only "less than"
 
 
 def spread_table(result: Spread) -> Group:
-    """Make a sentence on each answer, and tables of ranges, scatter, and the inputs' shares of variance."""
+    """Make a sentence on each result, and tables of ranges, scatter and shares of the variance."""
     said = [Text(headline(result, k)) for k in _told(result)[:_HEADLINES]]
     return Group(*said, _ranges(result), _scatter(result), *_inputs(result), Text(_note(result)))
 
 
 def _told(result: Spread) -> list[int]:
-    """Return the indices of answers that at least one design has."""
+    """Return the indices of the results that exist for at least one design."""
     return [k for k in range(len(result.answers)) if result.scatter.no_answer[k] < 1]
 
 
 def headline(result: Spread, answer: int) -> str:
-    """Describe an answer: nominal value, worst cases, standard deviation, and what matters most."""
+    """Describe a result: nominal value, worst cases, standard deviation, and the most influential input."""
     k, unit = answer, f" {result.units[answer]}".rstrip()
     (low, high), scatter, nominal = _worst(result, k), result.scatter, result.nominal[k]
     parts = [f"{result.answers[k]}: {_number(nominal, _numerical(result, k)(nominal))}{unit}"]
@@ -61,20 +61,20 @@ def headline(result: Spread, answer: int) -> str:
 
 
 def _numerical(result: Spread, answer: int) -> Callable[[float], float]:
-    """Return the function that gives the absolute numerical error of a value of an answer."""
+    """Return the function that gives the absolute numerical error of each value of a result."""
     error = result.error[answer]
     return lambda value: abs(value) * (0.0 if np.isnan(error) else error)
 
 
 def _deviation(result: Spread, answer: int) -> tuple[float, float]:
-    """Return the standard deviation of an answer, and its error by sampling and by errors of answers."""
+    """Return the standard deviation of a result, and its error due to sampling and numerical errors."""
     found, values = result.scatter, result.sampled_answers[:, answer]
     largest = np.abs(values[np.isfinite(values)]).max(initial=0.0)
     return found.deviation[answer], found.deviation_error[answer] + _numerical(result, answer)(largest)
 
 
 def _worst(result: Spread, answer: int) -> tuple[str, str]:
-    """Describe the worst cases of an answer, each with the digits that its own error supports."""
+    """Describe the worst cases of a result, with the digits that the error of each value supports."""
     found, k = result.worst, answer
     errors = np.nan_to_num([found.smallest_error[k], found.largest_error[k]], posinf=np.inf)
     return _number(found.smallest[k], errors[0]), _number(found.largest[k], errors[1])
@@ -85,7 +85,7 @@ def _number(value: float, error: float) -> str:
 
 
 def _share(value: float, error: float) -> str:
-    """Format a share of a variance; "< 0.01" if it is surely small."""
+    """Format a share of the variance; "< 0.01" if the share is certainly smaller."""
     if abs(value) + 3 * error < _SMALL:
         return f"< {_SMALL:g}"
     return supported(value, error, 3).replace("none", "-")
@@ -122,7 +122,7 @@ def _ranges(result: Spread) -> Group:
 
 
 def _scatter(result: Spread) -> Group:
-    """Make the table of mean, standard deviation and percentiles, in digits that standard errors support."""
+    """Make the table of mean, standard deviation and percentiles; standard errors determine the digits."""
     found, rows = result.scatter, []
     for k, head in enumerate(_heads(result)):
         pairs = [(found.percentile[i, k], found.percentile_error[i, k]) for i in (1, 2, 3)]
@@ -139,12 +139,12 @@ def _scatter(result: Spread) -> Group:
 
 
 def _inputs(result: Spread) -> Iterator[Group]:
-    """Yield tables of inputs with tolerances and shares of variance, for as many answers as fit."""
+    """Yield tables of the inputs with tolerances and shares of the variance; wide tables are split."""
     told, found = _told(result), result.indices
     firsts = [(each.name, f"{each.nominal:.6g} {each.unit}".rstrip(), each.text) for each in result.inputs]
     names = [result.answers[k] for k in told]
     left = sum(max(map(len, column)) + _GAP for column in zip(*firsts, ("", "", "tolerance"), strict=True))
-    # Number of answers that fit beside one another.
+    # Number of results that fit side by side.
     beside = max(1, (_WIDTH - left) // (max(_OF_SHARES, *map(len, names), 0) + _GAP))
     for start in range(0, len(told), beside):
         rows: list[list[str]] = [[*first] for first in firsts]
@@ -157,7 +157,7 @@ def _inputs(result: Spread) -> Iterator[Group]:
 
 
 def _note(result: Spread) -> str:
-    """Write a note on numbers of designs, digits, and the sources of slopes and worst cases."""
+    """Return the note on the number of designs, the digits, and the sources of slopes and worst cases."""
     is_normal = any(isinstance(each.distribution, Normal) for each in result.inputs)
     normal = ", of normal ones three standard deviations either way" if is_normal else ""
     first, told = result.first_order, _told(result)
@@ -177,7 +177,7 @@ def _note(result: Spread) -> str:
 
 
 def spread_csv(result: Spread) -> Columns:
-    """Make columns with a row for each random design: inputs in SI, and answers."""
+    """Make columns with one row per random design: inputs in SI units, and results."""
     columns = [
         column_named(name_in_heads(each.name.replace(".", "_"), _SIGNS), values, each.unit)
         for each, values in zip(result.inputs, result.sampled_inputs.T, strict=True)

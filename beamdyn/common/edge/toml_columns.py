@@ -1,4 +1,4 @@
-"""Tables in TOML files: a row of heads with units, such as "twist [deg]", then rows of plain numbers."""
+"""Numerical tables in TOML files: a row of headings with units ("twist [deg]"), then rows of numbers."""
 
 from __future__ import annotations
 
@@ -16,35 +16,35 @@ _HEAD = re.compile(r"\s*([^\s\[\]]+)\s*(?:\[([^\[\]]*)\]\s*)?")
 
 
 def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[str, list[Any]]:
-    """Read the columns of a table.
+    """Read the columns of a numerical table in a TOML file.
 
     Parameters
     ----------
     place : str
-        Key of the table, for messages.
+        Key of the table in the file, for messages.
     rows : list of list
-        The heads, then the numbers of each row.
+        The row of headings, followed by rows of numbers.
     known : mapping
-        Quantities that columns may have, by name.
+        The known quantities, by name.
 
     Returns
     -------
     dict
-        Values in SI by name, as the quantity converts them.
+        Values in SI units, by name of the quantity.
 
     Raises
     ------
     InvalidInput
-        At the first mistake; its field is the place, such as "stations[2][0]", counted from 0.
+        At the first mistake; its `field` is the position, such as "stations[2][0]", counted from 0.
     """
     if not isinstance(rows, list) or len(rows) < 2:
-        remedy = 'give a row of heads, ["x/L", "twist [deg]"], then rows of numbers'
+        remedy = 'give a row of headings, ["x/L", "twist [deg]"], then rows of numbers'
         raise InvalidInput(place, rows, remedy)
     for r, row in enumerate(rows):
         if not isinstance(row, list) or not row:
             raise InvalidInput(f"{place}[{r}]", row, "give a row in brackets")
         if len(row) != len(rows[0]):
-            raise InvalidInput(f"{place}[{r}]", row, f"{len(row)} cells under {len(rows[0])} heads")
+            raise InvalidInput(f"{place}[{r}]", row, f"{len(row)} cells under {len(rows[0])} headings")
     units: dict[str, str] = {}
     for c, head in enumerate(rows[0]):
         name, unit = _read_head(f"{place}[0][{c}]", head, known)
@@ -65,7 +65,7 @@ def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[s
 
 
 def _read_head(place: str, head: Any, known: Mapping[str, Quantity]) -> tuple[str, str]:
-    """Read name and unit of a column from its head."""
+    """Read the name and the unit of a column from its heading."""
     match = _HEAD.fullmatch(head) if isinstance(head, str) else None
     name = match[1] if match else ""
     if match is None or name not in known:

@@ -1,4 +1,4 @@
-"""Conversion of numbers with units, as people write them, to SI: "0.2 mm", "525 rpm", "7850 kg/m3"."""
+"""Conversion of texts with a number and a unit to SI: "0.2 mm", "525 rpm", "7850 kg/m3"."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from typing import TYPE_CHECKING
 
 from beamdyn.common.inputs.checks import InvalidValue
 
-if TYPE_CHECKING:  # imported later, as pint takes 0.3 s, when a quantity needs it
+if TYPE_CHECKING:  # imported when a quantity first needs it, as the import of pint takes 0.3 s
     from pint import Unit, UnitRegistry
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _FACTOR = r"[A-Za-z_%°µμΩ]+(?:(?:\^|\*\*)?-?[1-9])?"
 _SEPARATOR = r"(?:\s*[*/]\s*|\s+)"
-# "1/s" must follow a blank: 0.51/s would have two meanings.
+# "1/s" must follow a blank: in 0.51/s, the number could be 0.5 or 0.51.
 _UNITS = rf"(?<=\s)1/{_FACTOR}|{_FACTOR}(?:{_SEPARATOR}{_FACTOR})*"
 _TEXT = re.compile(rf"\s*({_NUMBER})\s*((?:{_UNITS})?)\s*", re.ASCII)
 _NO_NUMBER = re.compile(r"\s*[+-]?(nan|inf)", re.IGNORECASE)
 _POWER = re.compile(r"(?:\^|\*\*)?(-?\d)")
-# Minus signs and blanks as copied from printed pages.
+# Minus signs and blanks as they occur in texts copied from printed pages.
 _MINUS_SIGNS, _SPACES = "\u2212\u2013\uff0d", "\u00a0\u2007\u2009\u202f"
 _PLAIN = str.maketrans(
     {"²": "2", "³": "3", "⁴": "4", "·": "*", "⋅": "*", "\uff0e": "."}
     | dict.fromkeys(_MINUS_SIGNS, "-")
     | dict.fromkeys(_SPACES, " ")
-    | {0xFF10 + digit: str(digit) for digit in range(10)}  # digits of full width
+    | {0xFF10 + digit: str(digit) for digit in range(10)}  # full-width digits of East Asian fonts
 )
-# Patterns: the separator of several quantities in a text, and what stands before a number.
+# Patterns: the separator between several quantities in a text, and the text before a number.
 _BETWEEN, _BEFORE_NUMBER = re.compile(r"[:,]|\bto\b"), re.compile(r"^[^\d.]*")
-_KNOWN_SIGNS = "°µμΩ"  # signs of units beyond ASCII
+_KNOWN_SIGNS = "°µμΩ"  # characters of units that are not ASCII
 
 _KINDS = {
     "m": "length",
@@ -71,7 +71,7 @@ _KINDS = {
     "": "plain number",
 }
 # Factors of common units, so that reading them does not load pint, which takes longer than most commands;
-# those of angles have more digits than a decimal number needs.
+# factors of angles have more digits than a float can hold, so that conversion adds no error.
 _COMMON = {
     "m": {"mm": "0.001", "cm": "0.01"},
     "kg": {"g": "0.001"},
@@ -84,16 +84,16 @@ _USUAL = {"m": "mm", "kg": "g", "rad": "deg", "rad/s": "rpm", "Pa": "GPa", "kg m
 
 
 class InvalidInput(InvalidValue):
-    """Raised for a refused value of a file, form or command; the message shows it as TOML writes it."""
+    """Raised for an invalid value in a file, form or command; the message shows it in TOML notation."""
 
     @property
     def shown(self) -> str:
-        """The value as the message shows it."""
+        """Return the value as shown in the message."""
         return super().shown if isinstance(self.value, float) else show(self.value)
 
 
 def quantity(text: object, unit: str) -> float:
-    """Return the value of a number with a unit, in SI.
+    """Convert a text with a number and a unit to SI units.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def _finite(value: float, text: object, unit: str) -> float:
 
 
 def _common_factor(given: str, unit: str) -> Decimal | None:
-    """Return the factor from a unit to an SI unit, if the unit is a common one."""
+    """Return the conversion factor from a unit to an SI unit if the unit is a common one, else None."""
     factor = "1" if given == unit else _COMMON.get(unit, {}).get(given)
     return None if factor is None else Decimal(factor)
 
@@ -145,20 +145,21 @@ def _common_factor(given: str, unit: str) -> Decimal | None:
 def _product(number: str, factor: Decimal) -> float:
     try:
         return float(Decimal(number) * factor)
-    except ArithmeticError:  # an exponent beyond the range of decimal
+    except ArithmeticError:  # the exponent is outside the range of decimal numbers
         return math.nan
 
 
 @lru_cache(4096)
 def _known(text: str, unit: str) -> float:
-    """Convert a quantity like `quantity`, with a cache, since a form reads all inputs at each change."""
+    """Convert a quantity as `quantity` does, with a cache, since a form reads all inputs at each change."""
     return _quantity(text, unit)
 
 
 def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], float]]:
-    """Return the unit of a quantity as written, and a function that converts numbers in `unit` to it.
+    """Return the unit written in a text, and the function that converts numbers from `unit` to it.
 
-    Where the text has no unit of that kind, it is `unit` itself. Of an angle, "%" is the rise of a slope.
+    If the text has no unit of the same kind, return `unit` itself.  For an angle, "%" means the gradient of a
+    slope.
     """
     match = _TEXT.fullmatch(text.translate(_PLAIN)) if isinstance(text, str) and unit else None
     if match is None or not (written := match[2]):
@@ -174,12 +175,12 @@ def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], flo
 
 
 def last_quantity(text: str) -> str:
-    """Return the last of several quantities in a text, such as "100:5 rpm", with the unit of all."""
+    """Return the last of several quantities in a text, such as "100:5 rpm", with the unit common to all."""
     return _BEFORE_NUMBER.sub("", _BETWEEN.split(text)[-1])
 
 
 def show(value: object, depth: int = 2) -> str:
-    """Return a value as TOML writes it, shortened if it is long or deeply nested."""
+    """Format a value as TOML writes it; a long or deeply nested value is shortened."""
     text = _toml(value, depth)
     return text if len(text) <= 60 else text[:57] + "..."
 
@@ -211,7 +212,7 @@ def _registry() -> UnitRegistry:
 
 
 def _split(given: object, unit: str) -> tuple[str, str]:
-    """Split a quantity into number and unit, as written."""
+    """Split a text into number and unit, both as written."""
     bare = isinstance(given, int | float) and not isinstance(given, bool)
     text = str(given) if bare or isinstance(given, str) else ""
     match = _TEXT.fullmatch(text.translate(_PLAIN))
@@ -226,7 +227,7 @@ def _split(given: object, unit: str) -> tuple[str, str]:
 
 @cache
 def _parse(unit: str) -> Unit | None:
-    """Return the unit that a text means (m2, m^2 and m**2 are the same); None if there is none."""
+    """Parse a unit (m2, m^2 and m**2 are the same); return None if there is no such unit."""
     from pint.errors import PintError
 
     try:
@@ -236,14 +237,14 @@ def _parse(unit: str) -> Unit | None:
 
 
 def _root(unit: Unit) -> Unit:
-    """Return the product of base units, with radians kept, which tells rpm from Hz."""
+    """Return a unit as a product of base units; radians are kept, so that rpm and Hz differ."""
     return _registry().get_root_units(unit)[1]
 
 
 def _convert(number: str, kind: Unit, wanted: Unit) -> float:
     try:
         return float(_registry().Quantity(Decimal(number), kind).to(wanted).magnitude)
-    except (ArithmeticError, TypeError):  # an exponent beyond decimal's range, or a logarithmic unit
+    except (ArithmeticError, TypeError):  # too large an exponent, or a logarithmic unit
         return math.nan
 
 
@@ -257,7 +258,7 @@ def _mismatch(number: str, kind: Unit, unit: str) -> str:
 
 
 def _no_quantity(given: object, unit: str) -> tuple[str, str]:
-    """Say why a value is not a number with a unit, and how to write it."""
+    """Return an error that says why a text is not a number with a unit, and how to write it."""
     match given:
         case bool():
             return "a truth value", f"give a quantity, e.g. {_example(unit)}"
@@ -277,19 +278,19 @@ def _no_quantity(given: object, unit: str) -> tuple[str, str]:
 
 
 def in_plain_characters(text: str) -> str:
-    """Replace minus signs, blanks and digits copied from printed pages by plain ones."""
+    """Replace minus signs, blanks and digits copied from printed pages by ASCII characters."""
     return text.translate(_PLAIN)
 
 
 def odd_character(text: str) -> str:
-    """Return the name of the first character that no number or unit has; empty if there is none."""
+    """Return the name of the first character that can occur in no number or unit; empty if there is none."""
     plain = text.translate(_PLAIN)
     odd = next((c for c in plain if not (c.isascii() or c in _KNOWN_SIGNS)), "")
     return f"{unicodedata.name(odd, 'without a name')} (U+{ord(odd):04X})" if odd else ""
 
 
 def _example(unit: str, number: str = "1") -> str:
-    """Write a quantity as a file does, with a number as it was given."""
+    """Format a quantity as in a file, with the number as the user wrote it."""
     return f'"{number} {usual_unit(unit)}"' if unit else number
 
 
@@ -298,5 +299,5 @@ def _kind(unit: str) -> str:
 
 
 def usual_unit(unit: str) -> str:
-    """Return the unit in which people write a quantity, by its SI unit: "deg" for "rad"."""
+    """Return the unit in which a quantity is usually written, for its SI unit: "deg" for "rad"."""
     return _USUAL.get(unit, unit)

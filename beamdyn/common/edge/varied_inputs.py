@@ -1,4 +1,4 @@
-"""Reading of varied inputs, such as "stop.speed=10:30:9 km/h", and of inputs with tolerances."""
+"""Reading of options for varied inputs, such as "stop.speed=10:30:9 km/h", and inputs with tolerances."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NO_NUMBER = re.compile(r"(?<!\w)[+-]?(nan|inf(inity)?)(?!\w)", re.IGNORECASE)
 _RANGE = re.compile(rf"\s*({_NUMBER})\s*:\s*({_NUMBER})\s*:\s*(\d+)\s*(?::?\s*(log)\b)?\s*([^:]*?)\s*")
 _LIST = re.compile(rf"\s*({_NUMBER}(?:\s*,\s*{_NUMBER})+)\s*(.*?)\s*")
-MOST_AT_ONCE = 100_000  # largest number of designs that are answered together, as arrays
+MOST_AT_ONCE = 100_000  # largest number of designs that are solved at once, as arrays
 
 
 @dataclass(frozen=True)
 class Axis:
-    """An input that is varied, and its values.
+    """A varied input and its values.
 
     Parameters
     ----------
@@ -38,9 +38,9 @@ class Axis:
     unit : str
         Unit in which the values were given.
     given : ndarray, shape (n,)
-        The values in that unit.
+        The values in this unit.
     values : ndarray, shape (n,)
-        The values in SI.
+        The values in SI units.
     """
 
     input: Input
@@ -50,18 +50,18 @@ class Axis:
 
     @property
     def label(self) -> str:
-        """Key and unit, for tables and pictures."""
+        """Return key and unit of the input, for tables and pictures."""
         return f"{self.input.name} [{self.unit}]" if self.unit else self.input.name
 
 
 @dataclass(frozen=True)
 class Coordinate(Input):
-    """One coordinate of an input that is a point.
+    """One coordinate of an input that is a point in the plane.
 
     Parameters
     ----------
     of : Input
-        The point.
+        The input that is a point.
     place : int
         Index of the coordinate.
     """
@@ -88,7 +88,7 @@ def numbers(inputs: Sequence[Input]) -> list[Input]:
 
 
 def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most: int = MOST_AT_ONCE) -> Axis:
-    """Read an input and its values.
+    """Read the option text for a varied input: the input's key and its values.
 
     Parameters
     ----------
@@ -96,11 +96,11 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
         Inputs that may be varied.
     text : str
         KEY=start:stop:count unit, at equal steps; start:stop:count:log unit, at equal ratios; or a list,
-        KEY=1,2,5 unit.  The key is a path, or its last part where that is unique.
+        KEY=1,2,5 unit.  The key is a path such as "beam.length", or its last part if this is unambiguous.
     option : str
         Name of the option that gives the text, for messages.
     most : int
-        Largest count.
+        Largest number of values.
 
     Returns
     -------
@@ -109,7 +109,7 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
     Raises
     ------
     ValueError
-        If there is no such input, or the values do not fit it.
+        If there is no such input, or the values are not valid for it.
     """
     key, _, given = text.partition("=")
     rest, words = in_plain_characters(given), f'{option} = "{text}"'
@@ -137,7 +137,7 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
 
 
 def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
-    """Convert a value to SI, and check it against the bounds of the input."""
+    """Convert a value to SI units, and check it against the bounds of the input."""
     quantity = entry.quantity
     given = f"{number} {unit}".strip() if quantity.unit or unit else float(number)
     try:
@@ -147,12 +147,12 @@ def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
 
 
 def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
-    """Find the input of a key, which is its path or the last part of that.
+    """Return the input for a key, which is the input's path or the last part of this path.
 
     Parameters
     ----------
     inputs : sequence of Input
-        Inputs that the key may mean, and choices, for which the message is another one.
+        Inputs that the key may mean, including choices among words, which have an error message of their own.
     key : str
         The key.
     words : str
@@ -161,11 +161,12 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     Raises
     ------
     ValueError
-        If no input has this key, several have, or it is a choice.
+        If no input or several inputs have this key, or the input is a choice among words.
     """
     matches = [i for i in inputs if key in (i.path, i.name)]
     if all(i.required or i.default is None for i in matches):
-        # A required input takes precedence: the others default to it, like those of a brake's second shoe.
+        # A required input takes precedence over inputs that default to it, such as those of a brake's second
+        # shoe.
         matches = [i for i in matches if i.required] or matches
     if len(matches) > 1:
         raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")
@@ -179,21 +180,22 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
 
 
 def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
-    """Describe an unknown name, with the nearest known name, or all names."""
+    """Describe an unknown name, and suggest the most similar known name, or list all names."""
     near = difflib.get_close_matches(key, [*names, *more], n=1)
     advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}"
     return f"unknown name {key!r}; {advice}"
 
 
 def designs_of(axes: Sequence[Axis], combine: str = "product") -> Designs:
-    """Make the designs of varied inputs, with values in the units given.
+    """Make the designs from varied inputs, with values in the units that the user gave.
 
     Parameters
     ----------
     axes : sequence of Axis
         The inputs.
     combine : {"product", "zip"}
-        Whether they are combined each with each, or taken together.
+        Whether every value is combined with every value of the other inputs, or the n-th values of all inputs
+        make a design.
     """
     return Designs([VariedInput(axis.input.path, axis.unit, axis.given) for axis in axes], combine)
 
@@ -204,16 +206,16 @@ def designs_of(axes: Sequence[Axis], combine: str = "product") -> Designs:
 def parse_spreads(
     inputs: Sequence[Input], texts: Sequence[str], nominal: Callable[[Input], tuple[float, str]]
 ) -> tuple[SpreadInput, ...]:
-    """Read inputs with their tolerances.
+    """Read the option texts for inputs with tolerances.
 
     Parameters
     ----------
     inputs : sequence of Input
         Inputs that may have a tolerance.
     texts : sequence of str
-        KEY=TOLERANCE of each; the key as for `parse_axis`.
+        KEY=TOLERANCE for each input; the key is as for `parse_axis`.
     nominal : callable
-        ``nominal(input)``: value of an input in SI, and its SI unit.
+        ``nominal(input)`` returns the nominal value of an input in SI units, and its SI unit.
 
     Returns
     -------
@@ -222,7 +224,7 @@ def parse_spreads(
     Raises
     ------
     ValueError
-        If there is no such input, it is given twice, or its tolerance cannot be read.
+        If there is no such input, an input is given twice, or a tolerance cannot be read.
     """
     made: dict[str, SpreadInput] = {}
     for text in texts:

@@ -1,4 +1,4 @@
-"""Views of results: tables and a picture in a notebook, columns of a data frame, and text."""
+"""Display of results: tables and a picture for notebooks, data frames for pandas, and text."""
 
 from __future__ import annotations
 
@@ -31,25 +31,25 @@ if TYPE_CHECKING:
 _MOST_ROWS = 30  # largest number of rows of a table in a notebook
 _WIDTH = 120  # width of a table as text, in characters
 _NOT_SHOWN = ("provenance", "warnings")
-_DEEPEST = 1  # deepest level of objects within a result whose fields are shown
+_DEEPEST = 1  # largest nesting depth of objects in a result whose fields are shown
 
-Rows = Iterable[Sequence[object]]  # rows with heads first, or columns, which can be in display units
+Rows = Iterable[Sequence[object]]  # rows (headings first), or columns
 
 
 @dataclass(frozen=True)
 class View:
-    """The way in which results of a class are shown; parts not given follow from their fields and `plot`.
+    """How results of a class are shown; functions that are not given are replaced by defaults.
 
     Parameters
     ----------
     tables : callable, optional
-        ``tables(result)``: tables and sentences for people; by default the table of the columns.
+        ``tables(result)`` returns tables and sentences for the console; by default, one table of all columns.
     rows : callable, optional
-        ``rows(result)``: columns, or the rows of the CSV file, heads first.
+        ``rows(result)`` returns columns, or the rows of the CSV file with headings in the first row.
     index : int
-        Number of first columns that are the index of a data frame.
+        Number of columns, from the left, that are the index of a data frame.
     figure : callable, optional
-        ``figure(result)``: the picture.
+        ``figure(result)`` draws the picture of a result, and returns the figure.
     """
 
     tables: Callable[[Any], RenderableType] | None = None
@@ -59,7 +59,7 @@ class View:
 
 
 def view_of(result: Result) -> View:
-    """Return the view of a result's class, or of the nearest class that it derives from."""
+    """Return the `View` for a result's class, or for its nearest base class that has one."""
     for kind in type(result).__mro__:
         package, room, *_ = f"{kind.__module__}.".split(".")
         place = SHOWN_BY.get(f"{package}.{room}", SHOWN_BY.get(package))
@@ -70,7 +70,7 @@ def view_of(result: Result) -> View:
 
 
 def tables_of(result: Result) -> RenderableType:
-    """Return tables and sentences on a result, as its command prints them."""
+    """Return the tables and sentences of a result, as its command prints them."""
     view = view_of(result)
     if view.tables is not None:
         return view.tables(result)
@@ -86,14 +86,14 @@ def tables_of(result: Result) -> RenderableType:
 
 
 def rows_of(result: Result) -> Rows:
-    """Return the rows of a result's CSV file, heads first, in its display units."""
+    """Return the rows of a result's CSV file, headings first, in display units."""
     made = view_of(result).rows
     rows = _fields_rows(result) if made is None else made(result)
     return rows.in_units(result.display_units) if isinstance(rows, Columns) else rows
 
 
 def picture_of(result: Result) -> Callable[[], Figure] | None:
-    """Return a function that draws a result, by its view or its `plot`; None if it has neither."""
+    """Return a function that draws a result, from its `View` or method `plot`; None if there is none."""
     made = view_of(result).figure
     if made is not None:
         return lambda: made(result)
@@ -113,7 +113,7 @@ def text_of(result: Result) -> str:
 
 
 def frame_of(result: Result) -> DataFrame:
-    """Return the rows of a result's CSV file as a data frame of pandas.
+    """Return the rows of a result's CSV file as a pandas data frame.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def frame_of(result: Result) -> DataFrame:
 
 # Notebooks ------------------------------------------------------------------------------------------
 
-# Colours are inherited from the page, light or dark; the picture has its own white ground.
+# Colours are inherited from the page, light or dark; the picture has its own white background.
 _STYLE = """
 .beamdyn-result { overflow-x: auto; }
 .beamdyn-result h3 { font-size: 1em; font-weight: 600; margin: 0.8em 0 0.3em; }
@@ -155,9 +155,10 @@ _STYLE = """
 
 
 def html_of(result: Result) -> str:
-    """Write headline, warnings, tables and picture of a result as HTML that needs no other file.
+    """Return one-line summary, warnings, tables and picture of a result as self-contained HTML.
 
-    The picture is an image of its own: it shares no names with others on the page, and runs no scripts.
+    The picture is embedded as an image, so that its names cannot clash with others on the page, and no
+    scripts run.
     """
     said = "".join(f'<p class="warning">{escape(str(each))}</p>' for each in getattr(result, "warnings", ()))
     shown, name = html([tables_of(result)], _MOST_ROWS), escape(repr(result))
@@ -165,7 +166,7 @@ def html_of(result: Result) -> str:
         draw = picture_of(result)
         content = "" if draw is None else base64.b64encode(png(draw())).decode()
         image = content and f'<img alt="{name}" src="data:image/png;base64,{content}">'
-    # Numbers are too large, or none is finite.
+    # The picture cannot be drawn: numbers are too large, or none is finite.
     except (ValueError, ArithmeticError, LookupError) as error:
         image = f"<p>{escape(f'There is no picture: {reason_of(error)}')}</p>"
     return (
@@ -174,11 +175,11 @@ def html_of(result: Result) -> str:
     )
 
 
-# Results without a table of their own ---------------------------------------------------------------
+# Results without a `View` ----------------------------------------------------------------------------
 
 
 def _fields_rows(result: Result) -> Iterator[Sequence[object]]:
-    """Yield names, values and units of the public fields, arrays entry by entry."""
+    """Yield names, values and units of the public fields; arrays are listed entry by entry."""
     yield "name", "value", "unit"
     for name, value, unit in _named_fields(result):
         if not isinstance(value, np.ndarray) or not value.size:
@@ -191,9 +192,10 @@ def _fields_rows(result: Result) -> Iterator[Sequence[object]]:
 
 
 def _named_fields(result: Any, depth: int = 0) -> Iterator[tuple[str, Any, str]]:
-    """Yield name, value and unit of each public field that is a number, text, array or mapping of them.
+    """Yield name, value and unit of each public field with numbers or texts, also in arrays or mappings.
 
-    Fields of results and other objects within it follow; inputs, which are `Described`, are left out.
+    Fields of nested results and other objects follow.  Inputs, which have a `Described` in their annotation,
+    are left out.
     """
     stated = (vars(base).get("field_units", {}) for base in reversed(type(result).__mro__))
     units = {name: unit for each in stated for unit, names in each.items() for name in names.split()}
@@ -209,7 +211,7 @@ def _named_fields(result: Any, depth: int = 0) -> Iterator[tuple[str, Any, str]]
 
 
 def _parts(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Yield a value, or the values of a mapping or of a sequence of objects, each with its name."""
+    """Yield a value, or each value of a mapping or of a sequence of objects, with its name."""
     if isinstance(value, dict):
         yield from ((f"{name}, {key}", item) for key, item in value.items())
     elif isinstance(value, tuple | list):

@@ -1,1 +1,1 @@
-"""Inputs that are described once, their checks, their combinations in designs, and parts by path."""
+"""Descriptions and checks of inputs, designs as combinations of inputs, access to inputs by path."""

@@ -1,4 +1,4 @@
-"""Checks of numbers that may be arrays, for one case or many, with numpy's broadcasting."""
+"""Checks of input values that may be arrays of many cases, with numpy's broadcasting."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Solved = TypeVar("Solved")
 
 
 def numbers(name: str, value: Any, unit: str = "") -> Numbers:
-    """Return finite floats: a float, or an array of any shape; refuse anything else."""
+    """Return a finite float, or an array of finite floats of any shape; raise an error for anything else."""
     array = as_floats(value)
     if array is None:
         raise InvalidValue(name, value, "give a finite number, or an array" + in_unit(unit), unit=unit)
@@ -27,21 +27,21 @@ def numbers(name: str, value: Any, unit: str = "") -> Numbers:
 
 
 def positive(name: str, value: Any, unit: str = "", remedy: str = "") -> Numbers:
-    """Return finite floats; refuse any that is not above zero."""
+    """Return finite floats; raise an error if any of them is not greater than zero."""
     array = numbers(name, value, unit)
     refuse(np.asarray(array) <= 0, name, array, unit, "it must be greater than 0", remedy)
     return array
 
 
 def not_negative(name: str, value: Any, unit: str = "", remedy: str = "") -> Numbers:
-    """Return finite floats; refuse any below zero."""
+    """Return finite floats; raise an error if any of them is below zero."""
     array = numbers(name, value, unit)
     refuse(np.asarray(array) < 0, name, array, unit, "it must be 0 or more", remedy)
     return array
 
 
 def pair(name: str, value: Any, unit: str = "") -> tuple[Numbers, Numbers]:
-    """Return two finite floats or arrays; a message names them by index, such as "tip[0]"."""
+    """Return two finite floats or arrays; error messages name them by index, such as "tip[0]"."""
     try:
         first, second = value
     except (TypeError, ValueError):
@@ -50,14 +50,14 @@ def pair(name: str, value: Any, unit: str = "") -> tuple[Numbers, Numbers]:
 
 
 def keep_checked(core: object) -> None:
-    """Replace the described numbers of a frozen dataclass by floats or arrays that broadcast; None stays.
+    """Replace the numbers in a frozen dataclass by checked floats or arrays; None is not changed.
 
     Raises
     ------
     InvalidValue
-        If one is not finite, or out of the bounds of its description; the numbers of a pair have none.
+        If a number is not finite, or outside the bounds of its description (pairs have no bounds).
     ValueError
-        If the shapes of the numbers, those of lists aside, do not broadcast.
+        If the shapes of the numbers do not broadcast, apart from fields that are lists.
     """
     found: dict[str, Any] = {}
     for name, hint in described_hints(type(core)).items():
@@ -76,7 +76,7 @@ def keep_checked(core: object) -> None:
 
 
 def together(**values: Any) -> None:
-    """Raise a ValueError unless the shapes of all values broadcast."""
+    """Raise a ValueError unless the shapes of all given values broadcast."""
     shapes = {name: np.shape(value) for name, value in values.items()}
     try:
         np.broadcast_shapes(*shapes.values())
@@ -88,28 +88,28 @@ def together(**values: Any) -> None:
 def solve_possible(
     solve: Callable[[np.ndarray], Solved], count: int
 ) -> tuple[Solved | None, np.ndarray, dict[int, InvalidValue]]:
-    """Solve those of many cases that are not refused.
+    """Solve those cases among many whose inputs are valid.
 
     Parameters
     ----------
     solve : callable
-        ``solve(rows)``: the result for the cases with these numbers, as arrays.
+        ``solve(rows)`` returns the result of the cases with these row numbers, as arrays.
     count : int
         Number of cases.
 
     Returns
     -------
     found : object
-        Result of `solve`; None if all cases are refused.
+        Result of `solve`; None if all cases have invalid inputs.
     rows : ndarray of int
-        Numbers of the cases that are solved.
+        Row numbers of the cases that are solved.
     refused : dict of int to InvalidValue
-        Why each of the others is refused, by its number.
+        The error of each invalid case, by row number.
 
     Raises
     ------
     InvalidValue
-        If `solve` raises one that does not tell which cases it is about.
+        If `solve` raises one that does not say which cases are invalid.
     """
     rows, refused = np.arange(count), dict[int, InvalidValue]()
     while rows.size:

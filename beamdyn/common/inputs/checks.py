@@ -1,4 +1,4 @@
-"""Checks of input values. Each refusal is an `InvalidValue`, which has the parts of its message as data."""
+"""Checks of input values. An invalid value raises `InvalidValue`, which holds the parts of its message."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ import numpy as np
 
 from beamdyn.common.words import Named, Part, worded
 
-MOST = 1e50  # largest size in SI units, so that products of six are still far from overflow
-_LONGEST = 60  # largest number of characters of a value that a message shows
+MOST = 1e50  # largest input in SI units, so that products of six such numbers are far from overflow
+_LONGEST = 60  # most characters of a value that a message shows
 
 
 @dataclass(frozen=True)
 class RefusedCases:
-    """The refused ones of N cases, with their values and limits.
+    """The invalid ones among N cases, with their values and limits.
 
     Parameters
     ----------
     bad : ndarray of bool, shape (N,)
-        Whether each case is refused.
+        Whether each case is invalid.
     value : ndarray, shape (N,)
-        The value of each.
+        The checked value in each case.
     limit : ndarray, shape (N,), optional
-        Its bound, where that is a number.
+        The bound in each case, if it is a number.
     """
 
     bad: np.ndarray
@@ -35,21 +35,21 @@ class RefusedCases:
     limit: np.ndarray | None
 
     def converted(self, convert: Callable[[float], float]) -> RefusedCases:
-        """Return the cases with values and limits converted to another unit."""
+        """Return a copy with values and limits converted to another unit."""
         each = np.vectorize(convert, otypes=[float])
         return RefusedCases(self.bad, each(self.value), None if self.limit is None else each(self.limit))
 
 
 @dataclass(eq=False)
 class InvalidValue(ValueError):
-    """Raised for a refused value; its message is composed from its attributes, which callers may replace.
+    """Raised for an invalid input value; its message is made from its attributes, which callers may replace.
 
     Parameters
     ----------
     field : str
         Name of the argument, such as "radius"; "tip[0]" is the first number of a pair.  It may be empty.
     value : object
-        The refused value; a number is in `unit`.
+        The invalid value; if it is a number, it is in `unit`.
     bound : str
         What is wrong, or what to give.  In it and in `remedy`, ``{unit}``, ``{limit}``, ``{field}`` and
         ``{other}`` stand for the attributes of these names.
@@ -58,13 +58,13 @@ class InvalidValue(ValueError):
     unit : str
         SI unit of `value` and `limit`.
     limit : float, optional
-        The bound, where it is a number [unit].
+        The bound, if it is a number [unit].
     other : str
         Name of another argument that the message mentions.
     where : str
-        Text after the value: where it is refused, or in how many cases.
+        Text after the value: the position at which it is invalid, or the number of invalid cases.
     cases : RefusedCases, optional
-        Which cases are refused, where the value is one of an array.
+        The invalid cases, if the value is one of an array.
     """
 
     field: str
@@ -81,12 +81,12 @@ class InvalidValue(ValueError):
         return self.worded(str)
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """Return the message, each part of it worded by `word`."""
+        """Return the message, with the function `word` applied to each of its parts."""
         name = self.field and f"{self.field} = "
         return f"{name}{self.shown}{self.where}: {self.advice(word)}"
 
     def advice(self, word: Callable[[Part], str]) -> str:
-        """Return the bound and the remedy, each part of them worded by `word`."""
+        """Return bound and remedy, with the function `word` applied to each part."""
         remedy = self.remedy and f"; {worded(self.remedy, word)}"
         return self._filled(worded(self.bound, word) + remedy)
 
@@ -94,14 +94,14 @@ class InvalidValue(ValueError):
         return type(self), tuple(getattr(self, attribute.name) for attribute in fields(self))
 
     def in_unit(self, unit: str, convert: Callable[[float], float]) -> Self:
-        """Return the refusal with its numbers converted to another unit."""
+        """Return a copy of the error with its numbers converted to another unit."""
         value = convert(self.value) if isinstance(self.value, float) else self.value
         limit = None if self.limit is None else convert(self.limit)
         cases = None if self.cases is None else self.cases.converted(convert)
         return replace(self, value=value, limit=limit, unit=unit, cases=cases)
 
     def by_case(self) -> dict[int, InvalidValue]:
-        """Return a separate refusal for each bad case, by the number of the case."""
+        """Return a separate error for each invalid case, by the number of the case."""
         if self.cases is None:
             return {}
         bad, value, limit = self.cases.bad, self.cases.value, self.cases.limit
@@ -118,10 +118,10 @@ class InvalidValue(ValueError):
 
     @property
     def shown(self) -> str:
-        """The value as the message shows it: a number with its unit, anything else as Python writes it."""
+        """Return the value as shown in the message: a number with its unit, else as Python prints it."""
         if isinstance(self.value, float):
             return self._with_unit(self.value)
-        text = " ".join(repr(self.value).split())  # a matrix, too, is written on one line
+        text = " ".join(repr(self.value).split())  # the text of a matrix is put on one line
         return text if len(text) <= _LONGEST else text[: _LONGEST - 3] + "..."
 
     def _with_unit(self, number: float) -> str:
@@ -140,17 +140,17 @@ OUT_OF_RANGE = (
 
 
 def reason_of(error: Exception) -> str:
-    """Return the message of an error, in plain words where Python or numpy met numbers out of range."""
+    """Return the message of an error; an overflow in Python or numpy is described in plain words."""
     beyond = isinstance(error, ZeroDivisionError | OverflowError | FloatingPointError)
     return OUT_OF_RANGE if beyond else str(error)
 
 
 class NoModelAnswer(ValueError):
-    """Raised for valid arguments to which the model has no answer, such as too high a speed."""
+    """Raised for valid arguments for which the model has no solution, such as too high a speed."""
 
 
 class BeyondModel(InvalidValue, NoModelAnswer):
-    """Raised for a valid value at which the model has no answer."""
+    """Raised for a valid input value at which the model has no solution."""
 
 
 def refuse(
@@ -164,12 +164,12 @@ def refuse(
     limit: Any = None,
     other: str = "",
 ) -> None:
-    """Raise an `InvalidValue` if any case is bad.
+    """Raise an `InvalidValue` if any case is invalid.
 
     Parameters
     ----------
     bad : bool or array of bool
-        Which cases are refused.
+        Which cases are invalid.
     name, unit, bound, remedy, other : str
         As for `InvalidValue`.
     value, limit : float or array
@@ -178,7 +178,7 @@ def refuse(
     Raises
     ------
     InvalidValue
-        With the first bad case, and how many there are.
+        For the first invalid case; the message also has the number of invalid cases.
     """
     bad = np.asarray(bad)
     if not bad.any():
@@ -196,7 +196,7 @@ def refuse(
 
 
 def real(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """Return a finite real number (of Python, numpy, Decimal or the like) as a float."""
+    """Return a finite real number (a Python or numpy number, a Decimal or the like) as a float."""
     number = _as_float(value)
     if not math.isfinite(number):
         raise InvalidValue(name, value, "give a finite number" + in_unit(unit), remedy, unit)
@@ -215,13 +215,13 @@ def _as_float(value: Any) -> float:
 
 
 def _is_one(value: Any) -> bool:
-    """Whether a numpy scalar or array is one real number."""
+    """Return whether a numpy scalar or array holds exactly one real number."""
     return holds_reals(array := np.asanyarray(value)) and not array.ndim
 
 
 def holds_reals(array: np.ndarray) -> bool:
-    """Whether an array holds real numbers only; masks, truth values, text and complex numbers are none."""
-    if array.dtype.kind == "O":  # objects, such as Decimal, or an integer beyond 64 bits
+    """Return whether an array holds real numbers only: no masked, boolean, text or complex entries."""
+    if array.dtype.kind == "O":  # objects such as Decimal, or an integer of more than 64 bits
         return all(
             hasattr(each, "__float__") and not isinstance(each, bool | np.bool_) for each in array.flat
         )
@@ -229,21 +229,21 @@ def holds_reals(array: np.ndarray) -> bool:
 
 
 def positive(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """Return a finite number; refuse one that is not above zero."""
+    """Return a finite number; raise an error if it is not greater than zero."""
     number = real(name, value, unit, remedy)
     refuse(number <= 0, name, number, unit, "it must be greater than 0", remedy)
     return number
 
 
 def moderate(name: str, value: object, unit: str = "") -> float:
-    """Return a finite number whose powers and products with similar ones do not overflow."""
+    """Return a finite number that is small enough for powers and products not to overflow."""
     number = real(name, value, unit)
     refuse(abs(number) > MOST, name, number, unit, "give at most {limit} either way", limit=MOST)
     return number
 
 
 def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """Return a number above zero, neither so large nor so small that powers and products overflow."""
+    """Return a number greater than zero; raise an error if powers and products of it may overflow."""
     number = positive(name, value, unit, remedy)
     refuse(number < 1 / MOST, name, number, unit, "give a size of {limit} or more", remedy, limit=1 / MOST)
     refuse(number > MOST, name, number, unit, "give a size of at most {limit}", remedy, limit=MOST)
@@ -251,21 +251,21 @@ def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
 
 
 def not_negative(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """Return a finite number; refuse one below zero."""
+    """Return a finite number; raise an error if it is below zero."""
     number = real(name, value, unit, remedy)
     refuse(number < 0, name, number, unit, "it must be 0 or more", remedy)
     return number
 
 
 def amount(name: str, value: object, unit: str = "") -> float:
-    """Return a number of zero or more, not so large that powers and products overflow."""
+    """Return a number of zero or more that is small enough for powers and products not to overflow."""
     number = not_negative(name, value, unit)
     refuse(number > MOST, name, number, unit, "give at most {limit}", limit=MOST)
     return number
 
 
 def within(name: str, value: object, least: float, most: float) -> float:
-    """Return a number; refuse one that is not between `least` and `most`."""
+    """Return a number; raise an error unless it is between `least` and `most`."""
     number = _as_float(value)
     if not least <= number <= most:
         raise InvalidValue(name, value, f"give a number from {least:g} to {most:g}")
@@ -273,7 +273,7 @@ def within(name: str, value: object, least: float, most: float) -> float:
 
 
 def angle(name: str, value: object) -> float:
-    """Return an angle [rad]; refuse one beyond one turn in either direction."""
+    """Return an angle [rad]; raise an error if it exceeds one turn in either direction."""
     number = real(name, value, "rad")
     remedy = f"if {number:g} degrees were meant, give math.radians({number:g})"
     refuse(abs(number) > 2 * math.pi, name, number, "rad", "it is beyond one turn (2 pi)", remedy)
@@ -281,7 +281,7 @@ def angle(name: str, value: object) -> float:
 
 
 def count(name: str, value: object, least: int = 1, most: float = math.inf, remedy: str = "") -> int:
-    """Return a whole number of at least `least` and at most `most`."""
+    """Return a whole number; raise an error unless it is between `least` and `most`."""
     number = _as_float(value)
     if not (least <= number <= most and number.is_integer()):
         bounds = f"of {least} or more" if math.isinf(most) else f"from {least} to {most:.0f}"
@@ -290,14 +290,14 @@ def count(name: str, value: object, least: int = 1, most: float = math.inf, reme
 
 
 def flag(name: str, value: object) -> bool:
-    """Return a truth value, of Python or numpy, as a bool."""
+    """Return True or False, given by Python or numpy, as a bool."""
     if not isinstance(value, bool | np.bool_):
         raise InvalidValue(name, value, "give True or False")
     return bool(value)
 
 
 def kind(name: str, value: object, wanted: type | UnionType, remedy: str = "") -> None:
-    """Refuse an object that is not of the wanted class, or of one of several."""
+    """Raise an error unless an object is an instance of the given class, or of one of several classes."""
     if not isinstance(value, wanted):
         classes: tuple[Any, ...] = get_args(wanted) or (wanted,)
         known = {NoneType: "None", str: "text"}
@@ -306,7 +306,7 @@ def kind(name: str, value: object, wanted: type | UnionType, remedy: str = "") -
 
 
 def several(name: str, values: Any, wanted: type, remedy: str = "") -> tuple[Any, ...]:
-    """Return values as a tuple; refuse one that is not of the wanted class."""
+    """Return a sequence as a tuple; raise an error for an item that is not of the given class."""
     try:
         given = None if isinstance(values, str | bytes | dict) else tuple(values)
     except TypeError:
@@ -319,34 +319,34 @@ def several(name: str, values: Any, wanted: type, remedy: str = "") -> tuple[Any
 
 
 def function(name: str, value: object, remedy: str = "") -> None:
-    """Refuse an object that cannot be called."""
+    """Raise an error unless an object can be called."""
     if not callable(value):
         raise InvalidValue(name, value, "give a function", remedy)
 
 
 def one_of(name: str, value: object, choices: Sequence[str]) -> None:
-    """Refuse anything but one of a few words."""
+    """Raise an error unless a value is one of a few words."""
     if not isinstance(value, str) or value not in choices:
         *others, last = map(repr, choices)
         raise InvalidValue(name, value, f"give {', '.join(others)} or {last}")
 
 
 def check_used(what: str, options: Mapping[str, Collection[str]], **given: object) -> None:
-    """Refuse options on which an answer does not depend.
+    """Raise an error for options that have no effect on the requested result.
 
     Parameters
     ----------
     what : str
-        Name of the answer.
+        Name of the requested result.
     options : mapping of str to collection of str
-        Options on which each answer depends, by the answer.
+        Names of the options that affect each result, by name of the result.
     **given : object
-        The options; None is one that is not given.
+        The options; None for an option that is not given.
 
     Raises
     ------
     InvalidValue
-        With the answers that depend on it.
+        For an option without effect; the message names the results that depend on it.
     """
     for name, value in given.items():
         if value is not None and name not in options[what]:
@@ -371,12 +371,12 @@ def real_array(name: str, values: float | Sequence[float] | np.ndarray) -> np.nd
 
 
 def as_floats(values: Any) -> np.ndarray | None:
-    """Return an array of floats, of any shape; None if the values are not all real numbers."""
+    """Return an array of floats, of any shape; None unless all values are real numbers."""
     try:
         array = np.asanyarray(values)
         if (array.size and not holds_reals(array)) or _holds_truth(values):
             return None
-        with np.errstate(over="ignore"):  # a number beyond the range of float becomes inf
+        with np.errstate(over="ignore"):  # a number beyond the range of floats becomes inf
             return array.astype(float)
     # Raised by ragged lists, and by numbers beyond the range of float.
     except (TypeError, ValueError, ArithmeticError):
@@ -384,7 +384,7 @@ def as_floats(values: Any) -> np.ndarray | None:
 
 
 def _holds_truth(values: Any) -> bool:
-    """Whether a list holds a truth value, which numpy converts to a number beside other numbers."""
+    """Return whether a nested list holds True or False, which numpy would convert to a number."""
     return isinstance(values, list | tuple) and any(isinstance(each, bool | np.bool_) for each in values)
 
 
@@ -392,7 +392,7 @@ _UNIQUE, _IN_ORDER = "pass numpy.unique({field})", "give each once, in ascending
 
 
 def ascending(name: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
-    """Return an array of ascending finite floats, shape (n,); a single number gives an array of one."""
+    """Return an ascending array of finite floats, shape (n,); a single number gives an array of length 1."""
     array = as_floats(values)
     array = real_array(name, array.reshape(1) if array is not None and not array.ndim else values)
     if not array.size:
@@ -403,11 +403,11 @@ def ascending(name: str, values: float | Sequence[float] | np.ndarray) -> np.nda
 
 
 def set_fields(instance: object, **values: object) -> None:
-    """Set fields of a frozen dataclass to their checked values, during its construction."""
+    """Set fields of a frozen dataclass to their checked values while the object is constructed."""
     for name, value in values.items():
         object.__setattr__(instance, name, value)
 
 
 def in_unit(unit: str) -> str:
-    """Return the end of a sentence that names the unit, such as " in m"; empty if there is none."""
+    """Return " in " and the unit, to end a sentence; empty if the unit is empty."""
     return " in {unit}" if unit else ""

@@ -1,8 +1,8 @@
-"""Inputs as plain data: their descriptions, and designs, which give values to several of them.
+"""Descriptions of inputs as data, and designs: combinations of values of several inputs.
 
-Files, forms and help texts are made from the descriptions.  In a design each input is at its path in nested
-objects: mappings, sequences, pydantic models of files, and dataclasses; a path names a field of a dataclass
-by its key in files.
+Files, forms and help texts are made from the descriptions.  In a design, a path such as "beam.thickness"
+leads to each input through nested objects: mappings, sequences, pydantic models of files, and dataclasses.  A
+path contains the key that files have for a field, which may differ from the name of the field.
 """
 
 from __future__ import annotations
@@ -31,25 +31,25 @@ class Described:
     unit : str
         SI unit; "" for a plain number, or a word.
     symbol : str
-        Symbol in formulas.
+        Symbol of the quantity in formulas.
     meaning : str
-        Meaning for people: a phrase without a full stop.
+        Meaning of the input: a phrase without a full stop.
     above, below : float, optional
-        Bounds that the value must not reach [unit].
+        Open bounds: the value must be above `above` and below `below` [unit].
     least, most : float, optional
         Smallest and largest value [unit].
     remedy : str
         Advice about a value out of bounds.
     key : str
-        Its key in files, if that is not the name of the argument.
+        Key in files, if it differs from the name of the argument.
     required : bool
-        Whether files must give it, even where the argument has a default.
+        Whether files must give the input even if the argument has a default.
     default : object, optional
-        Value where files leave it out, though the argument has no default.
+        Value for files that omit the input although the argument has no default.
     infinite : str
-        What an infinite value stands for, such as "clamped"; where it is empty, none is allowed.
+        Meaning of an infinite value, such as "clamped"; if empty, the value must be finite.
     whole : bool
-        Whether it is a whole number.
+        Whether the value must be a whole number.
     """
 
     unit: str = ""
@@ -69,16 +69,16 @@ class Described:
 
     @property
     def bounds(self) -> str:
-        """Bounds in words, such as "greater than 0, at most 1"; empty if there are none."""
+        """Return the bounds in words, such as "greater than 0, at most 1"; empty if there are none."""
         return self.bounds_as(lambda bound: bound)
 
     def bounds_as(self, convert: Callable[[float], float]) -> str:
-        """Describe the bounds, with each number converted to another unit."""
+        """Return the bounds in words, with each number converted to another unit."""
         limits = (f"{words} {convert(bound):g}" for words, bound, _ in self._limits())
         return ", ".join([*["a whole number"] * self.whole, *limits])
 
     def _limits(self) -> Iterator[tuple[str, float, Callable[[Any, float], Any]]]:
-        """Yield each bound in words, its number [unit], and the comparison that refuses a value."""
+        """Yield each bound in words, its number [unit], and the comparison that finds invalid values."""
         for words, bound, refuses in (
             ("greater than", self.above, operator.le),
             ("at least", self.least, operator.lt),
@@ -89,24 +89,24 @@ class Described:
                 yield words, bound, refuses
 
     def is_within_bounds(self, value: float) -> bool:
-        """Whether a value [unit] is within all bounds."""
+        """Return whether a value [unit] is within all bounds."""
         fits = not self.whole or float(value).is_integer()
         return fits and not any(refuses(value, bound) for _, bound, refuses in self._limits())
 
     def nearest_within(self, value: float) -> float:
-        """Return the value within all bounds that is nearest to a given value [unit]."""
+        """Return the value [unit] within all bounds that is closest to a given value."""
         least = [self.least] if self.above is None else [self.least, math.nextafter(self.above, math.inf)]
         most = [self.most] if self.below is None else [self.most, math.nextafter(self.below, -math.inf)]
         value = max([value, *(bound for bound in least if bound is not None)])
         return min([value, *(bound for bound in most if bound is not None)])
 
     def refuse_out_of_bounds(self, name: str, values: Any) -> None:
-        """Refuse a number or an array of numbers [unit] of which any is out of bounds.
+        """Raise an error if a number, or any number of an array [unit], is out of bounds.
 
         Raises
         ------
         InvalidValue
-            With the name, and the first bound that is not kept.
+            The error holds the name of the input, and the first bound that is violated.
         """
         if self.whole:
             refuse(values % 1 != 0, name, values, self.unit, "give a whole number")
@@ -115,12 +115,12 @@ class Described:
             refuse(refuses(values, bound), name, values, self.unit, said, self.remedy, limit=bound)
 
     def check(self, name: str, value: Any) -> Any:
-        """Return the value as a float; refuse what is not finite, or out of bounds.
+        """Return the value as a float; raise an error if it is not finite, or out of bounds.
 
         Raises
         ------
         InvalidValue
-            With the name.
+            The error holds the name of the input.
         """
         number = real(name, value, self.unit, self.remedy)
         self.refuse_out_of_bounds(name, number)
@@ -128,14 +128,14 @@ class Described:
 
 
 def description(hint: Any) -> Described | None:
-    """Return the description in an annotation, or in one of its parts; None if there is none."""
+    """Return the `Described` object in a type annotation or in one of its parts; None if there is none."""
     parts = (hint, *get_args(hint))
     found = (entry for part in parts for entry in getattr(part, "__metadata__", ()))
     return next((entry for entry in found if isinstance(entry, Described)), None)
 
 
 def kinds_of(hint: Any) -> list[Any]:
-    """Return the types that an annotation allows, without their descriptions."""
+    """Return the types that an annotation allows, without the `Described` objects in it."""
     if get_origin(hint) is Annotated:
         return kinds_of(get_args(hint)[0])
     if get_origin(hint) in (Union, UnionType):
@@ -145,35 +145,35 @@ def kinds_of(hint: Any) -> list[Any]:
 
 @cache
 def described_hints(made: Callable[..., Any]) -> dict[str, Any]:
-    """Return the annotations of the described arguments of a dataclass or function, in order."""
+    """Return the annotations of all arguments with a `Described` of a dataclass or function, in order."""
     hints = get_type_hints(made, include_extras=True)
     return {name: hint for name, hint in hints.items() if description(hint)}
 
 
 @cache
 def descriptions(made: Callable[..., Any]) -> dict[str, Described]:
-    """Return the descriptions of the arguments of a dataclass or function, in order."""
+    """Return the `Described` objects of the arguments of a dataclass or function, in order."""
     hints = described_hints(made)
     return {name: found for name, hint in hints.items() if (found := description(hint))}
 
 
-# Designs ---------------------------------------------------------------------------------------------
+# Designs: combinations of input values ---------------------------------------------------------------
 
 _STEP = re.compile(r"\[(\d+)\]|((?:(?!\[\d+\])[^.])+)")
 _AXES = "xy"  # names of the coordinates of a point
 
 
 def part_at(whole: Any, path: str) -> Any:
-    """Return the part of an object at a path; None if there is nothing."""
+    """Return the part of nested objects at a path; None if there is none."""
     for step in _steps(path):
         whole = _part(whole, step)
     return whole
 
 
 def with_parts(whole: Any, parts: Mapping[str, Any]) -> Any:
-    """Copy an object with parts replaced, by their paths; all at once, as they may depend on each other.
+    """Copy an object with new values at several paths, which are replaced together before any check.
 
-    Dataclasses check the values; models of files do not.
+    Dataclasses check the new values; pydantic models of files do not.
     """
     tree = _Tree()
     for path, value in parts.items():
@@ -186,7 +186,7 @@ def with_parts(whole: Any, parts: Mapping[str, Any]) -> Any:
 
 
 class _Tree(dict[Any, Any]):
-    """New values by the first step of their paths; those of longer paths are in trees within the tree."""
+    """New values by the first step of their paths; values with longer paths are in nested trees."""
 
 
 def _steps(path: str) -> list[str | int]:
@@ -223,7 +223,7 @@ def _replaced(whole: Any, new: Any) -> Any:
 
 
 def field_of(made: type, key: str) -> str:
-    """Return the field of a dataclass with a key in files; for other classes the key itself."""
+    """Return the name of the dataclass field that has a key in files; for other classes, the key itself."""
     return _fields_by_key(made).get(key, key)
 
 
@@ -237,21 +237,21 @@ def _fields_by_key(made: type) -> dict[str, str]:
 
 
 COMBINATIONS = ("product", "zip")
-MOST_DESIGNS = 1_000_000  # largest number of designs whose answers fit into memory
+MOST_DESIGNS = 1_000_000  # largest number of designs whose results fit into memory
 
 
 @dataclass(frozen=True)
 class VariedInput:
-    """An input that is varied.
+    """An input whose value is varied, with its values.
 
     Parameters
     ----------
     name : str
-        Its path in files, such as "beam.thickness".
+        Path of the input in files, such as "beam.thickness".
     unit : str
         Unit of the values.
     values : ndarray, shape (n,)
-        Its values [unit].
+        Values of the input [unit].
 
     Examples
     --------
@@ -267,18 +267,18 @@ class VariedInput:
 
     @property
     def label(self) -> str:
-        """Name and unit, for tables."""
+        """Return name and unit of the input, for tables."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     @property
     def in_words(self) -> str:
-        """Name as on forms, for pictures: "thickness" for "beam.thickness"."""
+        """Return the name as shown in forms and pictures: "thickness" for "beam.thickness"."""
         return InputName(self.name).on_form
 
 
 @dataclass(frozen=True)
 class Designs:
-    """N designs, as combinations of inputs; the last input of a product changes fastest.
+    """A set of N designs: combinations of values of inputs; the last input of a product changes fastest.
 
     Parameters
     ----------
@@ -294,17 +294,17 @@ class Designs:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of the answers: an axis for each input, or one for all that are taken together."""
+        """Return the shape of result arrays: an axis per input, or one axis for inputs taken together."""
         lengths = tuple(len(each.values) for each in self.inputs)
         return lengths[:1] if self.combine == "zip" else lengths
 
     @property
     def count(self) -> int:
-        """Number N of designs; 1 without inputs."""
+        """Return the number N of designs; 1 without inputs."""
         return math.prod(self.shape)
 
     def columns(self, rows: slice | np.ndarray = slice(None)) -> dict[str, np.ndarray]:
-        """Return the values (R,) of each input in R of the designs, by name."""
+        """Return the values (R,) of each input in R of the designs, by name of the input."""
         places = np.arange(*rows.indices(self.count)) if isinstance(rows, slice) else rows
         if self.combine == "zip":
             return {each.name: each.values[places] for each in self.inputs}
@@ -312,12 +312,12 @@ class Designs:
         return {each.name: each.values[i] for each, i in zip(self.inputs, indices, strict=True)}
 
     def at(self, *place: int) -> dict[str, float]:
-        """Return the values by name of the design at a place (i1, ..., id) of `shape`.
+        """Return the input values, by name, of the design with indices (i1, ..., id) in the array of designs.
 
         Raises
         ------
         ValueError
-            If there are not as many indices as axes, or one is out of range.
+            If the number of indices differs from the number of axes, or an index is out of range.
         """
         if len(place) != len(self.shape):
             raise ValueError(f"place {place}: give {len(self.shape)} indices, one for each of {self.shape}")
@@ -327,11 +327,11 @@ class Designs:
         return {each.name: float(each.values[i]) for each, i in zip(self.inputs, places, strict=True)}
 
     def chunks(self, size: int) -> list[slice]:
-        """Split the rows of designs into slices of at most a size."""
+        """Split the row numbers of the designs into slices of at most a given size."""
         return [slice(k, min(k + size, self.count)) for k in range(0, self.count, size)]
 
     def without(self, name: str) -> Designs:
-        """Return a copy without one of the inputs."""
+        """Return a copy of the designs without one of the inputs."""
         return Designs([each for each in self.inputs if each.name != name], self.combine)
 
     def extremes(self) -> Iterator[dict[str, float]]:
@@ -341,7 +341,7 @@ class Designs:
 
 
 def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
-    """Convert columns of values (R,), by name, to R designs, each with its values by name."""
+    """Convert columns of values (R,), by name, to R designs: a mapping of values by name for each."""
     return [
         dict(zip(columns, row, strict=True))
         for row in zip(*(c.tolist() for c in columns.values()), strict=True)
@@ -349,7 +349,7 @@ def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
 
 
 def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "vary") -> None:
-    """Refuse unknown combinations, repeated inputs, unequal lengths taken together, and too many designs.
+    """Raise an error for invalid sets of designs: repeated inputs, unequal lengths, or too many designs.
 
     Parameters
     ----------
@@ -358,12 +358,12 @@ def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "var
     most : int
         Largest number of designs.
     option : str
-        Name of the inputs in the message.
+        Name of the option for the inputs, for messages.
 
     Raises
     ------
     InvalidValue
-        With the reason.
+        The message gives the reason.
     """
     one_of("combine", designs.combine, COMBINATIONS)
     names = [each.name for each in designs.inputs]

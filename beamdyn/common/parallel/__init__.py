@@ -1,1 +1,1 @@
-"""Worker processes, and a store of finished parts of a long computation."""
+"""Worker processes, and a store on disk for finished parts of a long computation."""

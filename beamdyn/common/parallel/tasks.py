@@ -1,6 +1,6 @@
-"""Tasks of a long computation: run in this process, in workers or by an executor, and kept in a store.
+"""Tasks of a long computation: run in this process, in worker processes or by an executor, and stored.
 
-A store is a folder of files, which are named by hashes of the requests.
+A store is a folder with one file per task; the file's name is a hash of what was to be computed.
 """
 
 from __future__ import annotations
@@ -22,27 +22,27 @@ from beamdyn.common.results.files import ASIDE, write_text
 from beamdyn.common.results.result import DamagedRecord, seal, unseal
 from beamdyn.common.results.snapshots import decode, encode, fingerprint
 
-_MARKER = "store.json"  # file that tells a store from a folder with other content
-_RECORD = re.compile(r"[0-9a-f]{32}\.json")  # name of the file of a record: see `fingerprint`
+_MARKER = "store.json"  # marker file by which a store is recognized
+_RECORD = re.compile(r"[0-9a-f]{32}\.json")  # pattern of a record's file name: see `fingerprint`
 _REMEDY = "name a folder that does not exist yet, or an earlier store"
 
 
 class Store:
-    """A folder of records; each is written in one step, sealed by a checksum, and never changed.
+    """A folder of records; each is written in one step with a checksum, and never changed.
 
-    Opening it makes the folder, or checks that it is an earlier store and can be written.
+    Opening a store creates the folder, or checks that an existing folder is a store and can be written to.
 
     Parameters
     ----------
     path : str or Path
-        The folder; its parents must exist.
+        The folder; its parent folder must exist.
     kind : str
-        Kind of results: a store of another kind is refused.
+        Kind of results; opening a store with another kind is an error.
 
     Raises
     ------
     ValueError
-        If `path` is a file, holds anything else, or cannot be written.
+        If `path` is a file, contains files of another kind, or cannot be written to.
     """
 
     def __init__(self, path: str | Path, kind: str) -> None:
@@ -63,9 +63,10 @@ class Store:
             raise ValueError(f"store = {str(path)!r}: it cannot be written ({reason}); {_REMEDY}") from None
 
     def _marked(self, content: Sequence[str]) -> object:
-        """Return the kind of results that the folder's marker file names.
+        """Return the kind of results that the marker file of the folder names.
 
-        If that file is damaged, return this store's kind if all other files are records, else None.
+        If the marker file is damaged: return the kind of this store if all other files are records, else
+        None.
         """
         try:
             return json.loads((self.path / _MARKER).read_bytes())["kind"]
@@ -74,16 +75,16 @@ class Store:
             return self.kind if records and all(map(_RECORD.fullmatch, records)) else None
 
     def file(self, key: str) -> Path:
-        """Return the path of the record with a key."""
+        """Return the path of the file that holds the record of a key."""
         return self.path / f"{key}.json"
 
     def read(self, key: str) -> dict[str, Any] | None:
-        """Read the record with a key; None if there is none.
+        """Return the record of a key; None if there is none.
 
         Raises
         ------
         DamagedRecord
-            If the record is not as it was written.
+            If the record has changed since it was written.
         """
         try:
             text = self.file(key).read_bytes()
@@ -97,7 +98,7 @@ class Store:
         return record
 
     def write(self, key: str, record: Mapping[str, Any]) -> None:
-        """Store a record of JSON's types under a key; floats keep all their digits."""
+        """Write a record of JSON values under a key; floats keep all their digits."""
         write_text(self.file(key), json.dumps(seal({**record, "key": key})))
 
 
@@ -106,25 +107,24 @@ class Store:
 Progress = Callable[[int, int], object]
 Solve = Callable[[Any], Any]
 Keep = Callable[[Any, Any], None]
-# Largest number of tasks submitted to an executor: enough for its workers, few for the memory.
+# Most tasks submitted to an executor at once: enough to keep its workers busy without filling the memory.
 _IN_FLIGHT = 256
-# Largest number of tasks submitted for each worker process of this package; those that still wait can be
-# taken back.
+# Most tasks submitted at once for each worker process; tasks that have not begun can be withdrawn.
 _PER_WORKER = 8
 
 
 class RunInterrupted(RuntimeError):
-    """Raised when the executor breaks before all parts of a computation are done.
+    """Raised when the executor fails before all parts of a computation are done.
 
     Parameters
     ----------
     done, total : int
-        Number of parts that are done, and of all.
+        Number of parts that are done, and total number.
     stored : bool
-        Whether those that are done are in a store.
+        Whether the finished parts are in a store.
     """
 
-    parts = "designs"  # what messages call the parts
+    parts = "designs"  # word for the parts of the computation in messages
 
     def __init__(self, done: int, total: int, stored: bool) -> None:
         super().__init__(done, total, stored)
@@ -138,7 +138,7 @@ class RunInterrupted(RuntimeError):
 
 
 class StudyInterrupted(RunInterrupted):
-    """Raised when the executor breaks before all designs are done.
+    """Raised when the executor fails before all designs of a study are done.
 
     Examples
     --------
@@ -150,16 +150,16 @@ class StudyInterrupted(RunInterrupted):
 
 @dataclass(frozen=True)
 class Task:
-    """A part of a computation, with what it is made from.
+    """A part of a computation: a function that makes its input, its size and its index.
 
     Parameters
     ----------
     make : callable
-        ``make()`` returns what is to be solved; it is called when the task's turn comes.
+        ``make()`` returns the input of the task; it is called just before the task is started.
     size : int
-        Number of its designs or cases.
+        Number of designs or cases in the task.
     place : object
-        Where the result of the task belongs among all results.
+        Position of the task's result among all results, such as an index.
     """
 
     make: Callable[[], Any]
@@ -169,31 +169,33 @@ class Task:
 
 @dataclass
 class TaskRunner:
-    """A runner of tasks, which keeps their results in a store.
+    """Runs tasks in this process, in worker processes or by an executor, and stores their results.
 
-    A result depends on its task alone, so that it is the same to the bit for any workers or executor.
+    A result depends only on its task: it is the same to the last bit for any number of workers and any
+    executor.
 
     Parameters
     ----------
     workers : int
-        Number of processes; this one is the first of them.
+        Number of processes, including this one.
     executor : Executor, optional
-        An executor as in `concurrent.futures`, in place of workers.
+        An executor as in `concurrent.futures`, used in place of worker processes.
     store : str or Path, optional
-        Folder in which results are kept; those found there are not computed again.
+        Folder in which results are stored; results that it already contains are not computed again.
     kind : str
         Kind of results in the store.
     versions : tuple of str
-        Versions of the programs on which the bits of a result depend.
+        Versions of the programs that affect the last bits of a result.
     progress : callable, optional
-        Called as progress(done, total) with the numbers of designs, at the start and after each task.
+        Called as progress(done, total) with numbers of designs, at the start and after each task.
     interrupted : type
-        Class of the error raised when the executor breaks; its `parts` name what the sizes of tasks count.
+        Class of the error raised when the executor fails; its `parts` is the word for the parts, such as
+        "designs".
 
     Attributes
     ----------
     warnings : list of str
-        Records of the store that are damaged, and were computed again.
+        Sentences on damaged records of the store, which were computed again.
 
     Raises
     ------
@@ -227,16 +229,16 @@ class TaskRunner:
             function("progress", self.progress, f"it takes the numbers of finished {parts} and of all")
 
     def open_store(self) -> Store | None:
-        """Return the store, which is opened when it is first asked for; None if there is none."""
+        """Return the store, and open it at the first call; None if there is no store."""
         if self._opened is None and self.store is not None:
             self._opened = Store(Path(self.store), self.kind)
         return self._opened
 
     @contextmanager
     def prepared(self, solve: Solve, tasks: int) -> Iterator[None]:
-        """Start workers that import what `solve` needs, while the caller prepares the tasks in this context.
+        """In this context, start worker processes that import `solve`, while the caller prepares the tasks.
 
-        If there is a store, which may have all results, workers start only when they are needed.
+        With a store, which may already contain all results, worker processes start only when they are needed.
         """
         others = min(self.workers, tasks) - 1
         if self.executor is not None or self.store is not None or others < 1:
@@ -251,23 +253,23 @@ class TaskRunner:
                 self._pool = None
 
     def run(self, solve: Solve, tasks: Sequence[Task], keep: Keep) -> None:
-        """Solve tasks; `keep` receives the place and the result of each, in the order in which they end.
+        """Solve tasks; call `keep` with the place and the result of each task when it ends.
 
         Parameters
         ----------
         solve : callable
-            ``solve(made)``: the result for what a task's `make` has returned; with workers or an executor it
-            must be a function of a module.  With a store the result must be data: see
-            `beamdyn.common.results.snapshots`.
+            ``solve(made)`` returns the result for the input that a task's `make` has returned.  With workers
+            or an executor it must be a function of a module.  With a store, the result must be data that can
+            be saved: see `beamdyn.common.results.snapshots`.
         tasks : sequence of Task
             The tasks.
         keep : callable
-            Takes the place of a task and its result.
+            Function that is called with the place of a task and its result.
 
         Raises
         ------
         RunInterrupted
-            If the executor breaks; the error has the class `interrupted`.
+            If the executor fails; the error has the class `interrupted`.
         """
         run = _TaskRun(self, solve, keep, sum(task.size for task in tasks))
         if self.executor is not None:
@@ -282,7 +284,7 @@ class TaskRunner:
 
 
 class _Pending(NamedTuple):
-    """A task whose result is not in the store, with what it made, and the key of its result."""
+    """A task whose result is not in the store, with its input, and the key of its result."""
 
     task: Task
     made: Any
@@ -291,7 +293,7 @@ class _Pending(NamedTuple):
 
 @dataclass
 class _TaskRun:
-    """One run of tasks, and its progress."""
+    """One run of a list of tasks, and its progress."""
 
     runner: TaskRunner
     solve: Solve
@@ -301,14 +303,14 @@ class _TaskRun:
     flying: dict[Future[Any], _Pending] = field(default_factory=dict)
 
     def here(self, tasks: Sequence[Task]) -> None:
-        """Solve the tasks in this process, one after the other."""
+        """Solve the tasks in this process, one after another."""
         for pending in self._missing(tasks):
             self._finish(pending, _solve(self.solve, pending.made))
 
     def through(self, executor: Executor, most: int, tasks: Sequence[Task], helps: bool = False) -> None:
-        """Solve tasks with an executor, a limited number at a time.
+        """Solve tasks by an executor; only a limited number of tasks is submitted at a time.
 
-        With `helps`, this process also solves some of the tasks itself.
+        If `helps`, this process also solves some of the tasks itself.
         """
         missing = self._missing(tasks)
         try:
@@ -334,12 +336,12 @@ class _TaskRun:
             self._finish(self.flying.pop(future), result)
 
     def _take_back(self) -> _Pending | None:
-        """Take back a task that waits for a worker; None if none waits."""
+        """Withdraw a submitted task that has not begun; None if there is none."""
         waiting = next((future for future in reversed(self.flying) if future.cancel()), None)
         return None if waiting is None else self.flying.pop(waiting)
 
     def _missing(self, tasks: Sequence[Task]) -> Iterator[_Pending]:
-        """Yield the tasks that are not in the store, made one at a time; keep the results that are in it."""
+        """Yield those tasks that are not in the store, one at a time; pass stored results to `keep`."""
         self._report()
         for task in tasks:
             made = task.make()
@@ -352,12 +354,12 @@ class _TaskRun:
                 self._report()
 
     def _key(self, made: Any) -> str:
-        """Return the key of a stored result: a hash of versions, function and task."""
+        """Return the key under which a result is stored: a hash of versions, function and task."""
         stored = self.runner.store is not None
         return fingerprint(self.runner.versions, self.solve, made) if stored else ""
 
     def _stored(self, key: str) -> Any:
-        """Return the result in the store; None if there is none, or it is damaged."""
+        """Return the stored result of a task; None if it is missing or damaged."""
         if (store := self.runner.open_store()) is None:
             return None
         try:
@@ -369,9 +371,9 @@ class _TaskRun:
             return None
 
     def _ask(self, action: Callable[..., Any], *arguments: Any) -> Any:
-        """Call the executor; on an error, store what is done and raise `TaskRunner.interrupted`.
+        """Call the executor; if it fails, store the finished results and raise `TaskRunner.interrupted`.
 
-        Such an error is the executor's own: errors of tasks are returned as their results.
+        Only errors of the executor itself are raised here: errors in tasks are returned as results.
         """
         try:
             return action(*arguments)
@@ -381,7 +383,7 @@ class _TaskRun:
             raise self.runner.interrupted(self.done, self.total, stored) from error
 
     def _land(self) -> None:
-        """Cancel the tasks that have not begun, and store the results of those that are done."""
+        """Cancel the tasks that have not begun, and store the results of finished tasks."""
         for future in self.flying:
             future.cancel()
         while self.flying:
@@ -390,7 +392,7 @@ class _TaskRun:
                 self._store(pending, future.result())
 
     def _finish(self, pending: _Pending, result: Any) -> None:
-        """Store and keep the result of a task, or raise the error that it returned."""
+        """Store the result of a task and pass it to `keep`; or raise the error that the task returned."""
         if isinstance(result, Exception):
             raise result
         self._store(pending, result)
@@ -411,7 +413,7 @@ class _TaskRun:
 
 
 def _import(solve: Solve) -> None:
-    """Do nothing; a process that receives this has imported what `solve` needs."""
+    """Do nothing: when a process receives this call, it imports the module of `solve`."""
 
 
 def _solve(solve: Solve, made: Any) -> Any:
@@ -420,7 +422,7 @@ def _solve(solve: Solve, made: Any) -> Any:
 
 
 def _returning_errors(solve: Solve, made: Any) -> Any:
-    """Solve a task and return its error, if any, so that raised errors are always the executor's."""
+    """Solve a task; return its error, if any, so that a raised error must come from the executor."""
     try:
         return _solve(solve, made)
     except Exception as error:

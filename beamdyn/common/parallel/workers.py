@@ -1,4 +1,4 @@
-"""Worker processes of this package: an executor that survives the death of its processes."""
+"""Worker processes: an executor that replaces processes that die."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ from typing import Any, BinaryIO
 
 from threadpoolctl import ThreadpoolController
 
-ATTEMPTS = 3  # number of processes that may die of one task
+ATTEMPTS = 3  # number of processes that a task may kill before it counts as failed
 _SERVE = (
-    "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); "  # the caller handles Ctrl-C
+    "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); "  # ignores Ctrl-C
     "from beamdyn.common.parallel.workers import serve; serve()"
 )
 _log = logging.getLogger(__name__)
 
 
 class WorkerDied(BrokenExecutor):
-    """Raised when a task ended every process that ran it."""
+    """Raised when a task has killed every process that ran it."""
 
 
 class Workers(ThreadPoolExecutor):
-    """An executor of worker processes: each of its threads drives one, and replaces it if it dies.
+    """An executor of worker processes: each of its threads controls one process, and replaces it if it dies.
 
-    Only the task that was in flight in the dead process is run again.  The processes are new
-    interpreters: safe if the caller has threads, and, unlike those of `multiprocessing`, they do not
-    import the caller's script, which therefore needs no ``if __name__ == "__main__"``.  What they
-    run must be importable: functions of the script itself are not.  The processes end with the caller,
-    however it ends.
+    Only the task that the dead process was running is run again.  The processes are new interpreters, which
+    is safe if the caller has threads.  Unlike processes of `multiprocessing` they do not import the caller's
+    script, which therefore needs no ``if __name__ == "__main__"``.  The functions that they run must be
+    importable: functions defined in the script itself are not.  The processes end when the caller ends, for
+    whatever reason.
 
     Parameters
     ----------
@@ -52,11 +52,11 @@ class Workers(ThreadPoolExecutor):
         self._stopped = False
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Submit fn(*args, **kwargs), to be run in a process."""
+        """Submit the call fn(*args, **kwargs), to be run in a worker process."""
         return super().submit(self._run, pickle.dumps((fn, args, kwargs)))
 
     def stop(self) -> None:
-        """Kill all processes and drop all tasks."""
+        """Kill all worker processes and drop all tasks."""
         with self._lock:
             self._stopped = True
             for process in self._processes:
@@ -86,7 +86,7 @@ class Workers(ThreadPoolExecutor):
         raise WorkerDied(f"a task ended {ATTEMPTS} worker processes (exit code {code}): out of memory?")
 
     def _process(self) -> _Process:
-        """Return the process of this thread, started when it is first needed."""
+        """Return the worker process of this thread, which is started when first needed."""
         with self._lock:
             if self._stopped:
                 raise CancelledError
@@ -97,7 +97,7 @@ class Workers(ThreadPoolExecutor):
 
 
 class _Process:
-    """A process that reads pickled tasks from standard input and writes answers to standard output."""
+    """A process that reads pickled tasks from its standard input, and writes results to its output."""
 
     def __init__(self) -> None:
         path = os.pathsep.join(p or os.getcwd() for p in sys.path)
@@ -112,7 +112,7 @@ class _Process:
         self.pid, self.kill = self._popen.pid, self._popen.kill
 
     def run(self, task: bytes) -> Any:
-        """Run a task and return its result; raise EOFError or BrokenPipeError if the process dies."""
+        """Run a task and return its result; raise EOFError or BrokenPipeError if the process has died."""
         _send(self._tasks, task)
         done, result = pickle.loads(_receive(self._answers))
         if not done:
@@ -120,25 +120,25 @@ class _Process:
         return result
 
     def close(self) -> int:
-        """End the process, and return its exit code."""
+        """End the worker process, and return its exit code."""
         for stream in (self._tasks, self._answers):
-            with suppress(BrokenPipeError):  # what was written last may not have arrived
+            with suppress(BrokenPipeError):  # raised if the process has died before it received the last data
                 stream.close()
         return self._popen.wait()
 
 
 def serve() -> None:
-    """Run tasks that arrive on standard input until it is closed, or nobody reads the answers."""
+    """Run tasks that arrive on standard input, until it is closed or the results are no longer read."""
     answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # standard output is redirected, as what a task prints must not mix with the answers
+    os.dup2(2, 1)  # standard output is redirected, so that texts printed by a task do not mix with results
     while True:
         try:
             task = _receive(sys.stdin.buffer)
             _send(answers, _answer(task))
         except EOFError:
             return
-        except BrokenPipeError:  # the caller was killed
-            os._exit(0)  # ends without another try to send what is left
+        except BrokenPipeError:  # the calling process was killed
+            os._exit(0)  # ends the process without another attempt to write buffered data
 
 
 def _answer(task: bytes) -> bytes:
@@ -148,7 +148,7 @@ def _answer(task: bytes) -> bytes:
     except Exception as error:
         try:
             return pickle.dumps((False, error))
-        except Exception:  # the error itself cannot be pickled
+        except Exception:  # the error object itself cannot be pickled
             return pickle.dumps((False, RuntimeError(repr(error))))
 
 
@@ -171,7 +171,7 @@ def _receive(stream: BinaryIO | Any) -> bytes:
 
 @cache
 def _find_libraries() -> ThreadpoolController:
-    """Return the loaded libraries that start threads; cached, as finding them takes milliseconds."""
+    """Return the loaded libraries that start threads; cached, as the search takes milliseconds."""
     return ThreadpoolController()
 
 
@@ -182,7 +182,7 @@ _blas_limits: Any = None
 
 @contextmanager
 def one_blas_thread() -> Iterator[None]:
-    """Limit BLAS to one thread in this context; if several threads enter it, until the last one leaves."""
+    """Limit BLAS to one thread in this context; if several threads enter it, until the last thread leaves."""
     global _blas_users, _blas_limits
     with _blas_lock:
         _blas_users += 1

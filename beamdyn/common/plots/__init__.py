@@ -1,1 +1,1 @@
-"""Plots and exported files of arrays, independent of the analyses."""
+"""Plots and mesh files of arrays; the modules do not depend on the analyses that compute the arrays."""

@@ -1,4 +1,4 @@
-"""Axes of plots, lines that differ in colour and dashes, and notes below a figure."""
+"""Set up axes of plots, draw lines that differ in colour and dashes, and write notes below a figure."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ import numpy as np
 from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, DASHES, Axes, Figure, add_legend, new_axes
 
-_LETTERS = 15.0  # number of letters of a note that fit into an inch
-_COLOUR = "#5a4200"  # colour of the letters of notes
+_LETTERS = 15.0  # characters of a note that fit into an inch
+_COLOUR = "#5a4200"  # text colour of the notes
 
 
 def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
-    """Label axes, with a grid and plain numbers; new axes if none are given."""
+    """Label axes, and give them a grid and plain tick numbers; make new axes if none are given."""
     ax = new_axes() if ax is None else ax
     ax.set_xlabel(xlabel, fontsize=12)
     ax.set_ylabel(ylabel, fontsize=12)
     ax.tick_params(labelsize=11)
     for axis in ("x", "y"):
-        with suppress(AttributeError):  # axes drawn on before may have a scale without an offset
+        with suppress(AttributeError):  # axes with fixed tick labels refuse this call
             ax.ticklabel_format(axis=axis, useOffset=False)
     ax.margins(x=0.02)
     ax.grid(color="0.85", linewidth=0.7)
@@ -32,23 +32,23 @@ def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
 
 
 def panels(count: int, ax: Axes | None = None, columns: int = 2) -> tuple[Axes, list[Axes]]:
-    """Replace axes by several panels that share their place, by default two in a row.
+    """Replace axes by several panels in the same area, by default two in a row.
 
     Parameters
     ----------
     count : int
         Number of panels.
     ax : Axes, optional
-        Axes whose place the panels take; those of a new figure if not given.
+        Axes whose area is divided into panels; axes of a new figure if not given.
     columns : int
         Largest number of panels in a row.
 
     Returns
     -------
     Axes
-        The axes whose place is taken.
+        The axes that the panels replace, which are hidden.
     list of Axes
-        The panels, in reading order.
+        The panels, row by row from the top left.
     """
     columns = min(columns, count)
     rows = -(-count // columns)
@@ -56,24 +56,24 @@ def panels(count: int, ax: Axes | None = None, columns: int = 2) -> tuple[Axes, 
         ax = new_axes(6.5 * columns, 4.5 * rows)
     place, figure = ax.get_subplotspec(), ax.get_figure()
     if place is None or figure is None:
-        raise ValueError("ax: give axes made by subplots: their place is divided")
+        raise ValueError("ax: give axes made by subplots, whose area can be divided")
     ax.set_axis_off()
     grid = place.subgridspec(rows, columns)
     return ax, [figure.add_subplot(grid[divmod(i, columns)]) for i in range(count)]
 
 
 def speed_label(units: DisplayUnits) -> str:
-    """Return the label of an axis of speeds."""
+    """Return the label of the axis of rotational speed, with its display unit."""
     return f"angular speed [{units.speed_unit().name}]"
 
 
 def position_label(units: DisplayUnits) -> str:
-    """Return the label of an axis of positions along the beam."""
+    """Return the label of the axis of positions along the beam, with its display unit."""
     return f"position along the beam [{units.length_unit('m').name}]"
 
 
 def draw_lines(ax: Axes, x: np.ndarray, rows: Iterable[np.ndarray], labels: Sequence[str]) -> None:
-    """Draw lines that differ in colour and, when the colours are used up, in their dashes."""
+    """Draw lines that differ in colour and, when all colours are used, in dashes."""
     for i, (y, label) in enumerate(zip(rows, labels, strict=True)):
         _draw_line(ax, x, y, label=label, linewidth=1.8, **line_style(i))
 
@@ -87,7 +87,7 @@ def line_style(i: int) -> dict[str, Any]:
 def _draw_line(
     ax: Axes, x: np.ndarray, y: np.ndarray, isolated: np.ndarray | None = None, **style: Any
 ) -> None:
-    """Draw a line, with a marker at each value between gaps, which the line alone does not show."""
+    """Draw a line; an isolated value between two gaps gets a marker, as a line would not show it."""
     (line,) = ax.plot(x, y, **style)
     isolated = _is_isolated(y) if isolated is None else isolated
     if isolated.any():
@@ -100,7 +100,7 @@ def _is_isolated(y: np.ndarray) -> np.ndarray:
 
 
 def draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, style: dict[str, Any]) -> None:
-    """Draw a line, solid at samples where `solid` is true, else dashed; its pieces meet at samples."""
+    """Draw a line that is solid at samples where `solid` is true, else dashed, without gaps in between."""
     starts, isolated = [0, *(np.flatnonzero(np.diff(solid)) + 1).tolist()], _is_isolated(y)
     for start, stop in zip(starts, [*(s + 1 for s in starts[1:]), len(x)], strict=True):
         piece, dashes = slice(start, stop), "-" if solid[start] else "--"
@@ -108,38 +108,38 @@ def draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, sty
 
 
 def style_by_plane(i: int) -> dict[str, Any]:
-    """Return the colour of line i, and its width, which changes when the colours are used up."""
+    """Return the colour of line i, and its width, which changes when all colours are used."""
     cycle, colour = divmod(i, len(COLOURS))
     return {"color": COLOURS[colour], "linewidth": max(1.8 - 0.6 * cycle, 0.6)}
 
 
 def name_colour(ax: Axes, label: str, i: int) -> None:
-    """Name line i in the legend by its colour, as its dashes may change."""
+    """Add a legend entry in the colour of line i, without dashes, as these may vary along the line."""
     style = style_by_plane(i)
     ax.plot([], [], label=label, color=style["color"], linewidth=3 * style["linewidth"])
 
 
 def name_planes(ax: Axes, words: Sequence[str]) -> Axes:
-    """Name solid and dashed lines in the legend, and add the legend."""
+    """Add entries for solid and dashed lines to the legend, and draw the legend."""
     for dashes, text in zip(("-", "--"), words, strict=True):
         ax.plot([], [], dashes, color="0.3", linewidth=1.8, label=text)
     return add_legend(ax)
 
 
 def note_below(figure: Figure, sentences: Sequence[str]) -> Figure:
-    """Write sentences below the axes of a figure with constrained layout, which makes room for them.
+    """Write sentences below the axes of a figure whose constrained layout makes space for them.
 
     Parameters
     ----------
     figure : Figure
         The figure.
     sentences : sequence of str
-        A paragraph each; nothing is written if there are none.
+        The sentences, each of which is a paragraph; may be empty.
 
     Returns
     -------
     Figure
-        The figure that was given.
+        The given figure.
     """
     width = int(_LETTERS * figure.get_size_inches()[0])
     lines = [line for sentence in sentences for line in textwrap.wrap(sentence, width)]

@@ -1,4 +1,4 @@
-"""Campbell diagrams from arrays: natural frequencies and excitation lines over speed, with marks."""
+"""Campbell diagrams from arrays: natural frequencies and excitation lines over speed, with crossings."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from beamdyn.common.plots.axes_and_lines import draw_by_plane, set_up_axes, styl
 from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes
 
-_MOST_ABOVE = 2.0  # highest frequency shown, over that of the steepest line at the top speed
+_MOST_ABOVE = 2.0  # highest frequency shown, as a multiple of the highest excitation frequency
 _HEADROOM = 1.06
-_MOST_HIDDEN = 2  # largest number of modes above the picture that the legend names
-_APART = 0.042  # least distance of two labels, over the height of the axes
-_LONGEST = 36  # letters of a legend entry, above which the legend has two columns
-# Distance of two labels with the same name, over the height of the axes, below which only one is written.
+_MOST_HIDDEN = 2  # largest number of modes above the visible frequencies that the legend names
+_APART = 0.042  # least distance of two labels, as a fraction of the axes' height
+_LONGEST = 36  # characters of a legend entry, above which the legend has two columns
+# Distance of two labels with the same text, as a fraction of the axes' height, below which one is omitted.
 _SAME = 0.03
-_GREY, _DARK = "0.45", "0.1"  # colours of per-rev lines, and of the motion's lines
-_PER_REV = re.compile(r"\d+P")  # pattern of the names of per-rev lines
+_GREY, _DARK = "0.45", "0.1"  # colours of the lines 1P, 2P, ... and of other excitation lines
+_PER_REV = re.compile(r"\d+P")  # pattern of names such as 1P and 2P, multiples of the speed
 _MARKS: tuple[dict[str, Any], ...] = (
     {"marker": "o", "color": "black", "markerfacecolor": "white", "markersize": 6},
     {"marker": "s", "color": "black", "markerfacecolor": "white", "markersize": 6},
@@ -34,7 +34,7 @@ _INSIDE: tuple[dict[str, Any], ...] = (
 
 @dataclass(frozen=True)
 class Curves:
-    """Natural frequencies of one scene over speed.
+    """Natural frequencies of one scene (beam and its mount) over rotational speed.
 
     Parameters
     ----------
@@ -45,11 +45,11 @@ class Curves:
     names : tuple of str, length m
         Names of the modes.
     label : str
-        Name of the scene, for the legend.
+        Label of the scene in the legend.
     solid : ndarray of bool, shape (S, m), optional
-        Where a mode is drawn solid, else dashed.
+        Whether the curve of a mode is solid at each speed, else dashed.
     directions : tuple of str, optional
-        Names of the solid and the dashed lines, for the legend.
+        Meanings of solid and of dashed lines, for the legend.
     """
 
     speeds: np.ndarray
@@ -78,24 +78,26 @@ def plot_campbell(
 ) -> Axes:
     """Draw natural frequencies, excitation lines and their crossings over speed: Campbell's diagram.
 
-    Modes and lines are named where they leave the axes.  Modes far above all lines are left out.
+    Curves of modes and excitation lines have their names at the edge of the axes.  Modes far above all
+    excitation lines are omitted.
 
     Parameters
     ----------
     scenes : sequence of Curves
-        One scene, whose modes differ in colour, or several scenes, which differ in colour.
+        One scene, whose modes have different colours; or several scenes, one colour for each.
     lines : mapping of str to float
         Excitation lines: their frequencies as multiples of the speed.
     crossings : mapping of str to sequence of (float, float)
         Speed [rad/s] and natural frequency [Hz] of crossings of each kind.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     unit : {"rad/s", "rpm", "deg/s"}
         Unit of the axis of speeds.
     rated : float, optional
         Rated speed [rad/s], marked by a line.
     operating : (float, float), optional
-        Operating range [rad/s], shaded; the first kind of crossings must then hold those within the range.
+        Operating range [rad/s], which is shaded; the first kind of crossings must then be those within the
+        range.
 
     Returns
     -------
@@ -124,11 +126,11 @@ def plot_campbell(
     if len(scenes) == 1 and scenes[0].label:
         ax.set_title(scenes[0].label, fontsize=12, pad=6 + 12 * rows)
     handles, labels = ax.get_legend_handles_labels()
-    if labels:  # the legend stands below the axes, where it covers nothing
+    if labels:  # the legend is placed below the axes, where it covers no curve
         columns = 3 if max(map(len, labels)) <= _LONGEST else 2
         from matplotlib.transforms import ScaledTranslation
 
-        # In inches, to leave room for the x label.
+        # The offset is in inches, to leave space for the label of the x axis.
         below = ax.transAxes + ScaledTranslation(0, -0.55, ax.figure.dpi_scale_trans)
         place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
         ax.legend(handles, labels, fontsize=9.5, ncols=columns, frameon=False, borderaxespad=0, **place)
@@ -136,7 +138,7 @@ def plot_campbell(
 
 
 def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> float:
-    """Return the top of the frequency axis [Hz]: above the modes that are not far above all lines."""
+    """Return the upper limit of the frequency axis [Hz], which omits modes far above all excitation lines."""
     fastest = max(lines.values(), default=0.0) * last / (2 * np.pi)
     shown = np.concatenate([curves.frequency.ravel() for curves in scenes])
     shown = shown[np.isfinite(shown)]
@@ -150,7 +152,7 @@ def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> f
 def _draw_lines(
     ax: Axes, factor: float, lines: Mapping[str, float], ends: np.ndarray, top: float
 ) -> tuple[list[_CurveName], int]:
-    """Draw the lines; return the labels at the right end, and the number of rows of names above the axes."""
+    """Draw the excitation lines; return labels at the right edge, and the number of label rows above."""
     at_right, above = [], []
     for name, multiple in lines.items():
         per_rev = _PER_REV.fullmatch(name)
@@ -161,7 +163,7 @@ def _draw_lines(
             at_right.append(_CurveName(name, y[1], colour))
         else:
             above.append((name, colour, 2 * np.pi * top / multiple))
-    right: list[float] = []  # right end of each row of names
+    right: list[float] = []  # right end of the last label in each row
     for name, colour, speed in sorted(above, key=lambda line: line[2]):
         half = 0.006 * (len(name) + 1) * (ends[1] - ends[0])
         row = next((r for r, end in enumerate(right) if speed - half > end), len(right))
@@ -173,9 +175,9 @@ def _draw_lines(
 
 
 def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -> Iterator[_CurveName]:
-    """Draw the modes, and yield their labels.
+    """Draw the curves of the modes, and yield their labels.
 
-    A mode that ends before the right side is named at its start.
+    A curve that ends before the right edge is labelled at its start.
     """
     for k, curves in enumerate(scenes):
         solid = np.ones(curves.frequency.shape, bool) if curves.solid is None else curves.solid
@@ -187,7 +189,7 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
                 changed = curves.directions if dashes[0] != dashes[-1] else None
                 more = (
                     f" ({changed[0 if dashes[-1] else 1]})" if changed else ""
-                )  # direction in which the mode mostly bends at the right end
+                )  # direction in which the mode mainly bends at the highest speed
                 yield _CurveName(name + more, float(y[-1]), style["color"])
             elif (shown := np.flatnonzero(np.isfinite(y) & (y <= top))).size:
                 place = {"xytext": (4, 3), "textcoords": "offset points", "color": style["color"]}
@@ -203,7 +205,7 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
 
 
 def _name_hidden(ax: Axes, scenes: Sequence[Curves], top: float) -> None:
-    """Name modes above the picture in the legend, with their least frequency if there is one scene."""
+    """Name modes above the visible range in the legend; for one scene, with their lowest frequency."""
     hidden = {
         name: np.nanmin(y)
         for curves in scenes
@@ -217,9 +219,9 @@ def _name_hidden(ax: Axes, scenes: Sequence[Curves], top: float) -> None:
 
 
 def _name_at_right(ax: Axes, labels: Sequence[_CurveName], top: float) -> None:
-    """Name curves beside their right ends, with labels apart and a leader to each curve.
+    """Label curves beside their right ends; leader lines connect labels that were moved apart.
 
-    One label in grey stands for those of one name whose curves end close to one another.
+    Labels with the same text at curves that end close together are replaced by one grey label.
     """
     merged: list[_CurveName] = []
     for label in labels:
@@ -240,10 +242,11 @@ def _name_at_right(ax: Axes, labels: Sequence[_CurveName], top: float) -> None:
 
 
 def _spread(heights: Sequence[float]) -> list[float]:
-    """Move ascending heights as little as possible, so that neighbours are far enough apart.
+    """Move ascending heights of labels as little as possible, so that the labels do not overlap.
 
-    Each height minus its index times the least distance must not descend; the nearest such values are means
-    over blocks of values that descend (isotonic regression, pool adjacent violators).
+    Subtract from each height its index times the least distance: these values must not descend.  The closest
+    non-descending values are found by averaging over blocks of descending values (isotonic regression by the
+    pool-adjacent-violators algorithm).
     """
     blocks: list[tuple[float, int]] = []
     for i, height in enumerate(heights):

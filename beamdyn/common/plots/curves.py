@@ -1,4 +1,4 @@
-"""Plots of answers over inputs, of loads along the span, and of errors over time."""
+"""Plots of results over varied inputs, of loads along the span, and of errors over computing time."""
 
 from __future__ import annotations
 
@@ -13,20 +13,21 @@ from beamdyn.common.results.columns import SI_UNITS, DisplayUnits, evenly_spread
 from beamdyn.common.results.pictures import COLOURS, Axes, Figure, add_legend, new_figure
 
 _MOST_CURVES = 8
-# Height of the lowest row of crosses that mark missing values, and distance of rows, over the axes' height.
+# Height of the lowest row of crosses that mark missing values, and distance between rows, as fractions of the
+# axes' height.
 _LOWEST, _ROW = 0.02, 0.03
 _GREY = "0.5"
-_FEW = 4  # largest number of cases drawn as lines along the span; of more cases the range is drawn
+_FEW = 4  # largest number of cases drawn as single lines along the span; of more cases a band is drawn
 _MARKERS = "osD^vXP"
-_SAME = 1e-6  # difference of curves, over the largest value, that cannot be seen
-_FEWEST_BARS = 3  # number of names for which a bar chart has room, at least
+_SAME = 1e-6  # invisible difference of two curves, as a fraction of the largest value
+_FEWEST_BARS = 3  # least number of bars for which a bar chart has space
 
 
-# Sweeps over inputs ----------------------------------------------------------------------------------
+# Parameter sweeps ------------------------------------------------------------------------------------
 
 
 def sweep_figure(swept: Any) -> Figure:
-    """Draw a sweep: over one input, a panel for each unit of results; over more inputs, a map of each result.
+    """Draw a parameter sweep: over one input, a panel per unit; over several inputs, a map per result.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ def sweep_figure(swept: Any) -> Figure:
 
 
 def _maps_of(swept: Any) -> Figure:
-    """Draw each result over two or more inputs as a map."""
+    """Draw each result over two or more varied inputs as a map."""
     words = [_input_name(path) for path in swept.inputs]
     inputs = [MapInput(*each) for each in zip(words, swept.units, swept.values, strict=True)]
     answers = [
@@ -66,12 +67,12 @@ def _maps_of(swept: Any) -> Figure:
 
 
 def panels_of(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
-    """Return panels over one input: heading, names of curves, and curves (m, n) of one unit.
+    """Return panels over one varied input: heading, names of curves, and curves (m, n) of the same unit.
 
     Parameters
     ----------
     swept : InputSweep
-        See `sweep_figure`.
+        Results over one varied input.
     """
     results = [*zip(swept.results, swept.result_units, swept.found, strict=True)]
     groups: dict[str, list[tuple[str, np.ndarray]]] = {}
@@ -89,14 +90,14 @@ def panels_of(swept: Any) -> list[tuple[str, list[str], np.ndarray]]:
 
 
 def input_words(swept: Any, place: int) -> str:
-    """Name an input with its unit, without the name of its table.
+    """Return the name of a varied input with its unit, without the name of the table that contains it.
 
     Parameters
     ----------
     swept : InputSweep
         The sweep.
     place : int
-        Index of the input among those of the sweep.
+        Index of the input in the sweep.
     """
     return _named(_input_name(swept.inputs[place]), swept.units[place])
 
@@ -106,12 +107,12 @@ def _input_name(path: str) -> str:
 
 
 def _named(name: str, unit: str) -> str:
-    """Write a name with spaces for underscores, and its unit in brackets."""
+    """Return a name with blanks for underscores, followed by its unit in brackets."""
     return f"{name.replace('_', ' ')} [{unit}]" if unit else name.replace("_", " ")
 
 
 def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> Axes:
-    """Draw curves (m, n) that differ in colour and style; of many, some that are spread evenly.
+    """Draw curves (m, n) in different colours and styles; of many curves, only some evenly spaced ones.
 
     Parameters
     ----------
@@ -120,9 +121,9 @@ def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -
     x : ndarray, shape (n,)
         Positions on the horizontal axis.
     values : ndarray, shape (m, n)
-        Values of the curves; there is a gap where they are not finite.
+        Values of the curves; a value that is not finite leaves a gap.
     labels : sequence of str
-        Names of the curves, one each.
+        Names of the curves.
     """
     values = np.where(np.isfinite(values), values, np.nan)
     for place, i in enumerate(evenly_spread(len(values), _MOST_CURVES)):
@@ -133,19 +134,19 @@ def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -
 
 
 def mark_missing(ax: Axes, label: str) -> bool:
-    """Mark places where curves have no value, by crosses at the bottom in the colour of each curve.
+    """Mark x values at which a curve has no value by crosses at the bottom, in the colour of the curve.
 
     Parameters
     ----------
     ax : Axes
         Axes with the curves.
     label : str
-        What the crosses mean, for the legend.
+        Text in the legend that explains the crosses.
 
     Returns
     -------
     bool
-        Whether there are any.
+        Whether any curve lacks a value.
     """
     place = ax.get_xaxis_transform()
     gaps = [(line, np.isnan(np.asarray(line.get_ydata(), dtype=float))) for line in ax.get_lines()]
@@ -168,20 +169,20 @@ def grid(ax: Axes) -> None:
 def plot_bars(
     names: Sequence[str], rows: np.ndarray, labels: Sequence[str], xlabel: str, ax: Axes | None = None
 ) -> Axes:
-    """Draw horizontal bars of n names for k answers, the name with the longest bar on top.
+    """Draw horizontal bars for k results of n names; the name with the longest bar is at the top.
 
     Parameters
     ----------
     names : sequence of str
         The names, shape (n,).
     rows : ndarray, shape (n, k)
-        Lengths; those that are not finite are left out.
+        Lengths of the bars; a bar whose length is not finite is omitted.
     labels : sequence of str
-        Names of the answers, one each.
+        Names of the k results.
     xlabel : str
-        Label of the axis.
+        Label of the horizontal axis.
     ax : Axes, optional
-        Where to draw; a new one by default.
+        Axes to draw on; new axes if not given.
     """
     ax = set_up_axes(ax, xlabel, "")
     finite = np.where(np.isfinite(rows), rows, 0.0)
@@ -208,22 +209,22 @@ def plot_along_span(
     ax: Axes | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw a quantity along the beam, one colour per component: few cases as lines, more as a range.
+    """Draw a quantity along the beam in a colour per component: few cases as lines, more as a band.
 
-    Components that are the same have one colour together.
+    Equal components are drawn as one curve.
 
     Parameters
     ----------
     x : ndarray, shape (S,)
-        Stations along the beam [m]; the two sides of a jump have the same position.
+        Positions along the beam [m]; a position with a jump of the quantity occurs twice.
     values : ndarray, shape (C, S, k)
-        Values of C cases, such as times, of k components.
+        Values of k components in C cases, such as instants of time.
     labels : sequence of str, length k
         Names of the components, for the legend.
     quantity : str
         Name of the quantity, with its unit.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 
@@ -248,9 +249,9 @@ def plot_along_span(
 
 
 def _alike(values: np.ndarray, labels: Sequence[str]) -> list[tuple[int, str]]:
-    """Return the index of each component (..., k) that differs from those before, named with its equals.
+    """Return the index of one component (..., k) for each set of equal ones, with all their names.
 
-    Curves of equal components would cover each other.
+    Curves of equal components would cover one another.
     """
     least = _SAME * np.nanmax(np.abs(values), initial=0.0)
     named: dict[int, list[str]] = {}
@@ -264,7 +265,7 @@ def _alike(values: np.ndarray, labels: Sequence[str]) -> list[tuple[int, str]]:
 def plot_load_over_time(
     t: np.ndarray, values: np.ndarray, labels: Sequence[str], quantity: str, ax: Axes | None = None
 ) -> Axes:
-    """Draw a quantity at one station over time, one line per component.
+    """Draw a quantity at one position on the beam over time, one line per component.
 
     Parameters
     ----------
@@ -287,16 +288,16 @@ def plot_load_over_time(
 
 
 def plot_exceedance(ranges: np.ndarray, counts: np.ndarray, quantity: str, ax: Axes | None = None) -> Axes:
-    """Draw, for each range, the number of cycles with at least this range.
+    """Draw the number of load cycles that have at least a given range, over the range.
 
     Parameters
     ----------
     ranges, counts : ndarray, shape (n,)
-        Range of each cycle, and how often it counts.
+        Range and count (1 or 1/2) of each cycle.
     quantity : str
         Name of the range, with its unit.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
 
     Returns
     -------
@@ -309,28 +310,28 @@ def plot_exceedance(ranges: np.ndarray, counts: np.ndarray, quantity: str, ax: A
     return ax
 
 
-# Errors over time ------------------------------------------------------------------------------------
+# Errors over computing time --------------------------------------------------------------------------
 
 
-_CROWDED = 3.0  # ratio of the ends of a logarithmic axis above which labels of all minor ticks may overlap
+_CROWDED = 3.0  # ratio of the limits of a logarithmic axis above which labels of all minor ticks may overlap
 
 
 def plot_work_precision(
     families: Mapping[str, np.ndarray], front: np.ndarray, title: str = "", ax: Axes | None = None
 ) -> Axes:
-    """Draw error against time, a line for each family of settings, over the Pareto front as a broad band.
+    """Draw error over computing time: a line per family of settings, and the Pareto front as a broad band.
 
     Parameters
     ----------
     families : mapping of str to ndarray, shape (n, 2)
-        Times [s] and relative errors by the name of the family; an error above 1, where no digit is right, is
+        Computing times [s] and relative errors, by name of the family; an error above 1 (no correct digit) is
         drawn as 1.
     front : ndarray, shape (k, 2)
-        Times and errors of the Pareto-optimal measurements.
+        Computing times [s] and relative errors of the Pareto-optimal measurements.
     title : str
-        Above the axes.
+        Title above the axes.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
 
     Returns
     -------
@@ -339,7 +340,7 @@ def plot_work_precision(
     from matplotlib.ticker import LogFormatterSciNotation
 
     class FewLabels(LogFormatterSciNotation):
-        """Labels of minor ticks: over more than half a decade only of 2 and 6 times a power of ten."""
+        """Labels minor ticks of a logarithmic axis; above half a decade, only 2 and 6 times powers of ten."""
 
         def __call__(self, x: float, pos: int | None = None) -> str:
             assert self.axis is not None
@@ -360,5 +361,5 @@ def plot_work_precision(
 
 
 def _clip(points: np.ndarray) -> np.ndarray:
-    """Drop points without a positive error, which a logarithmic axis cannot show, and clip errors to 1."""
+    """Drop points whose error is not positive, which a logarithmic axis cannot show; limit errors to 1."""
     return np.minimum(points[points[:, 1] > 0], [np.inf, 1.0])

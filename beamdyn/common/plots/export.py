@@ -1,6 +1,6 @@
-"""Export of mode shapes and motions as mesh files, for ParaView and similar programs, and as animations.
+"""Export of mode shapes and motions: mesh files for ParaView and similar programs, and animations.
 
-No other module uses meshio.
+Only this module uses the library meshio.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ from beamdyn.common.results.pictures import new_figure, save_animation
 if TYPE_CHECKING:
     import meshio
 
-SHAPE_SUFFIXES = (".vtu", ".vtk")  # without .xdmf, for which meshio needs h5py
+SHAPE_SUFFIXES = (".vtu", ".vtk")  # suffixes of mesh files; not .xdmf, for which meshio needs h5py
 SERIES_SUFFIXES = (".xdmf",)  # suffixes of files with shapes over time
-_DRAWN_RATIO = 0.1  # largest drawn deflection, and default width, over the length
+_DRAWN_RATIO = 0.1  # largest drawn deflection, and default width of the beam, as fractions of the length
 
 
 def write_shapes(
@@ -35,37 +35,37 @@ def write_shapes(
 ) -> None:
     """Write mode shapes as a mesh with one displacement field per mode.
 
-    The file is in the beam's own axes, wherever the carrier holds it: x along the beam from its root,
-    y across its width, z the direction in which it bends.  The size of a mode being arbitrary, the
-    largest deflection of each is a tenth of the length: ParaView's "Warp By Vector" shows it at scale 1.
+    The coordinates are those of the beam, however it is mounted: x along the beam from its root, y across its
+    width, z in the direction of bending.  The amplitude of a mode is arbitrary: each mode is scaled to a
+    largest deflection of a tenth of the length, so that ParaView's "Warp By Vector" shows it well at scale 1.
 
     Parameters
     ----------
     path : str or Path
-        File to write; its suffix .vtu or .vtk chooses the format; the latter, the legacy
-        format, has underscores for the spaces in labels.
+        File to write; its suffix determines the format: .vtu, or .vtk (legacy format, with underscores in
+        place of blanks in labels).
     x : array_like, shape (n,)
         Positions along the beam [m], ascending, at least two.
     shapes : ndarray, shape (m, n) or (m, n, k)
-        Deflections of the modes at the positions, real, in any unit; over a strip at k positions across,
-        evenly spread from its edge at the lowest y to the other.
+        Real deflections of the modes at the positions, in any unit; for a strip with torsion, at k positions
+        across the width, evenly spaced from the edge with the lowest y to the opposite edge.
     labels : sequence of str, length m
-        Name of each mode's field, e.g. "mode 1: 65.23 Hz"; no two alike.
+        Different names for the modes' fields, e.g. "mode 1: 65.23 Hz".
     width : float or array_like, shape (n,), optional
-        Width of the strip drawn [m]; a tenth of the length if not given, 0 for a line.
+        Width of the drawn strip [m]; a tenth of the length if not given, 0 for a line.
     force : bool
         Overwrite a file that exists.
     across : ndarray, shape (m, n), optional
-        Deflections in the direction across, which is -y, in the same unit.
+        Deflections across the width, in the direction -y, in the same unit.
 
     Raises
     ------
     ValueError
-        If the suffix is unknown or the arrays do not fit together.
+        If the suffix is unknown or the shapes of the arrays do not match.
     FileExistsError
         If the file exists and `force` is not set.
     OSError
-        If it cannot be written.
+        If the file cannot be written.
     """
     path = check_writable(path, SHAPE_SUFFIXES, force)
     kind = path.suffix[1:].lower()
@@ -89,9 +89,9 @@ def write_series(
     force: bool = False,
     across: np.ndarray | None = None,
 ) -> None:
-    """Write the deflected beam over time as one mesh with a displacement field at each time.
+    """Write the deflected beam over time as one mesh with a displacement field for each instant.
 
-    The file is in the beam's own axes, as that of `write_shapes`, but deflections keep their size.
+    The coordinates are those of the beam, as for `write_shapes`; deflections are not scaled.
     In ParaView (reader "Xdmf3" or "XDMF") use "Warp By Vector" and play.
 
     Parameters
@@ -103,22 +103,23 @@ def write_series(
     t : array_like, shape (k,)
         Times [s], ascending.
     deflection : ndarray, shape (k, n) or (k, n, l)
-        Deflections at the times and positions [m]; over a strip at l positions across, as for `write_shapes`.
+        Deflections at the times and positions [m]; for a strip with torsion, at l positions across the width,
+        as for `write_shapes`.
     width : float or array_like, shape (n,), optional
-        Width of the strip drawn [m]; a tenth of the length if not given, 0 for a line.
+        Width of the drawn strip [m]; a tenth of the length if not given, 0 for a line.
     force : bool
         Overwrite a file that exists.
     across : ndarray, shape (k, n), optional
-        Deflections [m] in the direction across, which is -y.
+        Deflections across the width [m], in the direction -y.
 
     Raises
     ------
     ValueError
-        If the suffix is unknown or the arrays do not fit together.
+        If the suffix is unknown or the shapes of the arrays do not match.
     FileExistsError
         If the file exists and `force` is not set.
     OSError
-        If it cannot be written.
+        If the file cannot be written.
     """
     from meshio.xdmf import TimeSeriesWriter
 
@@ -141,14 +142,14 @@ def animate(
     rate: float = 20.0,
     notes: Sequence[str] = (),
 ) -> None:
-    """Write an animation of the beam, one frame for each time.
+    """Write an animation of the moving beam, one frame for each instant.
 
     Parameters
     ----------
     x : array_like, shape (n,)
         Positions along the beam [m], ascending.
     t : array_like, shape (k,)
-        Times [s], ascending; several in each period of what is to be seen.
+        Times [s], ascending; several in each period of the vibration of interest.
     deflection : ndarray, shape (k, n)
         Deflections at the times and positions [m].
     path : str or Path
@@ -163,15 +164,15 @@ def animate(
     Raises
     ------
     ValueError
-        If the suffix is unknown or the arrays do not fit together.
+        If the suffix is unknown or the shapes of the arrays do not match.
     FileExistsError
         If the file exists and `force` is not set.
     OSError
-        If it cannot be written.
+        If the file cannot be written.
     """
     x, t, deflection = _check_history(x, t, deflection)
     figure = note_below(new_figure(6.4, 3.6), notes)
-    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # the axes hold the whole motion
+    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # axis limits
     ax.set(xlim=(0, 1e3 * x[-1]), ylim=(-reach, reach))
     ax.set(xlabel="position along the beam [mm]", ylabel="deflection [mm]")
     ax.grid(color="0.85", linewidth=0.7)
@@ -179,7 +180,7 @@ def animate(
     (line,) = ax.plot(1e3 * x, 0 * x, color="#0072B2", linewidth=2.5)
     title = ax.set_title("t = 0 s")
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # the figure is laid out once, not for each frame
+    figure.set_layout_engine("none")  # the layout is computed once, not for each frame
 
     def frames() -> Iterator[float]:
         for time, row in zip(t.tolist(), deflection, strict=True):
@@ -191,7 +192,7 @@ def animate(
 
 
 def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None, rows: int) -> meshio.Mesh:
-    """Build a strip of quadrilaterals along x between rows of points, or a line if the width is 0."""
+    """Make a mesh of quadrilaterals along x with several rows of points; a line if the width is 0."""
     import meshio
 
     if len(x) < 2:
@@ -214,7 +215,7 @@ def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None, ro
 
 
 def _over_width(values: np.ndarray) -> np.ndarray:
-    """Return deflections with a last axis for positions across the width, of length one if they have none."""
+    """Return deflections with a last axis for positions across the width, of length 1 if they had none."""
     values = np.asarray(values)
     return values[..., None] if values.ndim == 2 else values
 
@@ -238,7 +239,7 @@ def _check_history(
 def _check_shapes(
     x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], across: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Check deflections of modes (m, n, k), and those in the direction across (m, n); return both."""
+    """Check deflections of modes (m, n, k), and deflections across the width (m, n); return both."""
     shapes = _over_width(shapes)
     aside = np.zeros(shapes.shape[:2]) if across is None else np.asarray(across)
     for name, values, places in ("shapes", shapes, shapes.shape[2:]), ("across", aside, ()):
@@ -256,14 +257,15 @@ def _check_shapes(
 
 
 def _scale(field: np.ndarray, largest: float) -> np.ndarray:
-    """Scale displacements to a given largest component; zeros stay zeros."""
+    """Scale displacements so that the largest component has a given value; zeros stay zeros."""
     return field * (largest / (np.abs(field).max() or 1.0))
 
 
 def _displacement(deflection: np.ndarray, points: int, across: np.ndarray) -> np.ndarray:
-    """Return displacement vectors of a strip: z from a deflection (n, k), -y from one across (n,).
+    """Return displacement vectors of a strip: z from a deflection (n, k), -y from one across the width (n,).
 
-    Rows of points follow each other from the lowest y; where k is 1 they are displaced alike.
+    Rows of points along the beam follow one another from the lowest y; if k is 1, all rows have the same
+    deflection.
     """
     z, y = (np.broadcast_to(row, (points // len(across), len(across))) for row in (deflection.T, -across))
     return np.stack([np.zeros(points), y.ravel(), z.ravel()], axis=1)

@@ -1,4 +1,4 @@
-"""Pictures of harvested power, voltage and strain: over speed, and over the load resistance."""
+"""Plots of energy harvesting: power, voltage and strain over speed, and power over load resistance."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 
 _KM_PER_HOUR = 3.6  # factor from m/s to km/h
-_HEIGHT, _WIDTH, _ABOVE = 2.8, 4.2, 1.2  # of a panel, and height of the names above all panels [inch]
-_NARROWEST = 3.0  # least width of a panel beside others [inch]
+_HEIGHT, _WIDTH, _ABOVE = 2.8, 4.2, 1.2  # size of a panel, and height of names at the top [inch]
+_NARROWEST = 3.0  # least width of a panel if several are side by side [inch]
 
 
 @dataclass(frozen=True)
 class HarvestPanel:
-    """Curves of one quantity over speed.
+    """Curves of one quantity over rotational speed.
 
     Parameters
     ----------
     label : str
-        The quantity, with its unit.
+        Name of the quantity, with its unit.
     curves : mapping of str to ndarray, shape (S,)
-        Values by name; nan leaves a gap.
+        Values of each curve, by name of the curve; nan leaves a gap.
     limit : float
-        What the values should not pass; inf if there is no limit.
+        Limit that the values should not exceed; inf if there is none.
     """
 
     label: str
@@ -36,13 +36,13 @@ class HarvestPanel:
 
 
 def panel_size(count: int, width: float | None = None) -> tuple[float, float]:
-    """Return width and height of a picture of a number of panels [inch]."""
+    """Return width and height of a picture with a given number of panels [inch]."""
     whole = width or _WIDTH * count
     return whole, _ABOVE + _HEIGHT * -(-count // _columns(whole))
 
 
 def _columns(width: float) -> int:
-    """Return how many panels fit into a row of a picture of a width [inch]."""
+    """Return how many panels fit side by side into a picture of a given width [inch]."""
     return max(int(width / _NARROWEST), 1)
 
 
@@ -50,9 +50,9 @@ def plot_harvest_panels(
     speeds: np.ndarray, shown: Sequence[HarvestPanel], resonances: np.ndarray, radius: float,
     units: DisplayUnits, ax: Axes | None = None,
 ) -> Axes:  # fmt: skip
-    """Draw panels over speed, as many in a row as fit; curves of one name have one colour.
+    """Draw panels over speed, as many in a row as fit; curves with the same name have the same colour.
 
-    The arguments are those of `plot_harvest`.
+    The other arguments are as for `plot_harvest`.
     """
     ax = ax or new_axes(*panel_size(len(shown)))
     columns, named = _columns(ax.bbox.width / ax.figure.dpi), {}
@@ -85,13 +85,14 @@ def plot_harvest(
     panel : HarvestPanel
         The curves.
     resonances : ndarray, shape (r,)
-        Speeds of resonance [rad/s].
+        Rotational speeds of resonance [rad/s].
     radius : float
-        Radius of a wheel that rolls [m], whose velocities stand above; 0 if there is none.
+        Radius of a rolling wheel [m]: a second axis at the top then shows the velocity; 0 if there is no
+        wheel.
     units : DisplayUnits
         Units of the axes; the arrays are SI.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
 
     Returns
     -------
@@ -109,7 +110,7 @@ def plot_harvest(
     if any((each > 0).any() for each in drawn):
         ax.set_yscale("log")
     if radius:
-        each = _KM_PER_HOUR * radius / speed.per_si  # km/h in a unit of the axis below
+        each = _KM_PER_HOUR * radius / speed.per_si  # velocity in km/h for one unit of the speed axis
         above = ax.secondary_xaxis(
             "top", functions=(lambda v: np.asarray(v) * each, lambda v: np.asarray(v) / each)
         )
@@ -120,7 +121,7 @@ def plot_harvest(
 def plot_resistances(
     resistances: np.ndarray, power: np.ndarray, best: float, label: str, ax: Axes | None = None
 ) -> Axes:
-    """Draw power [W] over resistances [ohm], both logarithmic, and mark the best with a label."""
+    """Draw power [W] over load resistance [ohm] on logarithmic axes, and mark the best resistance."""
     ax = set_up_axes(ax, "load resistance [ohm]", "mean power [W]")
     ax.plot(resistances, power, color=COLOURS[0], linewidth=1.8, marker=".", label="tried")
     ax.plot(best, power.max(), "o", color=COLOURS[1], label=label)

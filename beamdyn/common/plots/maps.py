@@ -1,6 +1,6 @@
-"""Pictures of answers over inputs: curves over one input, maps with lines of equal value over two.
+"""Plots of results over inputs: curves over one input, contour maps over two inputs.
 
-Their texts find a free place when the picture is drawn, whatever its size: none covers another.
+Texts are placed each time the picture is drawn, so that they do not overlap at any size of the picture.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from matplotlib.text import Text
 
 _APART_ON_PAPER = 2.0  # least distance between two texts [px]
-_MOST = 80  # largest number of places around a point that are tried for its text
-_POINT = 5.0  # half the size of a marked point [px]
+_MOST = 80  # largest number of positions around a point that are tried for a text
+_POINT = 5.0  # half the size of the marker of a point [px]
 _ON_IT = np.zeros((1, 2))
-# Directions, from a point, in which a place for its text is tried.
+# Directions, from a point, in which its text may be placed.
 _WAYS = np.array([(1, 0.2), (-1, 0.2), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)])
 _HALO: dict[str, Any] = {
     "boxstyle": "square,pad=0.1",
@@ -37,10 +37,10 @@ _HALO: dict[str, Any] = {
 
 
 class PlacedLabels(Artist):
-    """Texts on axes, each at the first of its places where it covers no other.
+    """Texts on axes, each at the first of its possible positions at which it covers no other text.
 
-    Near an edge it is moved into the axes; a text without a free place is left out.  Places are chosen anew
-    whenever the picture is drawn.
+    A text near the edge is moved inwards; a text without a free position is not drawn.  Positions are chosen
+    each time the picture is drawn.
 
     Parameters
     ----------
@@ -50,23 +50,24 @@ class PlacedLabels(Artist):
 
     def __init__(self, ax: Axes) -> None:
         super().__init__()
-        self.set_in_layout(False)  # texts lie within the axes, so that the layout needs no room for them
+        self.set_in_layout(False)  # texts lie within the axes, so that the layout reserves no space for them
         self.set_zorder(6)
         self._texts: list[tuple[Text, np.ndarray, np.ndarray]] = []
         self._points = np.empty((0, 2))
         ax.add_artist(self)
 
     def add(self, text: str, places: np.ndarray, beside: bool = False, **style: Any) -> None:
-        """Add a text; texts that are added first choose first.
+        """Add a text; texts that are added earlier are placed first.
 
         Parameters
         ----------
         text : str
             The text.
         places : ndarray, shape (n, 2)
-            Places of its centre, in the units of the axes, the best first.
+            Possible positions of the text's centre, in the units of the axes, the best first.
         beside : bool
-            Whether the text stands beside its places, which are then marked points that no text may cover.
+            Whether the text is placed beside the given positions, which are marked points that no text may
+            cover.
         **style
             Properties of the text, as for `matplotlib.text.Text`.
         """
@@ -83,7 +84,7 @@ class PlacedLabels(Artist):
             self._points = np.vstack([self._points, places])
 
     def get_children(self) -> list[Artist]:
-        """Return the texts."""
+        """Return the texts on the axes, for matplotlib."""
         return [text for text, *_ in self._texts]
 
     def draw(self, renderer: Any) -> None:
@@ -110,49 +111,49 @@ class PlacedLabels(Artist):
 
 
 def _overlap(boxes: np.ndarray, taken: np.ndarray) -> np.ndarray:
-    """Decide whether boxes (n, 4) overlap any of others (m, 4), shape (n,)."""
+    """Return whether each box (n, 4) overlaps any of the boxes (m, 4) that are already used; shape (n,)."""
     low, high = boxes[:, None, :2], boxes[:, None, 2:]
     each = np.all((low < taken[:, 2:]) & (taken[:, :2] < high), axis=-1)
     return np.asarray(np.any(each, axis=-1))
 
 
-# Curves and maps -------------------------------------------------------------------------------------
+# Curves and contour maps -----------------------------------------------------------------------------
 
-_MOST_THIRD = 3  # largest number of values of a third input, each of which has a panel
+_MOST_THIRD = 3  # largest number of values of a third input; there is a panel for each value
 _COLUMNS = 3  # largest number of panels in a row
-_LEVELS = 8  # largest number of lines of equal value
-_DECADES = 1.5  # decades of values above which lines of equal value ascend by ratios
-# Least ratio of largest to smallest value for a logarithmic axis, of an input at equal ratios.
+_LEVELS = 8  # largest number of contour lines
+_DECADES = 1.5  # range of values in decades, above which contour levels are at equal ratios
+# If an input has values at equal ratios: least ratio of the largest to the smallest value for a log axis.
 _LOGARITHMIC = 10.0
 _DIGITS = 4
-_FEW = 40  # largest number of values of an input whose points are marked on a curve
-# Standard deviation [places of the grid] by which the share of places without an answer is smoothed; least
-# distance of the smoothed share from 1/2, at which the hatched region ends.
+_FEW = 40  # largest number of values of an input for which the points of a curve have markers
+# The hatched region shows where results are missing.  The fraction of missing results is smoothed by a
+# Gaussian of this standard deviation [grid steps]; the region ends where it is 1/2 within this distance.
 _SMOOTHED, _APART = 1.0, 0.02
-_SAME = 1e-9  # relative difference of values that is rounding: no lines are drawn between them
-# Share of the smallest, and of the largest, values that have no influence on the lines of equal value.
+_SAME = 1e-9  # relative difference of values due to rounding: no contour lines are drawn between them
+# Fraction of the smallest, and of the largest, values that do not influence the contour levels.
 _RARE = 0.04
-_LETTERS = 10.0  # number of letters of a title that fit into an inch
-_NARROWEST, _WIDE = 2.2, 100.0  # least width of a map, and a width that has room for all maps [inch]
+_LETTERS = 10.0  # characters of a title that fit into an inch
+_NARROWEST, _WIDE = 2.2, 100.0  # least width of a map, and a width that is enough for all maps [inch]
 _HATCHED: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "0.72", "hatch": "////", "linewidth": 0}
-_PALE = (0.0, 0.42)  # part of the colour map between the lines, pale so that texts can be read on it
-_MEETS = "#A0303A"  # colour of lines that the answer meets, such as excitation lines
+_PALE = (0.0, 0.42)  # pale part of the colour map, on which texts can be read
+_MEETS = "#A0303A"  # colour of lines that a result may cross, such as excitation lines
 
 
 @dataclass(frozen=True)
 class MapInput:
-    """An input of a picture.
+    """A varied input that is an axis of a plot.
 
     Parameters
     ----------
     name : str
-        Its name.
+        Name of the input.
     unit : str
-        Unit in which it is shown.
+        Unit in which the input is shown.
     values : ndarray, shape (n,)
-        Its values [unit].
+        Values of the input [unit].
     present : float, optional
-        Its value in the present design [unit].
+        Value of the input in the present design [unit], which is marked.
     """
 
     name: str
@@ -162,16 +163,16 @@ class MapInput:
 
     @property
     def label(self) -> str:
-        """Name and unit of the input."""
+        """Return name and unit of the input."""
         return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def at(self, i: int) -> str:
-        """Format value i of the input."""
+        """Format the input's value with index i."""
         return f"{self.name} = {self.values[i]:.{_DIGITS}g} {self.unit}".rstrip()
 
     @property
     def is_logarithmic(self) -> bool:
-        """Whether the values are at equal ratios, over at least a decade."""
+        """Return whether the values are at equal ratios and span at least a decade."""
         ends = np.sort(self.values)[[0, -1]]
         if not (ends[0] > 0 and ends[1] >= _LOGARITHMIC * ends[0] and len(self.values) > 2):
             return False
@@ -180,18 +181,19 @@ class MapInput:
 
 @dataclass(frozen=True)
 class MapAnswer:
-    """An answer over inputs, to be drawn.
+    """A result over inputs, to be drawn.
 
     Parameters
     ----------
     title : str
-        Words for the answer, with its unit.
+        Name of the result, with its unit.
     value : ndarray, shape (n1, ..., nd)
-        Values of the answer; not finite where there is none.
+        Values of the result; not finite where there is none.
     reason : ndarray of str, shape (n1, ..., nd)
-        Why the answer has no value, where it has none.
+        The reason for each missing value.
     meets : mapping of str to ndarray, shape (n1, ..., nd)
-        Values by name, such as frequencies of an excitation, which are marked where the answer meets them.
+        Comparison values by name, such as excitation frequencies; points at which the result equals them are
+        marked.
     """
 
     title: str
@@ -203,32 +205,32 @@ class MapAnswer:
 def map_size(
     inputs: Sequence[MapInput], answers: Sequence[MapAnswer], width: float | None = None
 ) -> tuple[float, float]:
-    """Return width and height of the picture that `plot_maps` makes, for a width if one is given [inch]."""
+    """Return width and height [inch] of the picture that `plot_maps` makes, for a given width if any."""
     count, columns = _grid(inputs, answers, width or _WIDE)
     usual = 7.5 if columns == 1 else 4.2 * columns
     return width or usual, 0.6 + (2.6 if len(_varied(inputs)) < 2 else 3.2) * -(-count // columns)
 
 
 def plot_maps(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], ax: Axes | None = None) -> Axes:
-    """Draw answers over inputs, with a panel for each.
+    """Draw results over inputs, with a panel for each result.
 
-    Over one input an answer is a curve.  Over two it is drawn by lines of equal value, labelled; some values
-    of a third input have panels of their own.  The title says the first value of further inputs, and of those
-    with a single value.  Where there is no answer the panel is hatched, and says why.
+    Over one input a result is drawn as a curve, over two inputs by labelled contour lines.  Of a third input,
+    some values have panels of their own.  All other inputs have their first value, which the title states.
+    Regions without a result are hatched, and the reason is written there.
 
     Parameters
     ----------
     inputs : sequence of MapInput
-        The d inputs, one for each axis of the answers.
+        The d inputs, one for each axis of the arrays of results.
     answers : sequence of MapAnswer
-        The answers; those without any value are named in a panel of its own.
+        The results; those that lack all values are listed in a separate panel.
     ax : Axes, optional
-        Axes whose place the panels take; those of a new figure if not given.
+        Axes whose area is divided into panels; axes of a new figure if not given.
 
     Returns
     -------
     Axes
-        The panel if it is the only one, else the axes whose place is taken.
+        The panel if there is only one, else the axes that the panels replace.
     """
     over = _varied(inputs)
     shown = [*_panels(inputs, answers)]
@@ -254,12 +256,12 @@ def plot_maps(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], ax: Axes
 
 
 def _varied(inputs: Sequence[MapInput]) -> list[int]:
-    """Return the indices of inputs with several values; the first one if none has."""
+    """Return the indices of the inputs with several values; index 0 if no input has several."""
     return [i for i, each in enumerate(inputs) if len(each.values) > 1] or [0]
 
 
 def _grid(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], inches: float) -> tuple[int, int]:
-    """Return the number of panels, and how many of them fit into a row of a given width [inch]."""
+    """Return the number of panels, and how many of them fit side by side into a given width [inch]."""
     count, over = len([*_panels(inputs, answers)]), _varied(inputs)
     if len(over) < 2:
         return count, 1
@@ -268,7 +270,7 @@ def _grid(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], inches: floa
 
 
 def _thirds(given: MapInput) -> list[int]:
-    """Return the indices of the values of a third input that have a panel."""
+    """Return the indices of those values of a third input that have a panel."""
     return evenly_spread(len(given.values), _MOST_THIRD).tolist()
 
 
@@ -276,7 +278,7 @@ _Panel = tuple[str, np.ndarray, np.ndarray, dict[str, np.ndarray]]
 
 
 def _panels(inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> Iterator[_Panel]:
-    """Yield title, values, reasons and lines of each panel, over the first one or two varied inputs."""
+    """Yield title, values, reasons and comparison lines of each panel, over one or two varied inputs."""
     over = _varied(inputs)
     thirds = _thirds(inputs[over[2]]) if len(over) > 2 else [0]
     known = [each for each in answers if np.isfinite(each.value).any()] or answers[:1]
@@ -293,7 +295,7 @@ def _panels(inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> Iterato
 
 
 def _set_up(ax: Axes, inputs: Sequence[MapInput], ylabel: str = "") -> None:
-    """Set labels and scales of axes over inputs."""
+    """Set the labels and scales of axes whose coordinates are inputs."""
     set_up_axes(ax, inputs[0].label, ylabel or inputs[-1].label)
     for given, scaled in zip(inputs, (ax.set_xscale, ax.set_yscale), strict=False):
         if given.is_logarithmic:
@@ -314,7 +316,7 @@ def _draw_map(
     reason: np.ndarray,
     meets: Mapping[str, np.ndarray],
 ) -> None:
-    """Draw lines of equal value over two inputs, on hatched ground."""
+    """Draw contour lines over two inputs on a hatched background."""
     _set_up(ax, inputs)
     orders = [np.argsort(each.values, kind="stable") for each in inputs]
     x, y = (each.values[order] for each, order in zip(inputs, orders, strict=True))
@@ -333,7 +335,7 @@ def _draw_map(
 
 
 def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> None:
-    """Draw lines of equal value with their labels, and pale colours between them."""
+    """Draw labelled contour lines, with pale colours between them."""
     from matplotlib import colormaps, colors
 
     known = z[np.isfinite(z)]
@@ -347,7 +349,7 @@ def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z
     levels = levels_of(known)
     pale = colors.ListedColormap(colormaps["YlGnBu"](np.linspace(*_PALE, 64)))
     bounds = np.union1d(levels, [np.nextafter(low, -np.inf), np.nextafter(high, np.inf)])
-    # Colours reach up to the edge of the hatched region.
+    # Colours extend to the edge of the hatched region.
     ax.contourf(x, y, _extended(z), bounds, cmap=pale, zorder=1)
     drawn = ax.contour(x, y, z, levels, colors="0.25", linewidths=1.0, zorder=2)
     for level, paths in zip(levels.tolist(), drawn.allsegs, strict=True):
@@ -355,13 +357,13 @@ def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z
 
 
 def _extended(z: np.ndarray) -> np.ndarray:
-    """Fill places without a value with the value of the nearest place that has one."""
+    """Replace missing values by the value of the nearest grid point that has one."""
     _, (rows, columns) = _nearest_outside(~np.isfinite(z))
     return z[rows, columns]
 
 
 def _nearest_outside(region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute distances (ny, nx) from the nearest places outside a region, and their indices (2, ny, nx)."""
+    """Compute distances (ny, nx) to the nearest grid points outside a region, and their indices."""
     from scipy.ndimage import distance_transform_edt
 
     distances, indices = distance_transform_edt(region, return_indices=True)
@@ -369,10 +371,10 @@ def _nearest_outside(region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def levels_of(known: np.ndarray) -> np.ndarray:
-    """Choose round values between smallest and largest: at equal steps, or 1, 2, 5, 10 over decades."""
+    """Choose round contour levels between the extreme values: at equal steps, or 1, 2, 5, 10 over decades."""
     from matplotlib.ticker import MaxNLocator
 
-    # A few values may lie far away from all others.
+    # Contour levels disregard a few values that may lie far away from all others.
     low, high = np.quantile(known, (_RARE, 1 - _RARE)).tolist()
     if low > 0 and high > 10**_DECADES * low:
         decades = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
@@ -384,7 +386,7 @@ def levels_of(known: np.ndarray) -> np.ndarray:
 
 
 def _label_path(labels: PlacedLabels, text: str, paths: Sequence[np.ndarray], **style: Any) -> None:
-    """Label the longest of several paths, near its middle if there is room."""
+    """Label the longest of several pieces of a contour line, near its middle if there is space."""
     if paths:
         points = np.asarray(max(paths, key=len))
         from_middle = np.abs(np.arange(len(points)) - (len(points) - 1) / 2)
@@ -394,7 +396,7 @@ def _label_path(labels: PlacedLabels, text: str, paths: Sequence[np.ndarray], **
 def _draw_meeting(
     ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, distance: np.ndarray, name: str
 ) -> None:
-    """Draw the line on which a distance (ny, nx) is zero, with its name."""
+    """Draw the contour line on which a difference (ny, nx) is zero, with a name."""
     known = distance[np.isfinite(distance)]
     if known.size and known.min() < 0 < known.max():
         drawn = ax.contour(x, y, distance, [0.0], colors=_MEETS, linestyles="--", linewidths=1.8, zorder=3)
@@ -402,7 +404,7 @@ def _draw_meeting(
 
 
 def _hatch(ax: Axes, x: np.ndarray, y: np.ndarray, lacking: np.ndarray) -> None:
-    """Hatch where there is no answer, up to a smooth line between the places with and without one."""
+    """Hatch the region without results, up to a smooth line between grid points with and without a result."""
     from scipy.ndimage import gaussian_filter
 
     share = gaussian_filter(lacking.astype(float), _SMOOTHED)
@@ -416,7 +418,7 @@ def _hatch(ax: Axes, x: np.ndarray, y: np.ndarray, lacking: np.ndarray) -> None:
 def _name_regions(
     ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, lacking: np.ndarray, why: np.ndarray
 ) -> None:
-    """Write the reason in the middle of each region without an answer."""
+    """Write the reason at the centre of each region without results."""
     for name in np.unique(why[lacking]).tolist():
         region = lacking & (why == name)
         depth = _nearest_outside(np.pad(region, 1))[0][1:-1, 1:-1]
@@ -426,7 +428,7 @@ def _name_regions(
 
 
 def _mark_present(ax: Axes, labels: PlacedLabels, x: float | None, y: float | None) -> None:
-    """Mark the present design, if it lies within the axes."""
+    """Mark the present design if its inputs lie within the axes."""
     if x is None or y is None:
         return
     (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
@@ -445,7 +447,7 @@ def _draw_curve(
     reason: np.ndarray,
     meets: Mapping[str, np.ndarray],
 ) -> None:
-    """Draw an answer over one input, hatched where there is none."""
+    """Draw a result over one input as a curve; intervals without a result are hatched."""
     given = inputs[0]
     order = np.argsort(given.values, kind="stable")
     x, y, why = given.values[order], np.where(np.isfinite(value), value, np.nan)[order], reason[order]
@@ -473,7 +475,7 @@ def _draw_curve(
 
 
 def _hatch_spans(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, why: np.ndarray) -> None:
-    """Hatch and name the parts of an axis where a curve has no value."""
+    """Hatch the intervals in which a curve has no value, and write the reason there."""
     between = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
     names = np.where(np.isfinite(y), "", why)
     starts = np.flatnonzero(np.concatenate([[True], names[1:] != names[:-1]]))

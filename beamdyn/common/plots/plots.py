@@ -1,4 +1,4 @@
-"""Plots of arrays on matplotlib Axes; nothing is shown, and pyplot is loaded only to make new axes."""
+"""Plots of arrays on matplotlib axes; nothing is shown, and pyplot is imported only to make new axes."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 from beamdyn.common.plots import axes_and_lines
 from beamdyn.common.results.columns import SI_UNITS, DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
-from beamdyn.common.results.pictures import save_figure as save_figure  # exported together with the plots
+from beamdyn.common.results.pictures import save_figure as save_figure  # for other modules to import
 
-_MOST_THICK = 2000  # number of samples above which a line over time is drawn thin
+_MOST_THICK = 2000  # number of samples above which a curve over time is drawn thin
 
 
-# Over speed ------------------------------------------------------------------------------------------
+# Plots over rotational speed ---------------------------------------------------------------------------
 
 
 def plot_locus(
@@ -32,11 +32,11 @@ def plot_locus(
     speeds : ndarray, shape (S,)
         Angular speeds [rad/s].
     frequency : ndarray, shape (S, m)
-        Frequencies [Hz]; nan, where a mode does not oscillate, leaves a gap.
+        Frequencies [Hz]; nan where a mode does not oscillate, which leaves a gap.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     labels : sequence of str, length m, optional
-        For the legend; "mode 1" and so on if not given.
+        Names of the modes in the legend; "mode 1" and so on if not given.
     critical_speed : float, optional
         Speed [rad/s] to mark, as `mark_critical` does.
     units : DisplayUnits, optional
@@ -57,9 +57,10 @@ def plot_growth(
     critical_speed: float | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw growth rates over speed, one line per mode, in the colours of `plot_locus`.
+    """Draw growth rates of modes over speed, one line per mode, in the colours of `plot_locus`.
 
-    Frequencies say nothing of a mode that grows: this belongs below a locus that passes the critical speed.
+    Frequencies do not show whether a mode grows: above the critical speed, draw this plot below the
+    frequencies.
 
     Parameters
     ----------
@@ -81,7 +82,7 @@ def plot_loci_by_angle(
     angles_deg: Sequence[float] | np.ndarray,
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw one frequency over speed, one line per setting angle.
+    """Draw the frequency of one mode over speed, one line per setting angle of the beam.
 
     Parameters
     ----------
@@ -92,7 +93,7 @@ def plot_loci_by_angle(
     angles_deg : sequence of float, length k
         Setting angles [degrees].
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
 
     Returns
     -------
@@ -114,7 +115,7 @@ def _plot_over_speed(
     values, speeds = np.asarray(values), units.speed_unit().of(np.asarray(speeds))
     ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), quantity)
     axes_and_lines.draw_lines(ax, speeds, values.T, labels or _number_modes(values.shape[1]))
-    # Sets the limits also where every mode is nan.
+    # Limits are set even if all frequencies of all modes are nan.
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
     return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed, units=units)
 
@@ -122,12 +123,12 @@ def _plot_over_speed(
 def mark_critical(
     ax: Axes, speed: float, label: str = "critical speed", units: DisplayUnits = SI_UNITS
 ) -> Axes:
-    """Mark a critical speed by a line, and shade what lies past it.
+    """Mark a critical speed by a vertical line, and shade the speeds above it.
 
     Parameters
     ----------
     ax : Axes
-        Axes with angular speed on x; their limits stay.
+        Axes with angular speed on x; their limits are not changed.
     speed : float
         Critical speed [rad/s]; one outside the limits, such as inf, is not drawn.
     label : str
@@ -152,16 +153,16 @@ def mark_critical(
 def mark_points(
     ax: Axes, x: np.ndarray | Sequence[float], y: np.ndarray | Sequence[float], label: str
 ) -> Axes:
-    """Lay points, such as published ones, over a picture.
+    """Draw points, such as published ones, on axes that already show curves.
 
     Parameters
     ----------
     ax : Axes
-        Where to draw.
+        Axes to draw on.
     x, y : array_like, shape (n,)
         The points, in the units of the axes.
     label : str
-        Entry in the legend, which says where the points come from.
+        Entry in the legend, for example the source of the points.
 
     Returns
     -------
@@ -180,14 +181,14 @@ def plot_locus_by_plane(
     labels: Sequence[str] | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw natural frequencies over speed, solid where a mode bends mostly in one direction, else dashed.
+    """Draw natural frequencies over speed, solid where a mode mainly bends in one direction, else dashed.
 
     Parameters
     ----------
     speeds, frequency, ax, labels, units
         As for `beamdyn.common.plots.plots.plot_locus`.
     share : ndarray, shape (S, m)
-        Share of each mode's energy in the first direction, which is drawn solid.
+        Fraction of each mode's energy in the first direction; a curve is solid where it exceeds 1/2.
     directions : tuple of str
         The two directions in words, for the legend.
 
@@ -214,7 +215,7 @@ def plot_response(
     by_direction: Mapping[str, np.ndarray] | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw a resonance curve with a logarithmic scale of deflection.
+    """Draw a resonance curve: tip deflection on a logarithmic scale over speed.
 
     Parameters
     ----------
@@ -223,9 +224,9 @@ def plot_response(
     amplitude : ndarray, shape (S,)
         Largest tip deflection [m]; nan leaves a gap.
     bound : ndarray, shape (S,), optional
-        Sum of the amplitudes that all excitation lines cause [m].
+        Sum of the amplitudes of all excitation frequencies [m].
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     by_direction : mapping of str to ndarray, shape (S,), optional
         Largest tip deflections in single directions [m].
     units : DisplayUnits, optional
@@ -244,7 +245,7 @@ def plot_response(
     drawn = (length.of(np.where(np.asarray(row) > 0, row, np.nan)) for row in rows.values())
     axes_and_lines.draw_lines(ax, speed.of(np.asarray(speeds)), drawn, list(rows))
     for line in ax.lines[1:]:
-        line.set(linestyle="--", linewidth=1.2)  # thin, as it mostly lies on top of the first
+        line.set(linestyle="--", linewidth=1.2)  # drawn thin, as it mostly lies on top of the first curve
     if (np.asarray(amplitude) > 0).any():
         ax.set_yscale("log")
     return add_legend(ax)
@@ -257,7 +258,7 @@ def plot_sweep(
     labels: Sequence[str] = ("peak",),
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw the peaks of transients over speed, in one line or several.
+    """Draw the largest tip deflections of transient simulations over speed, in one line or several.
 
     Parameters
     ----------
@@ -266,9 +267,9 @@ def plot_sweep(
     peaks : ndarray, shape (S,) or (d, S)
         Largest tip deflections [m] of one line, or of d lines; nan leaves a gap.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     labels : sequence of str, length d
-        Names of the lines in the legend, which a single line does not need.
+        Names of the lines in the legend; a single line needs none.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 
@@ -290,14 +291,15 @@ def plot_branches(
     ax: Axes | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw branches of equilibria over speed: solid where they are stable, dashed where not.
+    """Draw branches of equilibria over speed: solid where they are stable, dashed where they are unstable.
 
     Parameters
     ----------
     branches : sequence of tuple
-        Name, speeds (k,) [rad/s], tip deflections over the length (k,) and stability (k,) of each.
+        For each branch: name, speeds (k,) [rad/s], tip deflections divided by the length (k,), and whether
+        each point is stable (k,).
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 
@@ -307,7 +309,7 @@ def plot_branches(
     """
     ax = axes_and_lines.new_axes() if ax is None else ax
     for colour, (name, speeds, tip, stable) in zip(COLOURS, branches, strict=False):
-        lost = ~stable  # unstable points, with their neighbours, so that lines meet
+        lost = ~stable  # unstable points and their neighbours, so that dashed and solid lines meet
         around = lost | np.r_[False, lost[:-1]] | np.r_[lost[1:], False]
         for where, style, word in ((stable, "-", "stable"), (around, "--", "unstable")):
             if where.any():
@@ -318,7 +320,7 @@ def plot_branches(
     return ax
 
 
-# Over time and frequency -----------------------------------------------------------------------------
+# Plots over time and frequency -------------------------------------------------------------------------
 
 
 def plot_transient(
@@ -335,11 +337,11 @@ def plot_transient(
     t : ndarray, shape (n,)
         Times [s].
     tip : ndarray, shape (n,) or (d, n)
-        Tip deflection [m], or that in each of d directions.
+        Tip deflection [m]; one row for each of d directions if there are several.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     labels : sequence of str, length d
-        Names of the lines in the legend, which a single line does not need.
+        Names of the lines in the legend; a single line needs none.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 
@@ -361,18 +363,18 @@ def plot_frequency_response(
     labels: Sequence[str],
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw magnitudes over frequency on logarithmic axes.
+    """Draw amplitudes over frequency on logarithmic axes.
 
     Parameters
     ----------
     curves : sequence of (ndarray, ndarray), each of shape (F,)
-        Frequencies [Hz], of which 0 is not drawn, and magnitudes.
+        Frequencies [Hz] and amplitudes of each curve; the frequency 0 is not drawn.
     ylabel : str
         Label of the vertical axis.
     labels : sequence of str, one a curve
-        For the legend; an empty one has no entry.
+        Names of the curves in the legend; a curve with an empty name has no entry.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     """
     ax = axes_and_lines.set_up_axes(ax, "frequency [Hz]", ylabel)
     for (frequencies, size), label in zip(curves, labels, strict=True):
@@ -382,5 +384,5 @@ def plot_frequency_response(
 
 
 def _number_modes(count: int) -> list[str]:
-    """Return names of modes for the legend."""
+    """Return the names "mode 1", "mode 2" and so on, for the legend."""
     return [f"mode {i}" for i in range(1, count + 1)]

@@ -1,4 +1,4 @@
-"""Plots of mode shapes and of bent beams, from arrays."""
+"""Plots of mode shapes and of deflected beams, from arrays."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 if TYPE_CHECKING:
     from matplotlib.contour import ContourSet
 
-_COLOURS_OF_SIGN, _LEVELS = "RdBu_r", np.linspace(-1, 1, 21)  # colours and levels of surfaces
-_FLAT = 1e-6  # relative deflection below which a surface has no nodal lines
-_ASIDE = 0.4  # largest displacement along the width that is drawn, over the width
-_PAGE, _MARGIN = (6.5, 4.6), 0.45  # size of a page for panels, and distance between two [inch]
+_COLOURS_OF_SIGN, _LEVELS = "RdBu_r", np.linspace(-1, 1, 21)  # colour map and contour levels
+_FLAT = 1e-6  # relative deflection below which no nodal lines are drawn
+_ASIDE = 0.4  # largest drawn displacement across the width, as a fraction of the width
+_PAGE, _MARGIN = (6.5, 4.6), 0.45  # size of a page of panels, and distance between two panels [inch]
 
 
 def plot_shapes(
@@ -28,7 +28,7 @@ def plot_shapes(
     ax: Axes | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw mode shapes, each over its own largest deflection.
+    """Draw mode shapes along the beam, each divided by its largest deflection.
 
     Parameters
     ----------
@@ -37,9 +37,9 @@ def plot_shapes(
     shapes : ndarray, shape (m, n)
         Deflections of the modes, real, in any unit.
     labels : sequence of str, length m
-        For the legend.
+        Names of the modes in the legend.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 
@@ -62,7 +62,7 @@ def plot_shapes_by_plane(
     ax: Axes | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw mode shapes in two directions, both over the largest deflection in either.
+    """Draw mode shapes in two directions, divided by the largest deflection in either direction.
 
     Parameters
     ----------
@@ -71,11 +71,11 @@ def plot_shapes_by_plane(
     shapes : ndarray, shape (m, 2, n)
         Deflections of the modes, real, in any unit; those in the first direction are drawn solid.
     labels : sequence of str, length m
-        For the legend.
+        Names of the modes in the legend.
     directions : tuple of str
         The two directions in words, for the legend.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 
@@ -102,7 +102,7 @@ def plot_surfaces(
     ax: Axes | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw mode shapes of a strip seen from above, to scale, each with its nodal lines in panels of its own.
+    """Draw mode shapes of a strip in plan view, to scale, with nodal lines; each mode has its own panel.
 
     Parameters
     ----------
@@ -113,11 +113,11 @@ def plot_surfaces(
     shapes : ndarray, shape (m, n, k)
         Deflections of the modes out of the strip, real, in any unit.
     across : ndarray, shape (m, n)
-        Displacements along -y, in the same unit, by which the outline is drawn displaced.
+        Displacements along -y, in the same unit; the outline is drawn displaced by them.
     labels : sequence of str, length m
         Titles of the panels.
     ax : Axes, optional
-        Axes whose place is divided into panels; new axes if not given.
+        Axes whose area is divided into panels; new axes if not given.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
 
@@ -137,7 +137,7 @@ def plot_surfaces(
 
 
 def _panels_in_a_row(count: int, length: float, width: float) -> int:
-    """Return the number of panels in a row with which strips of one size are drawn largest."""
+    """Return the number of panels in a row at which strips of a given size are drawn largest."""
     rows = ((columns, -(-count // columns)) for columns in range(1, count + 1))
     sizes = {
         columns: min((_PAGE[0] / columns - _MARGIN) / length, (_PAGE[1] / rows - _MARGIN) / width)
@@ -149,11 +149,11 @@ def _panels_in_a_row(count: int, length: float, width: float) -> int:
 def _draw_surface(
     ax: Axes, x: np.ndarray, y: np.ndarray, shape: np.ndarray, label: str, units: DisplayUnits
 ) -> ContourSet:
-    """Draw a deflection of at most 1 over a strip clamped at the left, with its nodal lines and outline."""
+    """Draw a deflection (at most 1) of a strip clamped at the left, with nodal lines and outline."""
     unit = units.length_unit("m")
     x, y = unit.of(np.broadcast_to(x[:, None], y.shape)), unit.of(y)
     colours = ax.contourf(x, y, shape, levels=_LEVELS, cmap=_COLOURS_OF_SIGN)
-    if np.abs(shape).max() > _FLAT:  # nodal lines of rounding errors are not drawn
+    if np.abs(shape).max() > _FLAT:  # deflections that are only rounding errors have no nodal lines
         ax.contour(x[1:], y[1:], shape[1:], levels=[0.0], colors="black", linewidths=1.2)
     outline = [np.concatenate([of[:, 0], of[-1], of[::-1, -1]]) for of in (x, y)]
     ax.plot(*outline, color="0.3", linewidth=0.8)
@@ -169,7 +169,7 @@ def _draw_surface(
 
 
 def _set_up_shapes(ax: Axes | None, units: DisplayUnits = SI_UNITS) -> Axes:
-    """Label the axes for mode shapes, each over its largest deflection, and draw the beam at rest."""
+    """Label the axes for mode shapes divided by their largest deflection, and draw the beam at rest."""
     ax = axes_and_lines.set_up_axes(
         ax, axes_and_lines.position_label(units), "deflection / its largest value"
     )
@@ -178,11 +178,11 @@ def _set_up_shapes(ax: Axes | None, units: DisplayUnits = SI_UNITS) -> Axes:
 
 
 def plot_bent_beam(along: np.ndarray, across: np.ndarray, ax: Axes | None = None, title: str = "") -> Axes:
-    """Draw a bent beam to scale, from positions along and across the straight beam, over its length."""
+    """Draw a deflected beam to scale, from its coordinates (along and across) divided by its length."""
     ax = axes_and_lines.new_axes() if ax is None else ax
     ax.plot(along, across, color=COLOURS[0])
     ax.plot([0, 1], [0, 0], color="0.7", linewidth=0.8)
     labels = {"xlabel": "along the beam at rest, over its length", "ylabel": "deflection over the length"}
     ax.set(title=title, **labels)
-    ax.set_aspect("equal", adjustable="datalim")  # fills the axes, however little the beam bends
+    ax.set_aspect("equal", adjustable="datalim")  # the curve fills the axes even if the beam bends little
     return ax

@@ -1,4 +1,4 @@
-"""Pictures of stability: multipliers in the complex plane, and charts over two numbers."""
+"""Plots of stability: Floquet multipliers in the complex plane, and stability charts over two inputs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from beamdyn.common.plots.axes_and_lines import set_up_axes
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 
 _SIGNS = {1.0: "Krein sign +", -1.0: "Krein sign -", 0.0: "multipliers"}
-_FEW = 0.6  # size of a mark of an undecided point [pt]
+_FEW = 0.6  # size of the marker of a point whose stability is undecided [pt]
 
 
 def plot_multipliers(
@@ -33,7 +33,7 @@ def plot_multipliers(
 
 
 def plot_exponent(rate: float, error: float, ax: Axes | None = None) -> Axes:
-    """Draw the largest growth rate [1/s] with its error, beside 0, above which motion grows."""
+    """Draw the largest growth rate [1/s] with its error bar; a positive growth rate means instability."""
     ax = set_up_axes(ax, "growth rate [1/s]", "")
     ax.axvline(0.0, color="0.5", linewidth=1.0, label="limit of growth")
     ax.errorbar([rate], [0.0], xerr=[error], fmt="o", color=COLOURS[0], capsize=4, label="largest exponent")
@@ -44,18 +44,18 @@ def plot_exponent(rate: float, error: float, ax: Axes | None = None) -> Axes:
 def plot_stability_chart(
     inputs: Sequence[VariedInput], rate: np.ndarray, undecided: np.ndarray, ax: Axes | None = None
 ) -> Axes:
-    """Draw growth rates (A, B) over two inputs, with a line halfway between points with and without growth.
+    """Draw growth rates (A, B) over two inputs, with a line between stable and unstable points.
 
     Parameters
     ----------
     inputs : sequence of VariedInput
-        The inputs, with A and B values.
+        The two inputs, with A and B values.
     rate : ndarray, shape (A, B)
-        Growth rates [1/s]; nan, where motion does not grow, stays white.
+        Growth rates [1/s]; nan where the motion does not grow, which is drawn white.
     undecided : ndarray of bool, shape (A, B)
-        Points to mark, as it is not decided whether motion grows there.
+        Whether the stability of each point is undecided; these points are marked.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     """
     ax = set_up_axes(ax, *(replace(each, name=each.in_words).label for each in inputs))
     first, second = (each.values for each in inputs)
@@ -73,7 +73,7 @@ def plot_stability_chart(
 
 
 def _limit(first: np.ndarray, second: np.ndarray, grows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the line between points with and without growth, its pieces separated by nan."""
+    """Return the line between stable and unstable grid points; its pieces are separated by nan."""
     from contourpy import contour_generator
 
     if min(grows.shape) < 2:

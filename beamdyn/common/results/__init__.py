@@ -1,1 +1,1 @@
-"""Parts of results: columns, statements, errors, display units; saving, loading, and one-line summaries."""
+"""Parts of results: columns, warnings, errors, display units; saving, loading, and one-line summaries."""

@@ -1,7 +1,6 @@
-"""Columns of results as data, and the units in which they are shown; everything else is in SI.
+"""Columns of results as data, and the units in which they are shown; all other values are in SI units.
 
-A column has a name, a unit and values, and perhaps a meaning: tables, files, data frames and pictures follow
-from it.
+A column has a name, a unit and values.  Tables, files, data frames and pictures are made from columns.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, one_of
 from beamdyn.common.results.one_line import known_digits, spanned
 
-# By kind of quantity: how many of each unit make one of the SI unit, which comes first.
+# For each kind of quantity: how many of each display unit make one SI unit; the SI unit is first.
 _PER_SI = {
     "speed": {"rad/s": 1.0, "rpm": 30 / pi, "deg/s": 180 / pi},
     "length": {"m": 1.0, "mm": 1e3, "cm": 1e2, "um": 1e6, "in": 1 / 0.0254, "ft": 1 / 0.3048},
@@ -26,7 +25,7 @@ _PER_SI = {
 
 
 class ShownUnit(NamedTuple):
-    """A unit in which a quantity is shown, and its size.
+    """A display unit and its conversion factor.
 
     Parameters
     ----------
@@ -40,11 +39,11 @@ class ShownUnit(NamedTuple):
     per_si: float
 
     def of(self, values: Any) -> Any:
-        """Convert values from SI to this unit."""
+        """Convert values from SI units to this display unit."""
         return values * self.per_si
 
     def say(self, value: float, digits: int = 6) -> str:
-        """Format a value, given in SI, in this unit."""
+        """Format a value, given in SI units, in this display unit."""
         return f"{known_digits(value * self.per_si):.{digits}g} {self.name}"
 
 
@@ -55,9 +54,9 @@ class DisplayUnits:
     Parameters
     ----------
     speed : {"", "rad/s", "rpm", "deg/s"}
-        Unit of speeds of rotation; "": that which is usual in its place, rad/s.
+        Unit of rotational speeds; "" for the default, rad/s.
     length : {"", "m", "mm", "cm", "um", "in", "ft"}
-        Unit of lengths; "": that which is usual in its place, such as mm for deflections.
+        Unit of lengths; "" for the usual unit of each quantity, such as mm for deflections.
 
     Raises
     ------
@@ -82,7 +81,7 @@ class DisplayUnits:
     def of(cls, given: DisplayUnits | Mapping[str, str] | None) -> DisplayUnits:
         """Make display units from a mapping such as {"speed": "rpm"}.
 
-        Raise a ValueError for an unknown kind.
+        Raise a ValueError for a key other than "speed" and "length".
         """
         if isinstance(given, cls):
             return given
@@ -96,16 +95,16 @@ class DisplayUnits:
         return cls(**(given or {}))
 
     def with_others(self, given: DisplayUnits | Mapping[str, str] | None) -> DisplayUnits:
-        """Return a copy with the given units in place of its own."""
+        """Return a copy of the display units in which some are replaced by the given ones."""
         new = DisplayUnits.of(given)
         return DisplayUnits(new.speed or self.speed, new.length or self.length)
 
     def speed_unit(self) -> ShownUnit:
-        """Return the unit of speeds; rad/s if none was given."""
+        """Return the display unit of rotational speeds; rad/s if none was chosen."""
         return self._unit("speed", "rad/s")
 
     def length_unit(self, usual: str = "mm") -> ShownUnit:
-        """Return the unit of lengths, or the one that is usual in a place if none was given."""
+        """Return the display unit of lengths; the given usual unit if none was chosen."""
         return self._unit("length", usual)
 
     def _unit(self, kind: str, usual: str) -> ShownUnit:
@@ -117,31 +116,31 @@ SI_UNITS = DisplayUnits()
 
 
 class InDisplayUnits:
-    """Base of classes that are shown in units: those of their scene, if they have one, or others."""
+    """Base of classes whose numbers are shown in display units, by default those of their scene."""
 
     @property
     def display_units(self) -> DisplayUnits:
-        """Units of tables, columns and pictures: those of the scene, unless `in_units` gave others."""
+        """Return the units of tables, columns and pictures: chosen by `in_units`, or by the scene."""
         given = vars(self).get("_display_units")
         return given or getattr(getattr(self, "scene", None), "units", SI_UNITS)
 
     def say_speed(self, speeds: np.ndarray | float) -> str:
-        """Format a speed, or the range of several, in its display unit."""
+        """Format a speed [rad/s], or the range of several speeds, in its display unit."""
         unit = self.display_units.speed_unit()
         return spanned(np.multiply(speeds, unit.per_si), unit.name)
 
     def say_length(self, lengths: np.ndarray | float) -> str:
-        """Format a length, or the range of several, in its display unit."""
+        """Format a length [m], or the range of several lengths, in its display unit."""
         unit = self.display_units.length_unit()
         return spanned(np.multiply(lengths, unit.per_si), unit.name)
 
     def in_units(self, speed: str = "", length: str = "") -> Self:
-        """Return a copy with tables, columns and pictures in other units; its numbers stay SI.
+        """Return a copy with other units in tables, columns and pictures; its numbers stay in SI units.
 
         Parameters
         ----------
         speed : {"rad/s", "rpm", "deg/s"}, optional
-            Unit of speeds of rotation.
+            Unit of rotational speeds.
         length : {"m", "mm", "cm", "um", "in", "ft"}, optional
             Unit of lengths.
 
@@ -158,7 +157,7 @@ class InDisplayUnits:
 
 
 def known_unit(kind: str, name: str) -> str:
-    """Return the name of a unit in which a kind of quantity can be shown; "" if it is none."""
+    """Return the name of a display unit of a kind of quantity; "" if the kind has no such unit."""
     name = name.replace(" ", "")
     return name if name in _PER_SI[kind] else ""
 
@@ -168,30 +167,32 @@ def known_unit(kind: str, name: str) -> str:
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a result, from which its place in tables, files and data frames follows.
+    """A column of a result, used in tables, files and data frames.
 
     Parameters
     ----------
     name : str
-        Name as in the heads of files: "relative_error".
+        Name as in the column headings of files: "relative_error".
     values : sequence
         Numbers in the unit, or words.
     unit : str
-        Unit of the values, in SI for a quantity that display units change: "rad/s"; empty of a pure number.
+        Unit of the values; an SI unit such as "rad/s" for quantities with display units; empty for a pure
+        number.
     number : object
-        Text after the unit in the head, which tells columns of one name apart, such as the number of a mode.
+        Text after the unit in the heading, such as the number of a mode, by which columns of the same name
+        differ.
     error : ndarray, optional
-        Absolute errors of the values [unit]: tables show the digits that these support.
+        Absolute errors of the values [unit]: tables show no digits that are smaller than these errors.
     beyond : ndarray, optional
-        Larger errors [unit], such as the model errors: tables dim the digits that these do not support.
+        Larger errors [unit], such as model errors: tables dim digits that are smaller than these errors.
     form : str or callable, optional
-        How tables write a value: a format, or ``form(value, error)``; by default with the digits that its
-        error supports, or six.
+        How tables format a value: a format string, or a function ``form(value, error)``; by default with the
+        digits that the error supports, or with six digits.
     cells : sequence, optional
-        What tables show in place of the values, whatever their unit; None shows the value itself.
+        Texts that tables show in place of the values, in any display unit; None shows the value itself.
     words : str, optional
-        Head in tables, without the unit; if "", the name in words and the number.  None keeps the column out
-        of tables.
+        Heading in tables, without the unit; "" for the name in words and the number.  None omits the column
+        from tables.
     """
 
     name: str
@@ -206,27 +207,27 @@ class Column:
 
     @property
     def head(self) -> str:
-        """Head of the column in files: "frequency_Hz_1"."""
+        """Return the heading of the column in files, such as "frequency_Hz_1"."""
         return "_".join(filter(None, (self.name, unit_in_heads(self.unit), str(self.number))))
 
     @property
     def title(self) -> str:
-        """Head of the column in tables: "frequency [Hz]"."""
+        """Return the heading of the column in tables, such as "frequency [Hz]"."""
         words = self.words or f"{self.name.replace('_', ' ')} {self.number}".rstrip()
         return f"{words} [{self.unit}]" if self.unit else words
 
     @property
     def plain(self) -> list[Any]:
-        """Values as Python's numbers and words."""
+        """Return the values as Python numbers and texts."""
         return self.values.tolist() if isinstance(self.values, np.ndarray) else [*self.values]
 
     def in_units(self, units: DisplayUnits, usual: str = "m") -> Column:
-        """Convert the column to the display unit of its quantity; lengths to `usual` if none is set."""
+        """Convert the column to the display unit of its quantity; lengths to `usual` if none is chosen."""
         shown = {"rad/s": units.speed_unit, "m": lambda: units.length_unit(usual)}.get(self.unit)
         return self if shown is None else self.times(shown().per_si, shown().name)
 
     def times(self, factor: float, unit: str) -> Column:
-        """Multiply the values, if they are numbers, by a factor; name the unit that they then have."""
+        """Multiply the values, if they are numbers, by a factor; set the unit of the product."""
         if factor == 1.0:
             return self
         values = [each * factor if isinstance(each, float | int) else each for each in self.plain]
@@ -234,14 +235,14 @@ class Column:
         return replace(self, values=values, unit=unit, error=error, beyond=beyond)
 
     def at(self, rows: Sequence[int] | np.ndarray) -> Column:
-        """Return the column with only some rows, which count from 0."""
+        """Return the column with only the given rows, which are counted from 0."""
         values, cells = (each and [each[row] for row in rows] for each in (self.plain, self.cells))
         error, beyond = (None if each is None else each[rows] for each in (self.error, self.beyond))
         return replace(self, values=values, error=error, beyond=beyond, cells=cells)
 
 
 class Columns:
-    """Columns of equal lengths, which are also the rows of a file, heads first.
+    """Columns of equal length, which are also the rows of a file, headings first.
 
     Parameters
     ----------
@@ -259,18 +260,18 @@ class Columns:
         yield from zip(*(column.plain for column in self.columns), strict=True)
 
     def at(self, rows: Sequence[int] | np.ndarray) -> Columns:
-        """Return the columns with only some rows, which count from 0."""
+        """Return the columns with only the given rows, which are counted from 0."""
         return Columns(*(column.at(rows) for column in self.columns), title=self.title, note=self.note)
 
     def in_units(self, units: DisplayUnits) -> Columns:
-        """Convert to display units; a column is kept where another has its quantity in the display unit."""
+        """Convert columns to display units, unless another column has the quantity in this unit already."""
         heads = {column.head for column in self.columns}
         shown = ((column, column.in_units(units)) for column in self.columns)
         return Columns(*(column if new.head in heads else new for column, new in shown))
 
 
 def columns_of_rows(names: Iterable[tuple[str, str] | str], rows: Iterable[Sequence[Any]]) -> Columns:
-    """Make columns from rows; names with a unit are given as pairs."""
+    """Make columns from rows; the name of a column with a unit is given as a pair (name, unit)."""
     heads = [(name, "") if isinstance(name, str) else name for name in names]
     cells = [*zip(*rows, strict=True)] or [()] * len(heads)
     return Columns(*(Column(name, each, unit) for (name, unit), each in zip(heads, cells, strict=True)))
@@ -279,42 +280,42 @@ def columns_of_rows(names: Iterable[tuple[str, str] | str], rows: Iterable[Seque
 def column_named(
     name: str, values: np.ndarray | Sequence[Any], unit: str, number: object = "", **shown: Any
 ) -> Column:
-    """Make a column with the name of its quantity, such as an input; in 1/s its head ends with "1_per_s"."""
+    """Make a column with the name of its quantity; for the unit 1/s its heading ends with "1_per_s"."""
     return Column(f"{name}_1" if unit.startswith("1") else name, values, unit, number, **shown)
 
 
 def attributes(things: Iterable[Any], path: str) -> list[Any]:
-    """Return an attribute, such as "line.name", of each of several objects."""
+    """Return the value of an attribute path, such as "line.name", for each of several objects."""
     return [*map(attrgetter(path), things)]
 
 
 def unit_in_heads(unit: str) -> str:
-    """Return a unit as a part of a head, such as "m_per_N"; empty for a pure number."""
+    """Return a unit as a part of a column heading, such as "m_per_N"; empty for a pure number."""
     words = unit.replace("/", " per ").split()
     return "_".join(words[1:] if words[:1] == ["1"] else words)
 
 
 def name_in_heads(name: str, signs: str = ".") -> str:
-    """Return a name as a part of a head: all but letters, digits and given signs become "_"."""
+    """Return a name as a part of a column heading: "_" replaces all but letters, digits and `signs`."""
     kept = (c if (c.isascii() and c.isalnum()) or c in signs else " " for c in name)
     return "_".join("".join(kept).split())
 
 
-# Meanings of single numbers --------------------------------------------------------------------------
+# Meanings of scalar results --------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Meaning:
-    """Meaning of a number of a result, for ``Annotated[float, Meaning("m", "stopping distance")]``.
+    """Meaning of a scalar result, for ``Annotated[float, Meaning("m", "stopping distance")]``.
 
     Parameters
     ----------
     unit : str
         SI unit; "" for a plain number.
     words : str
-        Meaning for people: a phrase without a full stop.
+        Meaning of the number: a phrase without a full stop.
     shown : str
-        Unit in which people see it, if that is not the SI unit, such as "mm".
+        Display unit, if it is not the SI unit, such as "mm".
     """
 
     unit: str
@@ -324,12 +325,12 @@ class Meaning:
 
 @cache
 def meanings(kind: type) -> dict[str, Meaning]:
-    """Return the meanings of the fields of a result's class that have one, in order."""
+    """Return the `Meaning` objects of the fields of a result's class, in order."""
     hints = get_type_hints(kind, include_extras=True).items()
     stated = ((name, part) for name, hint in hints for part in get_args(hint) if isinstance(part, Meaning))
     return dict(stated)
 
 
 def evenly_spread(count: int, most: int) -> np.ndarray:
-    """Select at most `most` of `count` indices, evenly spread, with the first and the last; ascending."""
+    """Select at most `most` of `count` indices: evenly spaced, ascending, with the first and the last."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))

@@ -1,4 +1,4 @@
-"""Comparison of published values with computed ones: deviation and verdict."""
+"""Comparison of published values with computed ones: deviation, bound and verdict."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ from beamdyn.common.words import supported
 
 
 class Verdict:
-    """Base of verdicts on whether a published number and the computed one agree, as far as expected."""
+    """Base of verdicts on whether a published number and the computed one agree within expected errors."""
 
     reason: str
 
     @property
     def agrees(self) -> bool:
-        """Whether the numbers agree."""
+        """Return whether the two numbers agree."""
         raise NotImplementedError
 
     @property
     def as_expected(self) -> bool:
-        """Whether the numbers agree, or differ for a known reason."""
+        """Return whether the two numbers agree, or differ for a known reason."""
         return self.agrees != bool(self.reason)
 
     @property
     def verdict(self) -> str:
-        """The verdict as tables print it: "agrees", or "differs" with the reason."""
+        """Return the verdict for tables: "agrees", or "differs" with the reason."""
         if self.agrees:
             return "agrees" if not self.reason else "agrees, which is unexpected"
         return f"differs: {self.reason or 'unexpected'}"
@@ -32,24 +32,24 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Comparison(Verdict):
-    """A published value and the computed one.
+    """A published value, the computed value, and their errors.
 
     Parameters
     ----------
     what : str
         Name of the value.
     source : str
-        Who published the value.
+        Publication from which the value is taken.
     published : float or pair of floats
-        The value, or the ends of the interval in which it is said to lie.
+        The published value, or both ends of a published interval.
     ours : float
-        Our value.
+        The computed value.
     error : float
         Estimated absolute error of the computed value.
     decimals : int
-        Decimals printed by the source.
+        Number of decimals printed in the publication.
     reason : str
-        Why the two are known to differ; empty where they should agree.
+        Known reason for a difference; empty if the values should agree.
     """
 
     what: str
@@ -62,19 +62,19 @@ class Comparison(Verdict):
 
     @property
     def deviation(self) -> float:
-        """Computed less published value; for an interval, less its nearest point."""
+        """Return computed minus published value; for an interval, minus its nearest point."""
         ends = self.published if isinstance(self.published, tuple) else (self.published,) * 2
         return self.ours - min(max(self.ours, ends[0]), ends[1])
 
     @property
     def bound(self) -> float:
-        """Largest deviation of values that agree: the source's rounding and the error of the computed one."""
+        """Return the largest allowed deviation: rounding of the published value plus computing error."""
         rounding = 0.0 if isinstance(self.published, tuple) else 0.5 * 10.0**-self.decimals
         return rounding + self.error
 
     @property
     def agrees(self) -> bool:
-        """Whether the deviation is within the bound."""
+        """Return whether the deviation is within the bound."""
         return abs(self.deviation) <= self.bound
 
     def cells(self) -> list[str]:

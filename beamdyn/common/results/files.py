@@ -1,4 +1,4 @@
-"""Writing of files: tried beforehand, written under another name, and put in their place in one step."""
+"""Writing of files: checks in advance, and replacement of the old file in one step."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-ASIDE = ".unfinished-"  # start of the name of a file that is still being written
+ASIDE = ".unfinished-"  # prefix of the name of a file that is still being written
 
 
 def as_path(name: str, value: object, wanted: str = "a file") -> Path:
-    """Return an argument as a path.
+    """Convert an argument to a path.
 
     Parameters
     ----------
     name : str
         Name of the argument, for the message.
     value : object
-        Text or path.
+        The argument: a text or a path.
     wanted : str
-        Kind of thing that the path is to name.
+        Description of the file or folder that the path should name, for the message.
 
     Raises
     ------
@@ -30,7 +30,7 @@ def as_path(name: str, value: object, wanted: str = "a file") -> Path:
         If `value` is neither text nor a path.
     """
     if not isinstance(value, str | os.PathLike):
-        # Imported here, since it loads numpy, which help does without.
+        # Imported here, since the import loads numpy, which is not needed to show help.
         from beamdyn.common.inputs.checks import InvalidValue
 
         raise InvalidValue(name, value, f"give the name of {wanted}, as text or path")
@@ -43,18 +43,19 @@ def check_writable(
     force: bool = False,
     remedy: str = "choose another name, or overwrite it with force",
 ) -> Path:
-    """Check that a file can be written, by writing an empty one beside it.
+    """Check that a file can be written, by writing an empty file in the same folder.
 
     Parameters
     ----------
     path : str or Path
-        File to write; a link stands for the file that it points to.
+        File to write; a link is replaced by the file to which it points.
     suffixes : sequence of str
-        Suffixes allowed, in lower case, with their dots; "" for a name without one; any if there are none.
+        Allowed suffixes in lower case with their dots; "" allows a name without suffix; an empty sequence
+        allows all.
     force : bool
         Overwrite a file that exists.
     remedy : str
-        What to do about a file that exists.
+        Advice for the message about a file that exists.
 
     Returns
     -------
@@ -63,11 +64,11 @@ def check_writable(
     Raises
     ------
     ValueError
-        If `path` is neither text nor a path, or its suffix is none of those allowed.
+        If `path` is neither text nor a path, or its suffix is not allowed.
     FileExistsError
         If the file exists and `force` is not set.
     FileNotFoundError
-        If there is no such folder.
+        If the folder does not exist.
     OSError
         If the path is a folder, or cannot be written for another reason.
     """
@@ -86,7 +87,7 @@ def check_writable(
     if not stream and not target.parent.is_dir():
         raise FileNotFoundError(f"{path}: there is no folder {target.parent}; create it first")
     if not stream:
-        try:  # writes an empty file in the same folder, and tries whether the system accepts the file's name
+        try:  # an empty file in the same folder also shows whether the system accepts the file's name
             _empty_file(target.parent, path.suffix).unlink()
             with suppress(FileNotFoundError):
                 target.stat()
@@ -97,35 +98,36 @@ def check_writable(
 
 
 def _is_stream(path: Path) -> bool:
-    """Whether a path is a device, a pipe or an open file such as /dev/stdout, which cannot be replaced."""
+    """Return whether a path is a device, a pipe or an open file (/dev/stdout): it cannot be replaced."""
     named = os.path.abspath(path.parent) in ("/dev", "/dev/fd", "/proc/self/fd")
     return os.path.exists(path) and (named or not os.path.isfile(path))
 
 
 def same_file(one: str | Path, other: str | Path) -> bool:
-    """Whether two paths lead to the same file or folder, by links or another spelling."""
+    """Return whether two paths lead to the same file or folder, through links or different spellings."""
     try:
         return os.path.samefile(one, other)
-    except (OSError, ValueError):  # one of the two does not exist
+    except (OSError, ValueError):  # one of the two files does not exist
         return os.path.realpath(one) == os.path.realpath(other)
 
 
 @contextmanager
 def replacing(path: str | Path) -> Iterator[Path]:
-    """Yield the path of a temporary file, which replaces `path` in one step when all is written.
+    """Yield the path of a temporary file, which replaces `path` in one step when all data are written.
 
-    Whenever the program ends, the file at `path` is the old one or the new one, whole.  Where `path` is a
-    link, what it points to is replaced; a device or a pipe receives what was written.
+    Even if the program is stopped, the file at `path` is either the complete old file or the complete new
+    one.  If `path` is a link, the file to which it points is replaced; to a device or a pipe, the data are
+    written.
 
     Parameters
     ----------
     path : str or Path
-        File to write; its folder exists.
+        File to write, in an existing folder.
 
     Yields
     ------
     Path
-        A file with the same suffix, empty.
+        Path of an empty file with the same suffix.
 
     Raises
     ------
@@ -148,7 +150,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
             if target.exists():
                 shutil.copymode(target, aside)
             with aside.open("rb+") as file:
-                os.fsync(file.fileno())  # the new file must be on the disk before it replaces the old one
+                os.fsync(file.fileno())  # data must be on the disk before the old file is replaced
             os.replace(aside, target)
     except OSError as error:
         raise OSError(f"{path}: it could not be written ({error.strerror or error}){kept}") from None
@@ -160,7 +162,7 @@ def replacing(path: str | Path) -> Iterator[Path]:
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write a text file in UTF-8 under another name, and put it in its place; see `replacing`."""
+    """Write a text file in UTF-8 under a temporary name, then replace the old file; see `replacing`."""
     with replacing(path) as aside:
         aside.write_text(text, encoding="utf-8", errors="replace", newline="")
 

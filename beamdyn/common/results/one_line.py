@@ -11,34 +11,34 @@ from typing import Any
 
 import numpy as np
 
-LONGEST = 100  # largest number of characters of a line
-_FEW = 4  # number of values up to which a line lists each
+LONGEST = 100  # most characters of a summary
+_FEW = 4  # largest number of values that a summary lists one by one
 _DIGITS = 4
 
 
 class OneLine:
-    """Base of classes whose ``repr`` is one line: the class, and in brackets what `headline` says.
+    """Base of classes whose ``repr`` is one line: the name of the class, and `headline` in brackets.
 
-    It serves dataclasses and their subclasses, too: it takes the place of the ``repr`` that they would get.
+    In dataclasses and their subclasses, this ``repr`` replaces the one that dataclasses generate.
     """
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        if "__repr__" not in vars(cls):  # a dataclass keeps a method that its class defines
+        if "__repr__" not in vars(cls):  # a dataclass does not replace a method defined in its class
             cls.__repr__ = OneLine.__repr__
 
     def headline(self) -> Iterable[str]:
-        """Return the parts of the line that shows the object; by default, the fields that it was given."""
+        """Return the parts of the one-line summary; by default, the fields that differ from defaults."""
         return given_fields(self)
 
     def __repr__(self) -> str:
         name = type(self).__name__
         try:
             parts = [" ".join(part.split()) for part in self.headline() if part]
-        except Exception:  # an incomplete object, in a debugger or amid an error, may raise anything
+        except Exception:  # an incomplete object, in a debugger or during an error, may raise any exception
             parts = ["..."]
         line = f"{name}({', '.join(parts)})"
-        for kept in range(len(parts) - 1, 0, -1):  # keeps as many parts as fit on a line
+        for kept in range(len(parts) - 1, 0, -1):  # keeps only as many parts as fit on a line
             if len(line) <= LONGEST:
                 return line
             line = f"{name}({', '.join(parts[:kept])}, ...)"
@@ -46,24 +46,24 @@ class OneLine:
 
 
 def shortened(text: str, most: int) -> str:
-    """Cut a text, with three points, to a number of letters."""
+    """Shorten a text to a number of characters; three dots mark the omitted end."""
     return text if len(text) <= most else f"{text[: most - 3].rstrip(' ,')}..."
 
 
 def given_fields(thing: Any) -> Iterator[str]:
-    """Yield name and value, in few letters, of each field of a dataclass that is not at its default."""
+    """Yield name and short value of each field of a dataclass that differs from its default."""
     for each in dataclasses.fields(thing) if dataclasses.is_dataclass(thing) else ():
         value = getattr(thing, each.name)
         try:
             usual = each.default is not dataclasses.MISSING and bool(value == each.default)
-        except ValueError:  # raised by the comparison of arrays
+        except ValueError:  # arrays have no single truth value
             usual = False
         if each.repr and not usual:
             yield f"{each.name}={brief(value)}"
 
 
 def brief(value: object) -> str:
-    """Format a value in few letters: arrays and containers by their size."""
+    """Format a value in few characters; arrays and containers by their size."""
     match value:
         case bool() | None:
             return str(value)
@@ -90,16 +90,16 @@ def _shape(value: np.ndarray) -> str:
     return "x".join(map(str, value.shape)) or str(value)
 
 
-# Parts of lines -------------------------------------------------------------------------------------
+# Parts of summaries ---------------------------------------------------------------------------------
 
 
 _IS_PRELIMINARY: ContextVar[bool] = ContextVar("numbers are preliminary", default=False)
-_OF_PRELIMINARY = 3  # significant digits of a preliminary number, whose error is some thousandths of it
+_OF_PRELIMINARY = 3  # significant digits of a preliminary number, whose relative error is some thousandths
 
 
 @contextmanager
 def few_digits() -> Iterator[None]:
-    """In this context, write numbers with the few digits that a preliminary result has."""
+    """In this context, format numbers with the few digits that a preliminary result has."""
     token = _IS_PRELIMINARY.set(True)
     try:
         yield
@@ -108,12 +108,12 @@ def few_digits() -> Iterator[None]:
 
 
 def known_digits(value: float) -> float:
-    """Return a number; within `few_digits`, rounded to the digits of a preliminary result."""
+    """Return a number; within the context `few_digits`, rounded to the digits of a preliminary result."""
     return float(f"{value:.{_OF_PRELIMINARY}g}") if _IS_PRELIMINARY.get() else value
 
 
 def number(value: Any, unit: str = "") -> str:
-    """Format a number with four digits and its unit; with fewer within `few_digits`."""
+    """Format a number with four significant digits and its unit; with fewer digits within `few_digits`."""
     size = float(value) if not isinstance(value, complex) else abs(value)
     if not math.isfinite(size):
         return f"{size:g}{unit and ' ' + unit}" if not math.isnan(size) else "none"
@@ -123,14 +123,14 @@ def number(value: Any, unit: str = "") -> str:
 
 
 def listed(values: Iterable[Any], unit: str = "") -> str:
-    """Format numbers, the first ones of many: "66.02, 413.8, 1158, ... Hz"."""
+    """Format numbers; of many numbers, only the first ones: "66.02, 413.8, 1158, ... Hz"."""
     each = [*values]
     more = ", ..." if len(each) > _FEW else ""
     return f"{', '.join(map(number, each[:_FEW]))}{more}{unit and ' ' + unit}" if each else ""
 
 
 def spanned(values: np.ndarray | Sequence[float], unit: str = "") -> str:
-    """Format the range of numbers: "0 to 150 rad/s"."""
+    """Format the range of several numbers: "0 to 150 rad/s"."""
     known = np.asarray(values, dtype=float).ravel()
     known = known[np.isfinite(known)]
     if not known.size:
@@ -140,7 +140,7 @@ def spanned(values: np.ndarray | Sequence[float], unit: str = "") -> str:
 
 
 def counted(count: int, word: str, many: str = "") -> str:
-    """Format a number of things: "1 mode", "3 modes"."""
+    """Format a count with its noun: "1 mode", "3 modes"."""
     return f"{count} {word if count == 1 else many or word + 's'}"
 
 
@@ -156,11 +156,11 @@ def error_at_most(error: Any, unit: str = "") -> str:
     return f"error <= {rounded_up(largest)}{unit and ' ' + unit}"
 
 
-_ROUNDED = 1 - 1e-12  # factor so that an error in the last bit does not turn 5e-8 into 6e-8
+_ROUNDED = 1 - 1e-12  # so that a rounding error does not turn 5e-8 into 6e-8
 
 
 def rounded_up(value: float) -> str:
-    """Format a number of 0 or more with one digit, rounded up."""
+    """Format a non-negative number with one significant digit, rounded up."""
     if not value:
         return "0"
     place = math.floor(math.log10(value))
@@ -168,7 +168,7 @@ def rounded_up(value: float) -> str:
 
 
 def states(status: Iterable[Any], usual: Sequence[str]) -> str:
-    """Say how many have each unusual status, such as "2 divergence"; empty if none has."""
+    """Count each status that is not the usual one, such as "2 divergence"; empty if there is none."""
     names, counts = np.unique([str(s).partition(":")[0] for s in np.ravel([*status])], return_counts=True)
     others = [f"{c} {n}" for n, c in zip(names.tolist(), counts.tolist(), strict=True) if n not in usual]
     return ", ".join(others)

@@ -1,4 +1,4 @@
-"""Pictures: writing them as files, the colours of lines, and several results on the same axes."""
+"""Writing of pictures as files, colours of lines, and plots of several results on the same axes."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 else:
-    # Names for annotations, here and in other modules; matplotlib is loaded only where something is drawn.
+    # Names for type annotations; matplotlib is imported only when something is drawn.
     Artist = Axes = Figure = Any
 
-# Okabe and Ito's colours, which colour-blind people can tell apart; without yellow, pale on white.
+# The palette of Okabe and Ito, which colour-blind people can tell apart; without yellow, pale on white.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 DASHES = ("-", "--", "-.", ":")
-_MOST_INSIDE = 6  # largest number of entries of a legend inside the axes; with more it stands beside them
-# Largest number of letters in an entry of a legend inside the axes; with a longer entry it stands below them.
+_MOST_INSIDE = 6  # most entries of a legend inside the axes; with more it is beside them
+# Most characters in an entry of a legend inside the axes; with a longer entry it is placed below them.
 _LONGEST_INSIDE = 28
 SUFFIXES = (".png", ".svg", ".pdf")
 ANIMATION_SUFFIXES = (".gif",)
@@ -35,9 +35,9 @@ def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> 
     Parameters
     ----------
     drawn : Axes or Figure
-        The picture, or axes in it.
+        The figure, or axes in the figure.
     path : str or Path
-        File to write; its suffix .png, .svg or .pdf chooses the format.
+        File to write; its suffix .png, .svg or .pdf determines the format.
     force : bool
         Overwrite a file that exists.
 
@@ -56,7 +56,7 @@ def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> 
         If it cannot be written.
     """
     path = check_writable(path, SUFFIXES, force)
-    figure: Any = drawn.figure  # the figure of axes may be a subfigure; that of a figure is itself
+    figure: Any = drawn.figure  # axes may be in a subfigure: its parent is needed
     content = BytesIO()  # written in memory first, as matplotlib does not close a file that it cannot write
     figure.figure.savefig(content, format=path.suffix[1:].lower(), dpi=150, bbox_inches="tight")
     with replacing(path) as aside:
@@ -67,7 +67,7 @@ def save_figure(drawn: Axes | Figure, path: str | Path, force: bool = False) -> 
 def save_animation(
     figure: Figure, path: str | Path, frames: Iterable[object], dpi: float, rate: float, force: bool = False
 ) -> None:
-    """Write an animation of a figure that changes.
+    """Write an animation of a figure that changes from frame to frame.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def save_animation(
     path : str or Path
         File to write, .gif.
     frames : iterable
-        Each step to its next item draws one frame.
+        Iterable that draws one frame each time the next item is taken.
     dpi : float
         Resolution [1/inch].
     rate : float
@@ -94,7 +94,7 @@ def save_animation(
 
     path = check_writable(path, ANIMATION_SUFFIXES, force)
     writer = PillowWriter(fps=rate)  # pyright: ignore[reportArgumentType]  (any rate will do)
-    with replacing(path) as aside, rc_context({"savefig.bbox": None}):  # all frames have the same size
+    with replacing(path) as aside, rc_context({"savefig.bbox": None}):  # all frames must have the same size
         writer.setup(figure, str(aside), dpi)
         for _ in frames:
             writer.grab_frame()
@@ -102,11 +102,11 @@ def save_animation(
 
 
 def add_legend(ax: Axes) -> Axes:
-    """Add a legend: inside the axes, beside them if it has many entries, or below them if these are long."""
+    """Add a legend: inside the axes, beside them if it has many entries, or below them for long entries."""
     labels = ax.get_legend_handles_labels()[1]
     place: dict[str, Any] = {"loc": "best"}
     if max(map(len, labels), default=0) > _LONGEST_INSIDE:
-        # Below the label of the axis, which takes four sizes of the font, however high the axes are.
+        # The offset leaves space for the label of the axis, four font sizes high, at any height of the axes.
         place = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "borderaxespad": 4.2, "ncols": 2}
     elif len(labels) > _MOST_INSIDE:
         place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1.0), "borderaxespad": 0.0}
@@ -115,34 +115,34 @@ def add_legend(ax: Axes) -> Axes:
 
 
 def figure_of(draw: Callable[[Axes], object], size: tuple[float, float] = (7.5, 4.8)) -> Figure:
-    """Make a figure, of a size [inch], of what a function draws on axes; it need not be closed."""
+    """Make a figure of a given size [inch] with axes on which `draw` draws.  It need not be closed."""
     figure = new_figure(*size)
     draw(figure.subplots())
     return figure
 
 
 def new_axes(width: float = 7.5, height: float = 4.8) -> Axes:
-    """Make axes of a new figure of a size [inch], which matplotlib keeps to show it."""
+    """Make axes of a new figure of a given size [inch], which matplotlib keeps until it is shown."""
     from matplotlib import pyplot
 
     return pyplot.subplots(figsize=(width, height), layout="constrained")[1]
 
 
 def new_figure(width: float, height: float, layout: Literal["constrained"] | None = "constrained") -> Figure:
-    """Make an empty figure of a size [inch], whose constrained layout keeps its parts apart."""
+    """Make an empty figure of a given size [inch], with constrained layout, so that texts do not overlap."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout=layout)
 
 
-# Several results on one pair of axes ----------------------------------------------------------------
+# Several results on the same axes ---------------------------------------------------------------------
 
 
 def labelled(plot: Callable[..., Axes]) -> Callable[..., Axes]:
-    """Give a method that draws a result the option `label`, which tells results on the same axes apart.
+    """Give a method that draws a result the option `label`, which names the result in the legend.
 
-    The entries of the legend then begin with the label, and colours that are there already are not taken
-    again.  By default it is the `plot_label` of the result.
+    Entries of the legend then begin with the label, and colours that are already used on the axes are not
+    used again.  The default is the `plot_label` of the result.
     """
     known = signature(plot)
 
@@ -162,16 +162,16 @@ def labelled(plot: Callable[..., Axes]) -> Callable[..., Axes]:
 
 
 def _marks(ax: Axes) -> Iterator[Artist]:
-    """Yield lines, areas, bars with their rectangles, and texts on axes."""
+    """Yield the lines, areas, bars and texts on axes."""
     marks: Any = (*ax.lines, *ax.collections, *ax.containers, *ax.patches, *ax.texts)
     yield from marks
 
 
 def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
-    """Put a label before the names of what was drawn last, and change its colours if they are taken.
+    """Put a label before the legend entries of the curves drawn last, and change colours used before.
 
-    Its colours move on in `COLOURS` by the number of colours taken, or to free colours if one would move
-    beyond the last.
+    The colours are shifted in `COLOURS` by the number of used colours; or replaced by unused colours if the
+    list is too short for the shift.
     """
     new = [mark for mark in _marks(ax) if not any(mark is old for old in before)]
     taken, own = _colours(before), _colours(new)
@@ -191,7 +191,7 @@ def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
 
 
 def _name(mark: Artist) -> str:
-    """Return the name of a mark in the legend; empty if it has none."""
+    """Return the name of a line or area in the legend; empty if it has none."""
     label = str(mark.get_label())
     return "" if label.startswith("_") else label
 
@@ -201,20 +201,20 @@ def _colours(marks: Iterable[Artist]) -> set[int]:
 
 
 def _place(mark: Artist) -> int | None:
-    """Return the index of a mark's colour among `COLOURS`; None if it has none of them."""
+    """Return the index of a line's or area's colour in `COLOURS`; None for any other colour."""
     from matplotlib.colors import to_hex
 
     given: Any = getattr(mark, "get_color", None) or getattr(mark, "get_facecolor", None)
     colour = None if given is None else given()
     if colour is not None and not isinstance(colour, str):
         colour = colour[0] if len(colour) and not isinstance(colour[0], float) else colour
-    # Without black, in which other marks are drawn, too.
+    # Without black, in which elements other than curves are drawn.
     known = {to_hex(each): place for place, each in enumerate(COLOURS[:-1])}
     return None if colour is None or not len(colour) else known.get(to_hex(colour))
 
 
 def _recolour(mark: Artist, moves: Mapping[int, int]) -> None:
-    """Give a mark another colour; a line beyond the last colour is dashed."""
+    """Change the colour of a line or area; if all colours are used, a line is dashed."""
     place, line = _place(mark), hasattr(mark, "get_linestyle")
     if place is None or place not in moves:
         return

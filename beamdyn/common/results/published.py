@@ -1,4 +1,4 @@
-"""Published numbers, one TOML file for each paper, as package data."""
+"""Published numbers in TOML files, one per paper, which are part of the package."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 
 
 def load(package: str, name: str) -> dict[str, Any]:
-    """Read the file ``<name>.toml`` in a package.
+    """Read the file ``<name>.toml`` of published numbers in a package.
 
     Parameters
     ----------
     package : str
         The package, e.g. ``"beamdyn.published"``.
     name : str
-        Name of the file without its ending, e.g. ``"lee_yoo_2019"``.
+        Name of the file without its suffix, e.g. ``"lee_yoo_2019"``.
 
     Returns
     -------
@@ -25,7 +25,7 @@ def load(package: str, name: str) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If there is no such file; the message lists those there are.
+        If there is no such file; the message lists the existing ones.
     """
     known = available(package)
     if name not in known:
@@ -34,13 +34,13 @@ def load(package: str, name: str) -> dict[str, Any]:
 
 
 def available(package: str) -> list[str]:
-    """Return the names that `load` accepts, sorted."""
+    """Return the names of all published files in a package, sorted; `load` accepts these names."""
     names = (file.name for file in files(package).iterdir())
     return sorted(name.removesuffix(".toml") for name in names if name.endswith(".toml"))
 
 
 def values_alone(entry: Any) -> Any:
-    """Reduce the contents of a published file: each quantity is its ``value``, without unit and source."""
+    """Replace each quantity in a file of published numbers by its ``value``, without unit and source."""
     if isinstance(entry, dict):
         return entry["value"] if "value" in entry else {key: values_alone(v) for key, v in entry.items()}
     return [values_alone(item) for item in entry] if isinstance(entry, list) else entry

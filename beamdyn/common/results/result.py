@@ -1,4 +1,4 @@
-"""Bases of results: data with a provenance, which can be shown and saved."""
+"""Base classes of results, which can be shown, saved and loaded, and state how they were computed."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ if TYPE_CHECKING:
 # Records with a schema version and a checksum --------------------------------------------------------
 
 
-SCHEMA = 1  # version of the format of stored results, raised when older records can no longer be read
+SCHEMA = 1  # version of the format of saved results; it changes when older files can no longer be read
 
 
 class DamagedRecord(ValueError):
-    """Raised for a record that is damaged, changed, or of another schema; the message says which."""
+    """Raised for a record that was damaged or changed, or has another format; the message says which."""
 
 
 def seal(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Add the schema version and a checksum to a record.
+    """Add the version of the format and a checksum to a record.
 
     Parameters
     ----------
@@ -47,29 +47,29 @@ def seal(content: Mapping[str, Any]) -> dict[str, Any]:
     Returns
     -------
     dict
-        The record, to be written as JSON in any layout.
+        The record, which may be written as JSON with any line breaks and blanks.
     """
     versioned = {**content, "schema": SCHEMA}
     return {**versioned, "checksum": _checksum(versioned)}
 
 
 def unseal(text: str | bytes) -> dict[str, Any]:
-    """Read a record.
+    """Read a record and verify its checksum.
 
     Parameters
     ----------
     text : str or bytes
-        The JSON text of what `seal` made.
+        JSON text of a record made by `seal`.
 
     Returns
     -------
     dict
-        The content, as it was given to `seal`.
+        The content that was given to `seal`.
 
     Raises
     ------
     DamagedRecord
-        If the text is not a record as `seal` made it, to the last digit.
+        If the text is not a record made by `seal`, unchanged to the last digit.
     """
     try:
         record = json.loads(text)
@@ -93,13 +93,13 @@ def _checksum(content: Mapping[str, Any]) -> str:
 
 
 class Saved:
-    """Base of dataclasses that are written as JSON, and loaded.
+    """Base of dataclasses that can be saved as JSON and loaded again.
 
     Attributes
     ----------
     kept : tuple of str
-        Names of cached properties to save with the result once they are computed; numbers and arrays are
-        saved in any case.
+        Names of cached properties that are saved with the result if they have been computed; cached numbers
+        and arrays are always saved.
     """
 
     kept: ClassVar[tuple[str, ...]] = ()
@@ -110,17 +110,17 @@ class Saved:
         return {f.name: plain(getattr(self, f.name)) for f in fields if f.repr}
 
     def loadable(self) -> Saved | None:
-        """Return the result that `load` makes from this one's JSON; None if it makes none."""
+        """Return the result that `load` would make from the JSON of this one; None if it cannot be loaded."""
         return self
 
     def to_json(self) -> str:
         """Return the result as JSON: the numbers of `to_dict` for any program, and all that `load` needs.
 
-        Numbers that are not finite are null, but `load` gets them back.
+        Numbers that are not finite are written as null, but `load` restores them.
         """
         values, result = nullified(self.to_dict()), self.loadable()
         record: dict[str, Any] = {}
-        if result is not None:  # includes cached values, such as a truncation error
+        if result is not None:  # `vars` includes cached values, such as a truncation error
             names = {f.name for f in dataclasses.fields(result)}  # pyright: ignore[reportArgumentType]
             computed = {key: value for key, value in vars(result).items() if key not in names}
             kept = {
@@ -132,7 +132,7 @@ class Saved:
         return json.dumps(seal(values | record), indent=1, allow_nan=False) + "\n"
 
     def save(self, path: str | Path, force: bool = False) -> None:
-        """Write the result as JSON, from which `beamdyn.load` makes it again; see `to_json`.
+        """Write the result as a JSON file, which `beamdyn.load` can read; see `to_json`.
 
         Parameters
         ----------
@@ -156,15 +156,15 @@ class Saved:
 def load(path: str | Path) -> Any:
     """Read a result that `Result.save` or the option ``--json`` of a command has written.
 
-    It has the class, the numbers (to the bit), the scene and the provenance of the one that was written, and
-    does what that one does.  Only what is no data is missing, and an error says so where it is used:
-    functions and classes of the user's own (of a motion, a discretization, an integrator), and the
-    interpolation by `solve_ivp`.  A pickle keeps these as well.
+    The loaded result has the same class, numbers (to the last bit), scene and provenance as the saved one,
+    and the same methods.  Only parts that are not data are missing, and their use raises an error: functions
+    and classes defined by the user (a motion, a discretization, an integrator), and the interpolation by
+    `solve_ivp`.  Pickling keeps these as well.
 
     Parameters
     ----------
     path : str or Path
-        The file.
+        JSON file of a saved result.
 
     Returns
     -------
@@ -214,13 +214,14 @@ def load(path: str | Path) -> Any:
 
 
 Units = DisplayUnits | Mapping[str, str] | None
-_MOST_PARTS = 6  # largest number of parts of a headline, if a class of results does not choose them
+_MOST_PARTS = 6  # largest number of parts of a summary, if the class of the result does not choose them
 
 
 class Shown(OneLine, InDisplayUnits):
-    """Base of dataclasses with tables and pictures; a method `plot` of theirs gets the option `label`.
+    """Base of dataclasses with tables and pictures; a method `plot` of a subclass gets the option `label`.
 
-    The tables are made by the views of the class's package: see `beamdyn.common.results.shown_by`.
+    The tables are made by the module that is registered for the package of the class: see
+    `beamdyn.common.results.shown_by`.
     """
 
     def __init_subclass__(cls, **options: Any) -> None:
@@ -231,7 +232,7 @@ class Shown(OneLine, InDisplayUnits):
     def headline(self) -> Iterable[str]:
         """Yield the parts of the result's one-line summary: main numbers with units, error, and cautions.
 
-        By default, yield the first public fields, and how many warnings there are.
+        By default, yield the first public fields and the number of warnings.
         """
         names = [f.name for f in dataclasses.fields(self) if f.repr]  # pyright: ignore[reportArgumentType]
         names = [name for name in names if name not in ("provenance", "warnings", "message")]
@@ -243,11 +244,11 @@ class Shown(OneLine, InDisplayUnits):
 
     @property
     def plot_label(self) -> str:
-        """Name of the result in a picture of several: the label of its scene."""
+        """Return the name of the result in a plot of several results: the label of its scene."""
         return getattr(getattr(self, "scene", None), "label", "")
 
     def without_waiting(self) -> Any:
-        """Return a copy without the parts that would have to be computed first; see `_repr_html_`."""
+        """Return a copy without the parts that are not computed yet; see `_repr_html_`."""
         return self
 
     def to_table(self, units: Units = None) -> str:
@@ -256,19 +257,20 @@ class Shown(OneLine, InDisplayUnits):
         Parameters
         ----------
         units : dict, optional
-            Units in which it is shown, such as {"speed": "rpm", "length": "mm"}; see `in_units`.
+            Display units, such as {"speed": "rpm", "length": "mm"}; see `in_units`.
         """
         return _views().text_of(_shown_in(self, units))
 
     def to_pandas(self, units: Units = None) -> DataFrame:
-        """Return the columns of the CSV file as a data frame of pandas, indexed by what varies (speed).
+        """Return the columns of the CSV file as a pandas data frame; the index is the varied quantity.
 
-        Its ``attrs`` hold the class, the label, the warnings and the provenance of the result.
+        The ``attrs`` of the data frame hold the class, the label, the warnings and the provenance of the
+        result.
 
         Parameters
         ----------
         units : dict, optional
-            Units of columns, such as {"speed": "rpm", "length": "mm"}; see `in_units`.
+            Display units of the columns, such as {"speed": "rpm", "length": "mm"}; see `in_units`.
 
         Raises
         ------
@@ -278,12 +280,12 @@ class Shown(OneLine, InDisplayUnits):
         return _views().frame_of(_shown_in(self, units))
 
     def _repr_html_(self) -> str:
-        """Return table and picture for notebooks, without parts that take long to compute."""
+        """Return table and picture for notebooks, without parts whose computation takes long."""
         return _views().html_of(self.without_waiting())
 
 
 def _views() -> Any:
-    """Import the module that shows results, named in `MEDIA`, only when it is needed."""
+    """Import the module that shows results, which `MEDIA` names, when it is first needed."""
     return import_module(MEDIA[-1])
 
 
@@ -296,7 +298,7 @@ __all__ = ["Provenance", "Result", "Units", "load", "plain"]
 
 @dataclass(frozen=True)
 class Provenance:
-    """How a result was computed: version, method, comparison, and time.
+    """How a result was computed: version, discretization, and computing time.
 
     Parameters
     ----------
@@ -307,7 +309,7 @@ class Provenance:
     compared_with : str
         The coarser discretization from which the error was estimated.
     wall_time : float
-        Time taken [s].
+        Computing time [s].
     """
 
     version: str
@@ -317,25 +319,27 @@ class Provenance:
 
     @classmethod
     def since(cls, start: float, method: str, compared_with: str = "") -> Provenance:
-        """Make the provenance of a result whose computation began at a time of `time.perf_counter` [s]."""
+        """Make the record of a computation that began at `start`, a value of `time.perf_counter` [s]."""
         return cls(__version__, method, compared_with, perf_counter() - start)
 
 
 class Result(Shown, Saved, ReadOnlyArrays):
-    """Base of the frozen results: dataclasses whose public fields are the answer.
+    """Base of immutable results: dataclasses whose public fields are the computed quantities.
 
-    All fields, private ones (``field(repr=False)``) too, are data: numbers, strings, arrays, containers and
-    dataclasses of them.  Then a result is pickled, saved and loaded; see `beamdyn.common.results.snapshots`.
+    All fields, including private ones (``field(repr=False)``), are data: numbers, strings, arrays, containers
+    and dataclasses of them.  Therefore a result can be pickled, saved and loaded; see
+    `beamdyn.common.results.snapshots`.
 
-    A result is one line in a console, a table with a picture in a notebook, and a data frame for whoever asks
-    for one.  A subclass gives its `headline`, its `plot` if it has a picture, and an entry in the views of
-    its package (see `common.results.shown_by`) with the functions that make its table and the rows of its
-    CSV file.  What it does not give is made from its fields, whose units it may state.
+    A result is shown as one line in a console, and as a table with a picture in a notebook; it can be
+    converted to a data frame.  A subclass defines `headline`, `plot` if it has a picture, and an entry in the
+    views of its package (see `common.results.shown_by`) with the functions that make its table and the rows
+    of its CSV file.  Defaults for these are made from the fields of the result, with the units in
+    `field_units`.
 
     Attributes
     ----------
     field_units : dict of str to str
-        For each unit the names of the fields that are in it, separated by spaces.
+        For each unit, the names of the fields with this unit, separated by spaces.
     """
 
     field_units: ClassVar[dict[str, str]] = {}

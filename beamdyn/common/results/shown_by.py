@@ -1,6 +1,6 @@
-"""Registry of the modules that show results, as results cannot import the modules above them."""
+"""Registry of the modules that show results: results cannot import them, as these modules import results."""
 
 from __future__ import annotations
 
-SHOWN_BY: dict[str, str] = {}  # module with `VIEWS` by package of a result's class, such as "beamdyn.modes"
+SHOWN_BY: dict[str, str] = {}  # the module with `VIEWS` for each package of results
 MEDIA: list[str] = []  # the module that makes texts, data frames and pages of any result

@@ -1,9 +1,8 @@
-"""Dataclasses of this package as data: with arrays that cannot be written, and as values of JSON's types.
+"""Conversion of this package's dataclasses to JSON values and back; read-only arrays; hashes of data.
 
-Values of JSON's types serve for reading, and to make objects again, equal to the bit.
-Numbers, strings, statements, arrays, containers, dataclasses and named tuples of this package are data.
-Anything else (a function, an object of another package's class) is left out; in the object that is made
-again, a `LeftOut` takes its place.
+An object made again from JSON values equals the original to the last bit.  Numbers, strings, statements,
+arrays, containers, dataclasses and named tuples of this package can be converted.  Anything else (a function,
+an object of another package's class) is not stored; the object made again has a `LeftOut` in its place.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from beamdyn.common.words import Words
 
 
 class FieldsOnly:
-    """Base of dataclasses that are pickled by their fields, without cached properties."""
+    """Base of dataclasses that are pickled with their fields only, without cached properties."""
 
     def __reduce__(self) -> tuple[type, tuple[Any, ...]]:
         fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]  (subclasses are dataclasses)
@@ -33,9 +32,9 @@ class FieldsOnly:
 
 
 def make_read_only(value: Any) -> Any:
-    """Return a read-only view of an array, or of the arrays in a container; other values as they are.
+    """Return a read-only view of an array, or of each array in a container; return other values unchanged.
 
-    In a dataclass, the arrays in the public fields are replaced by such views.
+    In a dataclass, arrays in public fields are replaced by read-only views.
     """
     if isinstance(value, np.ndarray):
         view = value.view()
@@ -48,7 +47,7 @@ def make_read_only(value: Any) -> Any:
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         for each in (field for field in dataclasses.fields(value) if field.repr):
             held = getattr(value, each.name)
-            # The arrays of a result within another one cannot be written already.
+            # The arrays of a nested result are read-only already.
             if not isinstance(held, ReadOnlyArrays) and (viewed := make_read_only(held)) is not held:
                 object.__setattr__(value, each.name, viewed)
     return value
@@ -59,9 +58,9 @@ def _may_hold_arrays(value: Any) -> bool:
 
 
 class ReadOnlyArrays:
-    """Base of frozen dataclasses whose public fields hold arrays that cannot be written.
+    """Base of frozen dataclasses whose public fields hold read-only arrays.
 
-    The fields are read-only views, so that arrays which others hold, too, stay as they are.
+    The fields are read-only views, so that arrays that other objects share stay writable.
     """
 
     __post_init__ = make_read_only
@@ -71,11 +70,11 @@ class ReadOnlyArrays:
         make_read_only(self)
 
 
-# Values of JSON's types ------------------------------------------------------------------------------
+# JSON values ----------------------------------------------------------------------------------------
 
 
 def plain(value: Any) -> Any:
-    """Convert a value to JSON's types; complex numbers become pairs, and numbers that are not finite stay."""
+    """Convert a value to JSON types; complex numbers become pairs; inf and nan stay."""
     if isinstance(value, np.ndarray):
         value = np.stack([value.real, value.imag], axis=-1) if np.iscomplexobj(value) else value
         return value.tolist()
@@ -93,7 +92,7 @@ def plain(value: Any) -> Any:
 
 
 def nullified(value: Any) -> Any:
-    """Replace numbers that are not finite, which JSON does not have, by null."""
+    """Replace numbers that are not finite, which JSON does not have, by None."""
     if isinstance(value, dict):
         return {key: nullified(v) for key, v in value.items()}
     if isinstance(value, list):
@@ -102,19 +101,18 @@ def nullified(value: Any) -> Any:
 
 
 _ADDED = "added"
-ADDED_LATER = {_ADDED: True}  # metadata of a field that earlier files lack, for which its default holds
-# Packages whose classes may be named in a file; they have fields that equality leaves out and that change no
-# result.
+ADDED_LATER = {_ADDED: True}  # marks fields that older files lack; the default holds then
+# Packages whose classes a file may name, with fields that do not affect comparison or results.
 _PACKAGES = ("beamdyn", "brakes")
 
 
 class LeftOut:
-    """Placeholder of a part of an object that its file does not hold; using it raises a ValueError.
+    """Placeholder for a part of a loaded object that the file does not hold; its use raises a ValueError.
 
     Parameters
     ----------
     what : str
-        The part.
+        Name of the missing part.
     """
 
     def __init__(self, what: str) -> None:
@@ -124,24 +122,24 @@ class LeftOut:
         return f"<left out: {self.what}>"
 
     def __getattr__(self, name: str) -> Any:
-        if name.startswith("__") or name == "what":  # attributes that Python itself looks for
+        if name.startswith("__") or name == "what":  # names that Python itself looks up
             raise AttributeError(name)
         self()
 
     def __call__(self, *arguments: object, **options: object) -> Any:
-        """Raise the ValueError that names the part that the file does not hold."""
+        """Raise the ValueError that names the missing part."""
         raise ValueError(
             f"the file does not hold {self.what}, which cannot be saved; compute the result again to use it"
         )
 
 
 def encode(value: Any) -> Any:
-    """Represent an object by values of JSON's types.
+    """Convert an object to JSON values, from which `decode` can make an equal object.
 
     Parameters
     ----------
     value : object
-        None, number, string, array, slice, container, or dataclass or named tuple of this package.
+        None, a number, string, array, slice or container, or a dataclass or named tuple of this package.
 
     Returns
     -------
@@ -175,12 +173,12 @@ _PARTS: dict[type, Any] = {complex: lambda z: (z.real, z.imag), slice: lambda s:
 
 
 def decode(value: Any) -> Any:
-    """Make the object that `encode` represented.
+    """Make an object again from the JSON values that `encode` returned.
 
     Raises
     ------
     ValueError
-        If `value` names a class that this version does not have, or that has other fields.
+        If `value` names a class that this version does not have, or whose fields differ.
     """
     if not isinstance(value, dict):
         return value
@@ -189,7 +187,7 @@ def decode(value: Any) -> Any:
 
 
 def _decode_object(content: list[Any]) -> Any:
-    """Make an object with its fields as they were, without the checks of its construction."""
+    """Make an object with its stored fields, without the checks of its constructor."""
     name, values = content
     kind = _find_class(name)
     optional = _defaults(kind)
@@ -228,7 +226,7 @@ def _fields(kind: Any) -> tuple[str, ...]:
 
 
 def _defaults(kind: Any) -> dict[str, Any]:
-    """Return the fields of a dataclass that a file of an earlier version may lack, with their defaults."""
+    """Return the fields, with their defaults, that files of earlier versions may lack."""
     every = dataclasses.fields(kind) if dataclasses.is_dataclass(kind) else ()
     given = (f for f in every if f.default is not dataclasses.MISSING)
     return {f.name: f.default for f in given if not f.compare or _ADDED in f.metadata}
@@ -239,7 +237,7 @@ def _name(kind: type) -> str:
 
 
 def _find_class(name: str) -> Any:
-    """Return the class of a name; if its module has moved, search the package for the class."""
+    """Return the class with a given name; if its module has moved, search the package for the class."""
     module, _, kind = name.partition(":")
     package = module.partition(".")[0]
     for place in chain((module,), _modules_that_define(kind, package)) if package in _PACKAGES else ():
@@ -253,7 +251,7 @@ def _find_class(name: str) -> Any:
 
 
 def _modules_that_define(kind: str, package: str) -> Iterator[str]:
-    """Yield the modules of a package whose source defines a class of a name."""
+    """Yield the modules of a package whose source code defines a class of a given name."""
     folder = Path(__file__).parents[3] / package
     for file in sorted(folder.rglob("*.py")):
         if f"\nclass {kind}(" in (text := file.read_text(encoding="utf-8")) or f"\nclass {kind}:" in text:
@@ -269,9 +267,10 @@ def fingerprint(*values: object) -> str:
     Parameters
     ----------
     *values : object
-        Numbers, strings, arrays, containers and dataclasses of them count by content, functions by name and
-        code, anything else by its pickle.  In this package's dataclasses, fields that equality leaves out,
-        such as a label, do not count; what a function calls and reads counts by its name alone.
+        Values to hash.  Numbers, strings, arrays, containers and dataclasses of them are hashed by content,
+        functions by name and code, anything else by its pickle.  Fields of this package's dataclasses that do
+        not affect equality, such as a label, are ignored; other functions and variables that a function uses
+        are hashed by name only.
 
     Returns
     -------
@@ -290,7 +289,7 @@ def fingerprint(*values: object) -> str:
 
 
 def _pieces(value: Any) -> Iterator[bytes]:
-    """Yield a value as bytes, which are different for different values."""
+    """Yield a value as bytes, which differ for different values."""
     value = value.item() if isinstance(value, np.generic) else value
     yield f"{type(value).__module__}.{type(value).__qualname__}".encode()
     if isinstance(value, float):
@@ -312,7 +311,7 @@ def _pieces(value: Any) -> Iterator[bytes]:
 
 
 def _parts(value: Any) -> list[Any]:
-    """Return the items of a container; for anything else its pickle."""
+    """Return the items of a container; for any other value, its pickle."""
     if isinstance(value, list | tuple):
         return list(value)
     if isinstance(value, dict):
@@ -322,12 +321,12 @@ def _parts(value: Any) -> list[Any]:
         return [getattr(value, f.name) for f in dataclasses.fields(value) if f.compare or not ours]
     try:
         return [pickle.dumps(value, protocol=4)]
-    except Exception as error:  # the kind of exception depends on the object
+    except Exception as error:  # the class of the exception depends on the object
         raise ValueError(f"{value!r} cannot be stored: it cannot be pickled ({error})") from None
 
 
 def _code(code: CodeType) -> Iterator[bytes]:
-    """Yield the code of a function as bytes, independent of its place in the file."""
+    """Yield the code of a function as bytes, which do not depend on its position in the source file."""
     yield code.co_code
     yield repr(code.co_names).encode()
     for constant in code.co_consts:

@@ -1,7 +1,8 @@
-"""Warnings, refusals and remarks as data: sentences with a kind that programs can ask for.
+"""Warnings, error messages and remarks as data: sentences with a kind that programs can test.
 
-As a string, each is the sentence in SI units; speeds and inputs in it are numbers, which a medium converts to
-the units that it shows.  Python's warnings of results outside linear theory are issued here, too.
+A statement is a string with the sentence in SI units.  It also stores speeds and inputs as numbers, so that a
+table or page can convert them to its display units.  This module also issues Python warnings for results
+outside linear theory.
 """
 
 from __future__ import annotations
@@ -16,27 +17,27 @@ from typing import Any, ParamSpec, Self, SupportsFloat, TypeVar
 
 from beamdyn.common.words import InputName, Part, Words, worded
 
-# Kinds of statements that programs ask for.
-OUTSIDE = "outside linear theory"  # the beam bends further than the theory of the answer allows
-MODEL_ERROR = "model error"  # what the model leaves out changes the answer too much, or may
-TOLERANCE = "tolerance"  # a numerical error exceeds what was asked for
-GROWING = "unstable"  # the motion grows
-NO_ANSWER = "no answer"  # no answer to some of many cases, or to a part of the question
-INPUT = "input"  # something given has no effect, or is doubtful
-EXCITATION = "excitation"  # nothing moves the beam, or what moves it is doubtful
-IN_LINE = "in line"  # loads act exactly in line, where any offset changes the answer
+# Kinds of statements that programs can test.
+OUTSIDE = "outside linear theory"  # the beam bends further than the theory of the analysis allows
+MODEL_ERROR = "model error"  # effects that the model neglects change the result too much, or may do so
+TOLERANCE = "tolerance"  # a numerical error exceeds the requested tolerance
+GROWING = "unstable"  # the motion grows: it is unstable
+NO_ANSWER = "no answer"  # some of many cases, or a part of the requested result, have no solution
+INPUT = "input"  # an input has no effect, or is doubtful
+EXCITATION = "excitation"  # no excitation moves the beam, or the excitation is doubtful
+IN_LINE = "in line"  # loads act exactly along the beam's axis, where any offset changes the result
 LIMITS = "limits"  # other limits of validity: large strain, few vibrations
 
 
 class Speeds(Part):
-    """Speeds in a text: "20 rad/s", or a range of them, "20 to 35 rad/s".
+    """Speeds in a sentence: "20 rad/s", or a range, "20 to 35 rad/s".
 
     Parameters
     ----------
     *values : float
-        One speed or two [rad/s].
+        One speed, or both ends of a range [rad/s].
     digits : int
-        Digits of each.
+        Significant digits of each speed.
     """
 
     values: tuple[float, ...]
@@ -49,28 +50,28 @@ class Speeds(Part):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Return the speeds, and the digits by name, as arguments that make an equal object."""
+        """Return the arguments (speeds, and the digits by name) that make an equal object."""
         return self.values, {"digits": self.digits}
 
     def in_units(self, units: Any) -> str:
-        """Format the speeds in a display unit."""
+        """Format the speeds in the given display units."""
         unit = units.speed_unit()
         return _spanning([unit.of(value) for value in self.values], self.digits, unit.name)
 
 
 class InputValue(Part):
-    """An input and its value in a text: "beam.thickness = 0.0002 m".
+    """An input and its value in a sentence: "beam.thickness = 0.0002 m".
 
     Parameters
     ----------
     name : str
         Name of the input.
     value : float
-        Its value, in SI.
+        Value of the input, in SI units.
     unit : str
         The unit; empty for a pure number.
     digits : int
-        Digits of the value.
+        Significant digits of the value.
     """
 
     name: str
@@ -84,17 +85,17 @@ class InputValue(Part):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Return name, value and unit, and the digits by name, as arguments that make an equal object."""
+        """Return the arguments (name, value and unit; digits by name) that make an equal object."""
         return (self.name, self.value, self.unit), {"digits": self.digits}
 
     def in_units(self, units: Any) -> str:
-        """Format the input with its value, in a display unit if it is a speed."""
+        """Format the input with its value; a speed in the given display units."""
         if self.unit == "rad/s":
             return self.said(units.speed_unit().say(self.value))
         return self.said(f"{self.value:.{self.digits}g} {self.unit}".rstrip())
 
     def said(self, value: str) -> Words:
-        """Join the name of the input and a text for its value: "name = text"."""
+        """Join the name of the input and a text for the value: "name = text"."""
         return Words(InputName(self.name), f" = {value}")
 
 
@@ -103,20 +104,21 @@ def _spanning(numbers: Iterable[float], digits: int, unit: str) -> str:
 
 
 class Statement(Words):
-    """A warning, refusal or remark: its sentence, and what it says as data.
+    """A warning, error message or remark: a sentence that also stores its subject as data.
 
     Parameters
     ----------
     *parts : str
         Parts of the sentence.
     kind : str
-        Subject; one of the kinds in `beamdyn.common.results.statements`.
+        Kind of statement; one of the constants in `beamdyn.common.results.statements`.
     quantity : str
-        The quantity that it is about, such as "tip deflection over the length"; empty if it is about none.
+        The quantity that the sentence is about, such as "tip deflection over the length"; empty if there is
+        none.
     value, limit : float
-        The quantity, and what it should not pass; nan where there is no such number.
+        Value and limit of the quantity; nan if there is no such number.
     remedy : str
-        Advice; empty where there is none.
+        Advice to the user; empty if there is none.
 
     Examples
     --------
@@ -146,35 +148,35 @@ class Statement(Words):
         return made
 
     def arguments(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
-        """Return the parts, and the data by name, as arguments that make an equal object."""
+        """Return the arguments (parts; other data by name) that make an equal object."""
         data = {"kind": self.kind, "quantity": self.quantity, "value": self.value, "limit": self.limit}
         return self.parts, data | {"remedy": self.remedy}
 
 
 def kind_of(sentence: str) -> str:
-    """Return the kind of a statement; empty for a plain sentence, as in files of older versions."""
+    """Return the kind of a statement; empty for a plain string, as in files of older versions."""
     return sentence.kind if isinstance(sentence, Statement) else ""
 
 
 def of_kind(sentences: Iterable[str], *kinds: str) -> list[str]:
-    """Return those sentences that are statements of given kinds."""
+    """Return the sentences that are statements of the given kinds."""
     return [said for said in sentences if kind_of(said) in kinds]
 
 
 def after(words: str, sentence: str) -> str:
-    """Return a sentence with words before it, such as the name of a scene; a statement stays a statement."""
+    """Put words, such as the name of a scene, before a sentence; a statement keeps its data."""
     given, data = sentence.arguments() if isinstance(sentence, Statement) else ((sentence,), {})
     return Statement(words, *given, **data) if data else Words(words, *given)
 
 
 def joined(separator: str, texts: Iterable[str]) -> Words:
-    """Join texts with a separator; parts with speeds stay convertible."""
+    """Join texts with a separator; speeds in them can still be converted to display units."""
     parts = [part for text in texts for part in (separator, text)]
     return Words(*parts[1:])
 
 
 def said_in(units: Any, text: str) -> str:
-    """Return a text with its speeds in display units."""
+    """Return a text with its speeds converted to display units."""
     return worded(text, lambda part: part.in_units(units))
 
 
@@ -186,11 +188,11 @@ _within_another: ContextVar[bool] = ContextVar("within_another", default=False)
 
 
 class OutsideLinearTheory(UserWarning):
-    """Warning that a number of linear theory is about a beam that bends further than this theory allows.
+    """Warning that a result of linear theory is for a beam that bends further than this theory allows.
 
-    Analyses issue this warning of Python, once each, where the beam bends by more than a
-    tenth of its length; the result says so in its ``warnings``, too.  With ``physics="auto"`` of the scene,
-    analyses add the effects that matter instead.
+    An analysis issues this Python warning once if the beam bends by more than a tenth of its length.  The
+    ``warnings`` of the result contain the same sentence.  With ``physics="auto"`` in the scene, analyses
+    include the effects that matter instead of warning.
 
     Examples
     --------
@@ -213,15 +215,16 @@ class OutsideLinearTheory(UserWarning):
 
 
 def announced(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
-    """Make an analysis warn, as Python does, where its result says that it lies outside linear theory.
+    """Decorate an analysis so that it issues a Python warning if its result is outside linear theory.
 
-    So a script that reads one number of the result is told, too.  An analysis that calls another warns once.
+    A script that reads only a number of the result then gets the warning, too.  An analysis that calls
+    another analysis warns only once.
     """
     return _announcing(analysis, _REMEDY)
 
 
 def announced_of_plain_beam(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
-    """Make an analysis of the straight beam alone warn, without advice on physics "auto"."""
+    """Decorate an analysis of the straight beam so that it warns, without advice on physics "auto"."""
     return _announcing(analysis, "")
 
 
@@ -238,7 +241,7 @@ def _announcing(analysis: Callable[Arguments, Answer], remedy: str) -> Callable[
 
 
 def announce(sentences: tuple[str, ...], remedy: str = _REMEDY) -> None:
-    """Issue statements that a result lies outside linear theory as warnings to the caller's caller."""
+    """Issue statements that a result is outside linear theory as Python warnings, at the caller's caller."""
     if not _within_another.get():
         for sentence in of_kind(sentences, OUTSIDE):
             warnings.warn(f"{sentence}{remedy}", OutsideLinearTheory, stacklevel=3)
@@ -246,7 +249,7 @@ def announce(sentences: tuple[str, ...], remedy: str = _REMEDY) -> None:
 
 @contextmanager
 def unannounced() -> Iterator[None]:
-    """Suppress warnings of results outside linear theory in this context, for analyses within others."""
+    """In this context, issue no warnings of results outside linear theory; for analyses called by others."""
     before = _within_another.set(True)
     try:
         yield

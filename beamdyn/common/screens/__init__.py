@@ -1,3 +1,3 @@
-"""Parts shared by the interactive programs: descriptions of screens, forms, designs and the page."""
+"""Parts shared by the interactive programs: descriptions of screens, forms, drawings and the web page."""
 
-HOME = "127.0.0.1"  # address of a server that only this computer can reach
+HOME = "127.0.0.1"  # IP address of a server that only programs on this computer can reach

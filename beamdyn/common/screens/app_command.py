@@ -1,4 +1,4 @@
-"""The command that serves an interactive program in the browser."""
+"""The command `app`, which opens an interactive program in the browser."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ _LARGEST_PORT = 65535
 
 
 def add_command(app: App, program: Callable[[], Program], port: int, about: str) -> None:
-    """Add the command `app` to the command line of a program.
+    """Add the command `app`, which opens an interactive program, to the command line of a program.
 
     Parameters
     ----------
     app : App
-        The command line.
+        Command line of the program.
     program : callable
-        Makes the interactive program; called only when it is known that the program can be shown.
+        Function that makes the interactive program; called only if the required packages are installed.
     port : int
-        Port, if no other is asked for.
+        Default port of the web server.
     about : str
         What the interactive program shows, in a sentence.
     """

@@ -1,4 +1,4 @@
-"""Data that the browser stores for a page: a tab's designs, unfinished input, named designs, look, links."""
+"""Data that the browser stores: designs, unfinished input, named designs, light or dark theme; links."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from beamdyn.common.screens.form_entries import Entries, read_entry, unit_of, us
 
 _LONGEST = 80  # largest number of characters in the name of a stored design
 _MOST = 100  # largest number of designs stored under names
-# Largest number of characters in a link, and of bytes in the design that the link holds.
+# Most characters in a link, and most bytes in the design that the link encodes.
 _LONGEST_LINK, _LARGEST = 30_000, 200_000
 _SOURCE = "the link"
 
 
 def call(function: str, *given: Any) -> str:
-    """Write a script that calls a function of page.js with JSON values, and returns its result."""
+    """Return a script that calls a function of page.js with JSON values, and returns its result."""
     return f"return {function}({', '.join(map(json.dumps, given))});"
 
 
 def named_designs(stored: str | None) -> dict[str, tuple[str, Entries]]:
-    """Read the named designs that the browser has stored: document and entries; leave out malformed ones."""
+    """Read the named designs stored in the browser: document and field texts; omit malformed ones."""
     try:
         held = json.loads(stored or "{}")
     except ValueError:
@@ -44,7 +44,7 @@ def _are_texts(values: Iterable[object]) -> bool:
 
 
 def refused_name(name: str, present: Mapping[str, object]) -> str:
-    """Say why a design cannot be stored under a name; empty if it can."""
+    """Return the reason why a design cannot be stored under a name; empty if it can."""
     if not name.strip():
         return "give the design a name"
     if len(name) > _LONGEST:
@@ -55,7 +55,7 @@ def refused_name(name: str, present: Mapping[str, object]) -> str:
 
 
 def read_typed(typed: Any, entries: Entries, inputs: list[Input]) -> Entries:
-    """Return entries updated by texts that were typed but not yet stored, read as the form reads them."""
+    """Return the field texts updated by texts typed but not yet stored, read as the form reads them."""
     known = {entry.path: entry for entry in inputs}
     found = dict(entries)
     for path, text in typed.items() if isinstance(typed, dict) else ():
@@ -67,7 +67,7 @@ def read_typed(typed: Any, entries: Entries, inputs: list[Input]) -> Entries:
 
 @dataclass(frozen=True)
 class LinkedDesign:
-    """A design that is encoded in a link.
+    """A design that is encoded in the address of a link.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class LinkedDesign:
     text : str
         The file, as TOML.
     options : mapping
-        Entries that are not part of the file.
+        Field texts that are not part of the file.
     """
 
     document: str
@@ -84,7 +84,7 @@ class LinkedDesign:
     options: Mapping[str, str]
 
     def as_fragment(self) -> str:
-        """Encode the design as the part of an address after "#": letters, digits, "-", "_" and "=".
+        """Encode the design as the part of an address after "#", with letters, digits, "-", "_" and "=" only.
 
         Raises
         ------
@@ -104,7 +104,7 @@ class LinkedDesign:
         Raises
         ------
         ConfigError
-            If the fragment holds no design; the design itself is not checked.
+            If the fragment encodes no design; the values in the design are not checked.
         """
         packed = fragment.removeprefix("#").removeprefix("design=")
         if len(packed) > _LONGEST_LINK:

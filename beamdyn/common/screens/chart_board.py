@@ -1,4 +1,4 @@
-"""The charts of a screen, as elements of the page."""
+"""The charts of a screen as elements of the page."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from beamdyn.common.screens.chart_options import marks_of, options_of
 from beamdyn.common.screens.page_writer import PageWriter
 
 _HOW = "A chart that has the focus is zoomed by + and -, moved by the arrow keys, and shown whole by 0."
-# While a handle or slider is held the toolbox is hidden, as it would be made anew for each picture.
+# While a handle or slider is held, the toolbox is hidden: it would be rebuilt for each picture.
 _NO_TOOLBOX = {"toolbox": {"show": False}}
 
 
 class _ShownChart:
-    """A chart below its heading; its element is kept when the chart changes, and given new data."""
+    """A chart below its heading; when the chart changes, its element is kept and gets new data."""
 
     def __init__(self, writer: PageWriter) -> None:
         self._writer = writer
@@ -31,16 +31,17 @@ class _ShownChart:
             self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
             self.element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
         self.element.on("keydown", js_handler=f"(event) => zoomChart(event, {self.element.id})")
-        # The component restores the data that it was given first: send the present data after that.
+        # The chart component restores the data that it received first; therefore send the present data
+        # afterwards.
         self.element.on("chart:restore", self.update, args=[])
 
     @property
     def id(self) -> int:
-        """Identifier of the chart's element."""
+        """Return the identifier of the chart's element on the page."""
         return self.element.id
 
     def fill(self, chart: Chart, options: dict[str, Any]) -> None:
-        """Show another chart; `options` are those of the chart without its cursor."""
+        """Show another chart; `options` are the options of the chart without its cursor."""
         self.heading.set_text(chart.title)
         series = [marks_of(chart), *options["series"][1:]]
         last, self._options = self._options, _saved_by_script(options) | {"series": series}
@@ -54,32 +55,32 @@ class _ShownChart:
             self.update()
 
     def update(self) -> None:
-        """Send the chart to the browser through NiceGUI, which takes time for each number."""
+        """Send the chart to the browser through NiceGUI, which takes time in proportion to the data."""
         with self.element.props.suspend_updates():
             self.element.props["options"] = self._options
         self.element.update()
 
     def move_cursor(self, chart: Chart) -> None:
-        """Move the marks of the chart; all else is unchanged."""
+        """Move the cursor of the chart; everything else is unchanged."""
         self._options["series"][0] = marks_of(chart)
         self.element.run_chart_method("setOption", {"series": self._options["series"][:1]})
 
 
 class ChartBoard:
-    """Charts below one another; their elements are kept and given new data, so that zooming lasts.
+    """Charts below one another; their elements are kept and get new data, so that the zoom is kept, too.
 
     Parameters
     ----------
     words : str
-        Description of the charts.
+        Description of the charts for screen readers.
     writer : PageWriter
-        Writer of the charts while a handle or slider is held.
+        Object that updates the charts while a handle or slider is held.
     """
 
     def __init__(self, words: str, writer: PageWriter) -> None:
         self._writer = writer
         self._made: list[_ShownChart] = []
-        self._charts: list[Chart] = []  # charts on the page
+        self._charts: list[Chart] = []  # charts that the page shows
         self._shown: list[dict[str, Any]] = []  # options of these charts, without the cursor
         self._sums: list[int] = []  # checksums of each chart's options
         self._column: Any = ui.element("div").classes("w-full charts")
@@ -88,7 +89,7 @@ class ChartBoard:
         self._how.set_visibility(False)
 
     def _options_without_cursor(self, chart: Chart, i: int) -> dict[str, Any]:
-        """Return the options of chart i, the ones shown if only its cursor has changed."""
+        """Return the options of chart i without cursor; reuse the previous ones if nothing else changed."""
         if i < len(self._charts):
             shown, rest = self._charts[i], [each.name for each in fields(Chart) if each.name != "cursor"]
             if all(getattr(shown, name) is getattr(chart, name) for name in rest):
@@ -96,7 +97,7 @@ class ChartBoard:
         return options_of(replace(chart, cursor=None))
 
     def _sum_of(self, i: int, options: dict[str, Any], last: dict[str, Any]) -> int:
-        """Return the checksum of chart i's options; the stored one if they are the `last` options."""
+        """Return the checksum of chart i's options, stored already if they are the `last` options."""
         return self._sums[i] if options is last else crc32(json.dumps(options).encode())
 
     def _elements(self) -> Iterator[Any]:
@@ -105,7 +106,7 @@ class ChartBoard:
             yield from (made.place, made.heading)
 
     def show(self, charts: Sequence[Chart]) -> None:
-        """Show these charts in place of the previous ones."""
+        """Show the given charts in place of the previous ones."""
         while len(self._made) < len(charts):
             with self._column:
                 self._made.append(_ShownChart(self._writer))
@@ -127,7 +128,7 @@ class ChartBoard:
 
 
 def _saved_by_script(options: dict[str, Any]) -> dict[str, Any]:
-    """Return options by which the page's own script saves the chart."""
+    """Return chart options with which the script of the page saves the chart."""
     toolbox = options["toolbox"]
     feature = toolbox["feature"]
     saving = feature["mySave"] | {":onclick": "saveChart"}
@@ -135,7 +136,7 @@ def _saved_by_script(options: dict[str, Any]) -> dict[str, Any]:
 
 
 def _without_scripts(options: dict[str, Any]) -> dict[str, Any]:
-    """Return options without those that are scripts (named with ":"), which do not change."""
+    """Return the options without scripts (options whose name begins with ":"), which never change."""
     return {
         name: _without_scripts(value) if isinstance(value, dict) else value
         for name, value in options.items()

@@ -1,4 +1,4 @@
-"""Options of the chart component of the page for a chart: hover, zoom, saving as a picture."""
+"""Options of the chart component of the page: hover text, zoom, and saving as a picture."""
 
 from __future__ import annotations
 
@@ -12,35 +12,35 @@ import numpy as np
 from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartCurve
 from beamdyn.common.drawing.strokes import INKS
 
-_DIGITS = 5  # digits of numbers on the page; for a place on an axis, digits of its share of the length
-_MOST_DIGITS = 10  # largest number of digits of the values of a curve that varies little
-_WIDE = 0.15  # share of the axis below which a band is too narrow for its text
+_DIGITS = 5  # significant digits of numbers; decimals of positions relative to the axis
+_MOST_DIGITS = 10  # most digits of the values of a curve that varies little
+_WIDE = 0.15  # fraction of the axis below which a band is too narrow for its text
 # Colours of curves, used in turn.
 _COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")
-# Colours of a chart that drawings do not have, on light ground; the page sets those on dark ground.
+# Colours used by charts but not by drawings, for a light background; the page sets those for dark.
 _MORE = {"chart-4": "#a3527f", "chart-5": "#806000", "chart-6": "#6a35c9"}
 _MORE_DARK = {"chart-4": "#e59ac2", "chart-5": "#f5d76e", "chart-6": "#a98bff"}
-# Rounding of an axis' step by the chart component: leading digits below the second number become the first.
+# How the chart component rounds the tick step: leading digits below the second number become the first.
 _STEPS = ((1, 1.5), (2, 2.5), (3, 4.0), (5, 7.0), (10, math.inf))
 _POWERS = "(x) => (x >= 1e-3 && x < 1e5) ? String(x) : x.toExponential(0).replace('+', '')"
-_FEW = 8  # largest number of decades of an axis at which small ticks are still drawn
-_NAMED, _PALE = 12, 11  # sizes of letters, of names and of numbers [px]
+_FEW = 8  # largest number of decades of an axis for which minor ticks are drawn
+_NAMED, _PALE = 12, 11  # font sizes of names and of numbers [px]
 _WIDE_CHART = 700  # least width of a wide chart [px]
-# Number of letters in a row of the legend, for a narrow chart and for a wide one.
+# Characters in a row of the legend, for a narrow chart and for a wide chart.
 _LETTERS, _LETTERS_WIDE = 52, 100
 _SAVE_SIGN = "path://M4.7,22.9L29.3,45.5L54.7,23.4M4.6,43.6L4.6,58L53.8,58L53.8,43.6M29.2,45.1L29.2,0"
-_DASHES = ("dashed", "dotted", [10, 3, 2, 3], [2, 6])  # dashes of curves of a compared design, used in turn
+_DASHES = ("dashed", "dotted", [10, 3, 2, 3], [2, 6])  # dash patterns of a compared design's curves
 
 
 def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Thin a curve to a number of points with the same range: its ends, and the extremes of its parts.
+    """Reduce a curve to at most `most` points without losing its end points and local extremes.
 
     Parameters
     ----------
     x, y : ndarray, shape (n,)
-        The curve; x ascends.
+        Points of the curve, with ascending x.
     most : int
-        Largest number of points that stay.
+        Largest number of points to keep.
     """
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     if len(x) <= most:
@@ -56,22 +56,22 @@ def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.nda
 
 
 def chart_colours(selector: str, dark: bool = False) -> str:
-    """Write style rules for the colours that charts have in addition to those of drawings."""
+    """Return CSS rules for the colours of charts that do not occur in drawings."""
     values = _MORE_DARK if dark else _MORE
     return f"{selector}{{{''.join(f'--{role}:{colour};' for role, colour in values.items())}}}"
 
 
 def options_of(chart: Chart) -> dict[str, Any]:
-    """Make the options of the chart component for a chart.
+    """Make the options of the chart component that show a chart.
 
-    Its colours are those of the page; no text is taken for HTML, and none for a script.
+    Colours follow the theme of the page.  Texts are never interpreted as HTML or as scripts.
     """
-    # Number of letters in the legend.
+    # Number of characters in the legend.
     needed = sum(len(each.name) + 8 for each in (*chart.curves, *chart.points))
     narrow, wide = (
         {"bottom": 50 + 18 * min(math.ceil(needed / letters), 6)} for letters in (_LETTERS, _LETTERS_WIDE)
     )
-    no_dot = {"itemStyle": {"opacity": 0}}  # hides dots in the legend, except where points are marked
+    no_dot = {"itemStyle": {"opacity": 0}}  # hides dots in the legend unless the curve has markers
     lines = ({"name": curve.name} | ({} if curve.points else no_dot) for curve in chart.curves)
     return {
         "animation": False,
@@ -89,9 +89,9 @@ def options_of(chart: Chart) -> dict[str, Any]:
             "inactiveColor": _paint("ghost"),
             "data": [*lines, *({"name": each.name} for each in chart.points)],
         },
-        "tooltip": {  # shows all curves at the pointer's x, or one point where x is logarithmic
+        "tooltip": {  # shows the values of all curves at the pointer's x, or of one point if x is logarithmic
             "trigger": "item" if chart.x.logarithmic else "axis",
-            "renderMode": "richText",  # no HTML, so that names are shown as they are
+            "renderMode": "richText",  # texts are not interpreted as HTML, so that names appear as they are
             "confine": True,
             "order": "seriesDesc",
             "textStyle": _letters(_NAMED),
@@ -116,7 +116,7 @@ def options_of(chart: Chart) -> dict[str, Any]:
 
 
 def _paint(role: str, area: bool = False) -> str:
-    """Return a colour of the page by its role; pictures outside the page take its value on light ground."""
+    """Return a colour role as a CSS variable of the page; its default for other pages is the light colour."""
     if role in _MORE:
         return f"var(--{role},{_MORE[role]})"
     ink = INKS[role]
@@ -124,15 +124,15 @@ def _paint(role: str, area: bool = False) -> str:
 
 
 def _letters(size: int) -> dict[str, Any]:
-    """Return the style of text in a size [px]."""
+    """Return the style of text with a given font size [px]."""
     return {"color": _paint("text"), "fontSize": size}
 
 
-# Frame ------------------------------------------------------------------------------------------------
+# Axes, legend and tools -------------------------------------------------------------------------------
 
 
 def _axis(axis: ChartAxis, values: Sequence[Any], upright: bool) -> dict[str, Any]:
-    """Make the options of an axis; a logarithmic axis has numbers at powers of ten unless they overlap."""
+    """Make the options of an axis; a logarithmic axis has labels at powers of ten unless they overlap."""
     line = {"lineStyle": {"color": _paint("axis")}}
     label: dict[str, Any] = _letters(_PALE) | {"hideOverlap": True}
     tick: dict[str, Any] = {"show": True} | line
@@ -164,14 +164,14 @@ def _axis(axis: ChartAxis, values: Sequence[Any], upright: bool) -> dict[str, An
 
 
 def _pointed(chart: Chart) -> dict[str, Any]:
-    """Make the options of the line at the pointer, and the heading with quantities and units there."""
+    """Make the options of the line at the pointer, and of the text there with quantities and units."""
     heading = f"{chart.x.name} {{value}} {chart.x.unit}".rstrip() + f"\n{chart.y.title}"
     line = {"color": _paint("axis")}
     return {"axisPointer": {"label": {"show": False, "formatter": heading}, "lineStyle": line}}
 
 
 def _is_tick(low: float, high: float) -> bool:
-    """Whether the upper end of an axis is a multiple of the step that the chart component chooses."""
+    """Return whether the upper limit of an axis is a multiple of the component's tick step."""
     step = (high - low) / 5
     if not step > 0:
         return True
@@ -181,7 +181,7 @@ def _is_tick(low: float, high: float) -> bool:
 
 
 def _decades(axis: ChartAxis, values: Sequence[Any]) -> tuple[float, float]:
-    """Return the ends of a logarithmic axis: as given, else whole decades around the values."""
+    """Return the limits of a logarithmic axis: the given ones, else whole decades around the values."""
     known = np.concatenate([np.asarray(each, dtype=float).ravel() for each in values] or [np.empty(0)])
     known = np.log10(known[np.isfinite(known) & (known > 0)])
     known = known if len(known) else np.zeros(1)
@@ -191,7 +191,7 @@ def _decades(axis: ChartAxis, values: Sequence[Any]) -> tuple[float, float]:
 
 
 def _toolbox(title: str) -> dict[str, Any]:
-    """Make the buttons above a chart: zoom, reset, and saving under the chart's title."""
+    """Make the buttons above a chart: zoom, reset, and saving as a file named after the title."""
     name = "-".join("".join(c if c.isalnum() else " " for c in title.lower()).split())
     return {
         "show": True,
@@ -207,13 +207,13 @@ def _toolbox(title: str) -> dict[str, Any]:
     }
 
 
-# What is drawn ----------------------------------------------------------------------------------------
+# Curves, points and marks -----------------------------------------------------------------------------
 
 
 def _series(chart: Chart) -> Iterator[dict[str, Any]]:
-    """Yield the series of a chart.
+    """Yield the series of a chart: the data of curves, points, marks and bands.
 
-    Marks and bands come first, in a series that a moving cursor replaces alone.
+    Marks, bands and cursor are in the first series, so that a moving cursor changes only this series.
     """
     yield marks_of(chart)
     dashes = count()
@@ -243,12 +243,12 @@ def _series(chart: Chart) -> Iterator[dict[str, Any]]:
 
 
 def _roles(chart: Chart) -> list[str]:
-    """Return the colour role of each curve."""
+    """Return the colour role of each curve of a chart."""
     return ["ground" if n is None else _COLOURS[n % len(_COLOURS)] for n in chart.colour_numbers]
 
 
 def _line(curve: ChartCurve) -> dict[str, Any]:
-    """Make the series of a curve, thinned to what can be seen; a point between gaps is a dot."""
+    """Make the series of a curve with as many points as can be seen; an isolated point is a dot."""
     x, y = thinned(curve.x, curve.y, curve.most)
     known = np.pad(np.isfinite(y), 1)
     alone = known[1:-1] & ~known[:-2] & ~known[2:]
@@ -272,9 +272,9 @@ def _line(curve: ChartCurve) -> dict[str, Any]:
 
 
 def marks_of(chart: Chart) -> dict[str, Any]:
-    """Make the series of marks, bands and cursor; it is never missing, so that a later one replaces it.
+    """Make the series of marks, bands and cursor; it always exists, so that a moved cursor can replace it.
 
-    Marks are upright lines, in the colour of a curve where they are about one.
+    Marks are vertical lines; a mark that belongs to a curve has the colour of this curve.
     """
     role_of = {curve.name: _paint(role) for curve, role in zip(chart.curves, _roles(chart), strict=True)}
     marks: list[dict[str, Any]] = []
@@ -312,7 +312,7 @@ def marks_of(chart: Chart) -> dict[str, Any]:
 
 
 def _bands(chart: Chart) -> Iterator[list[dict[str, Any]]]:
-    """Yield the ends of each band, with its text if the band is wide enough for it."""
+    """Yield the ends of each band, with its text if the band is wide enough."""
     ends = [end for end in (chart.x.low, chart.x.high) if end is not None]
     ends += [float(x) for curve in chart.curves for x in np.asarray(curve.x)[[0, -1]]]
     least = _WIDE * (max(ends, default=0.0) - min(ends, default=0.0))
@@ -322,17 +322,17 @@ def _bands(chart: Chart) -> Iterator[list[dict[str, Any]]]:
 
 
 def _digits(y: np.ndarray) -> int:
-    """Return the digits of a curve's values: more if they differ little, but not those of rounding."""
+    """Return the digits to show for a curve's values: more if they vary little, but no rounding errors."""
     span, largest = (float(np.ptp(y)), float(np.abs(y).max())) if len(y) else (0.0, 0.0)
     more = math.ceil(math.log10(largest / span)) - 1 if span > 0 else 0
     return min(_DIGITS + max(more, 0), _MOST_DIGITS)
 
 
 def _place(value: float) -> float:
-    """Round a place on the x axis to what can be seen in a close-up."""
+    """Round a position on the x axis to a precision that suffices even after zooming in."""
     return float(f"{value:.{2 * _DIGITS}g}")
 
 
 def _short(value: float, digits: int = _DIGITS) -> float:
-    """Round a number to the digits that are shown."""
+    """Round a number to the number of digits that is shown."""
     return float(f"{value:.{digits}g}")

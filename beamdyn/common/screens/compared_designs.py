@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-_MOST = 60  # largest number of different results that a comparison lists
+_MOST = 60  # largest number of differing results that a comparison lists
 _DASH = (4.0, 2.5)
 
 
 class Difference(NamedTuple):
-    """An input or result that differs between two designs: its name, and both values as shown.
+    """An input or result that differs between two designs: its name, and both values as texts.
 
-    It also has both values as numbers; None for a value that is no number.
+    Both values are also stored as numbers; None for a value that is not a number.
     """
 
     words: str
@@ -36,7 +36,7 @@ class Difference(NamedTuple):
 
     @property
     def change(self) -> str:
-        """Relative difference of this design's value from the other's; "" unless both are numbers."""
+        """Return the relative difference from the other design's value; "" unless both are numbers."""
         here, there = self.numbers
         return f"{100 * (here - there) / abs(there):+.3g} %" if here is not None and there else ""
 
@@ -44,9 +44,9 @@ class Difference(NamedTuple):
 def input_differences(
     here: Mapping[str, str], there: Mapping[str, str], inputs: Sequence[Input]
 ) -> Iterator[Difference]:
-    """Yield the inputs whose texts differ, in their order.
+    """Yield the inputs whose texts differ between two designs, in the order of the form.
 
-    The default stands in brackets for an empty text.
+    For an empty text, the default is shown in brackets.
     """
     differ = differing(here, there)
     known = {entry.path: entry for entry in inputs}
@@ -61,7 +61,7 @@ def input_differences(
 
 
 def _value(text: str, entry: Input | None = None) -> float | None:
-    """Return the number in a text, in SI if its input has a unit; None if there is no number."""
+    """Return the number in a field text, in SI units if the input has a unit; None if there is no number."""
     try:
         number = float(text) if entry is None or not entry.quantity.unit else entry.quantity.convert(text)
     except ValueError:
@@ -72,7 +72,7 @@ def _value(text: str, entry: Input | None = None) -> float | None:
 def result_differences(
     here: Iterable[RenderableType], there: Iterable[RenderableType]
 ) -> Iterator[Difference]:
-    """Yield the numbers that differ in tables that both designs have, as they are shown."""
+    """Yield the numbers that differ between the tables of two designs, formatted as in the tables."""
     for one, other in zip(_tables(here), _tables(there), strict=False):
         if [c.header for c in one.columns] != [c.header for c in other.columns]:
             continue
@@ -98,7 +98,7 @@ def _tables(parts: Iterable[RenderableType]) -> Iterator[Table]:
 
 
 class _TableRow(NamedTuple):
-    """A row of a table: its index, its words, and its numbers by the heads of their columns."""
+    """A row of a table: its index, its texts, and its numbers by column heading."""
 
     number: int
     words: str
@@ -107,18 +107,18 @@ class _TableRow(NamedTuple):
 
     @property
     def place(self) -> str:
-        """The first number of the row with its head, such as the speed to which the other numbers belong."""
+        """Return the first number of the row with its heading, such as the speed to which the row belongs."""
         head, text = next(iter(self.numbers.items()), ("", ""))
         return f"{head.removeprefix(', ')} {text}"
 
     @property
     def counted(self) -> str:
-        """Words of the row, with its number."""
+        """Return the texts of the table row, followed by the number of the row."""
         return ", ".join(filter(None, (self.words, f"row {self.number}")))
 
 
 def _naming(here: Sequence[_TableRow], there: Sequence[_TableRow]) -> Callable[[_TableRow], str]:
-    """Choose a function that names rows of two tables: by words, by places common to both, or by number."""
+    """Choose how the rows of two tables are named: by texts, a common first number, or row number."""
     if all(len({row.words for row in rows}) == len(rows) for rows in (here, there)):
         return lambda row: row.words or row.counted
     common = {row.place for row in here} & {row.place for row in there}
@@ -127,7 +127,7 @@ def _naming(here: Sequence[_TableRow], there: Sequence[_TableRow]) -> Callable[[
 
 
 def _rows(table: Table) -> Iterator[_TableRow]:
-    """Yield the rows of a table; a single column of numbers has the head ""."""
+    """Yield the rows of a table; a single column of numbers has the heading ""."""
     heads = [str(column.header) for column in table.columns]
     words = {head for head, column in zip(heads, table.columns, strict=True) if column.justify == "left"}
     single = len(heads) - len(words) == 1
@@ -140,7 +140,7 @@ def _rows(table: Table) -> Iterator[_TableRow]:
 
 
 def differences_html(differences: Sequence[Difference], what: str, other: str) -> str:
-    """Write an HTML table of differences, up to a limit; a sentence where there is none."""
+    """Return an HTML table of differences, up to a largest number; a sentence if there are none."""
     if not differences:
         return f"<p>The {escape(what)} are the same.</p>"
     rows = "".join(
@@ -159,7 +159,7 @@ def differences_html(differences: Sequence[Difference], what: str, other: str) -
 
 
 def headline_html(results: Sequence[KeyResult], other: Sequence[KeyResult] = (), name: str = "") -> str:
-    """Write the most important results as HTML, beside those of another design."""
+    """Return the most important results as HTML, beside the results of another design."""
     theirs = dict(other)
     parts = []
     for words, value in results:
@@ -170,12 +170,12 @@ def headline_html(results: Sequence[KeyResult], other: Sequence[KeyResult] = (),
 
 
 def with_other_curves(charts: Sequence[Chart], other: Sequence[Chart], name: str) -> Sequence[Chart]:
-    """Add another design's curves to charts with the same axes, pale and dashed."""
+    """Add another design's curves, dashed and grey, to charts that have the same axes."""
     if [chart.x.title + chart.y.title for chart in charts] != [c.x.title + c.y.title for c in other]:
         return charts
 
     def around(axis: ChartAxis, there: ChartAxis) -> ChartAxis:
-        """Return an axis that spans both charts; an end that is automatic in either one stays automatic."""
+        """Return an axis for both charts; limits that are automatic in either chart stay automatic."""
         low = None if axis.low is None or there.low is None else min(axis.low, there.low)
         high = None if axis.high is None or there.high is None else max(axis.high, there.high)
         return replace(axis, low=low, high=high)
@@ -191,7 +191,7 @@ def with_other_curves(charts: Sequence[Chart], other: Sequence[Chart], name: str
 
 
 def with_ghost(rows: Rows, other: Rows, name: str) -> Rows:
-    """Draw the outlines of another design beneath drawings."""
+    """Draw the outlines of another design behind the drawings."""
     if [len(row) for row in rows] != [len(row) for row in other]:
         return rows
 

@@ -1,4 +1,4 @@
-"""Computations of a page: one runs at a time, and only the latest of those requested meanwhile follows."""
+"""Computations of a page: one at a time; of the requests made meanwhile, only the last is run next."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from nicegui import background_tasks, ui
 
 from beamdyn.common.screens.processes import TakesTooLong
 
-SOON = 0.15  # time after which the page says that it computes [s]; the message is visible within 0.3 s
+SOON = 0.15  # time after which the page shows "computing" [s]; visible within 0.3 s
 _LOG = logging.getLogger(__name__)
-_PATIENCE = 2.0  # time after which an unwanted computation is ended [s]; a new process takes 1 s to start
+_PATIENCE = 2.0  # time after which an outdated computation is ended [s]; a new process takes 1 s
 
 
 class LatestComputation:
-    """The running computation of a page, and the one that follows it.
+    """The running computation of a page, and the computation that will run next.
 
     Parameters
     ----------
     settle : callable
-        Called with the future of each computation that is done, and whether nothing newer is wanted.
+        Called with the future of each finished computation, and whether no newer one was requested.
     fail : callable
-        Called with the error if `settle` raises one: the result cannot be shown.
+        Called with the error if `settle` raises one because the result cannot be shown.
     tell : callable
         Called when `slow` or `busy` has changed, and each second during a long computation.
 
     Attributes
     ----------
     slow : bool
-        Whether a computation has taken so long that the page should say so.
+        Whether a computation has taken so long that the page should show that it computes.
     waited : float
-        Time that the running computation has taken so far [s].
+        Elapsed time of the running computation [s].
     usual : float
-        Time that the last long computation took in all [s]; 0 if there has been none.
+        Total time of the last long computation [s]; 0 if there has been none.
     """
 
     def __init__(
@@ -50,23 +50,23 @@ class LatestComputation:
         self._show, self._fail, self._tell = settle, fail, tell
         self._wanted: Callable[[], asyncio.Future[Any]] | None = None
         self._future: asyncio.Future[Any] | None = None
-        self._gives_way = self._wanted_gives_way = False  # for the running computation and the next one
+        self._gives_way = self._wanted_gives_way = False  # whether the running and the next one give way
         self._task: asyncio.Task[None] | None = None
 
     @property
     def busy(self) -> bool:
-        """Whether a computation is running."""
+        """Return whether a computation is running."""
         return self._task is not None
 
     def want(self, start: Callable[[], asyncio.Future[Any]], gives_way: bool = False) -> None:
-        """Start a computation, or let it follow the running one in place of another that waited.
+        """Start a computation, or let it wait for the running one; it replaces another that waits.
 
         Parameters
         ----------
         start : callable
-            ``start()``: the future of the computation.
+            ``start()`` starts the computation, and returns its future.
         gives_way : bool
-            Whether the computation takes long, and is ended as soon as a newer one is wanted.
+            Whether the computation takes long, and is terminated as soon as a newer one is requested.
         """
         self._wanted, self._wanted_gives_way = start, gives_way
         if self._task is not None and self._future is not None and self._gives_way:
@@ -79,18 +79,18 @@ class LatestComputation:
                 self._task = background_tasks.create(self._follow(future))
 
     def cancel(self) -> None:
-        """Cancel the running computation, and the one that waits."""
+        """Cancel the running computation and the waiting one."""
         self._wanted = None
         if self._future is not None:
             self._future.cancel()
 
     async def done(self) -> None:
-        """Wait until no computation is under way."""
+        """Wait until no computation is running."""
         while self._task is not None:
             await asyncio.wait([self._task])
 
     def _next(self) -> asyncio.Future[Any]:
-        """Start the computation that waits; if that fails, return a future that holds the error."""
+        """Start the waiting computation; if that fails, return a future with the error."""
         assert self._wanted is not None
         start, self._wanted = self._wanted, None
         self._gives_way = self._wanted_gives_way
@@ -104,15 +104,15 @@ class LatestComputation:
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
         try:
             self._show(future, last)
-        except Exception as error:  # any exception at all: the page must not go on saying that it computes
+        except Exception as error:  # else the page would show "computing" forever
             _LOG.exception("what has been computed cannot be shown")
             self._fail(error)
 
     @property
     def words(self) -> str:
-        """Describe the time taken, and the time left if this takes as long as the last.
+        """Describe the elapsed time, and the remaining time if the duration is as last time.
 
-        Empty in the first second.
+        The text is empty in the first second.
         """
         if self.waited < 1:
             return ""
@@ -120,16 +120,16 @@ class LatestComputation:
         return f"{self.waited:.0f} s" + (f", about {left:.0f} s left" if left >= 1 else "")
 
     def _count(self, waited: float) -> None:
-        """Store the time waited, and tell the page once a second that the computation takes long."""
+        """Store the elapsed time; once a second, let the page show that the computation takes long."""
         tells = not self.slow or int(waited) > int(self.waited)
         self.slow, self.waited = True, waited
         if tells:
             self._tell()
 
     async def _follow(self, future: asyncio.Future[Any]) -> None:
-        """Wait for the running computation, and show its result; then go on with the one wanted meanwhile.
+        """Wait for the running computation and show its result; then run the computation requested meanwhile.
 
-        A computation that takes long and is no longer wanted is ended.
+        A long computation whose result is no longer needed is terminated.
         """
         try:
             while True:
@@ -145,7 +145,7 @@ class LatestComputation:
                 if self._wanted is None:
                     break
                 done, future = future, self._next()
-                # The new computation is sent off before the last result is shown, which takes time.
+                # The next computation is started before the last result is shown, as showing takes time.
                 await asyncio.sleep(0)
                 if not done.cancelled():
                     self._settle(done, False)
@@ -155,14 +155,14 @@ class LatestComputation:
 
 
 class BusyRow:
-    """A row that says that something is being computed, and for how long, with a button to cancel it.
+    """A row that shows that something is being computed, the elapsed time, and a button to cancel.
 
     Parameters
     ----------
     cancel : callable
         Cancels the computation.
     words : str
-        What is computed, for screen readers; empty where a text beside the row says it.
+        Name of the computation for screen readers; empty if a text beside the row names it.
     """
 
     def __init__(self, cancel: Callable[[], object], words: str = "") -> None:
@@ -175,15 +175,15 @@ class BusyRow:
         self._row.set_visibility(False)
 
     def show(self, busy: bool, time: str = "") -> None:
-        """Show the row with the time taken so far, or hide it."""
+        """Show the row with the elapsed time, or hide it."""
         self._row.set_visibility(busy)
         self._time.set_text(time)
 
 
 class FileMaking:
-    """Making of files for download, with a row while it takes long: name, time taken, a button to cancel it.
+    """Makes files for download; a row shows name, elapsed time and a button to cancel if this takes long.
 
-    A file that is asked for meanwhile is made next.
+    A file that is requested meanwhile is made next.
     """
 
     def __init__(self) -> None:
@@ -194,12 +194,12 @@ class FileMaking:
             self._busy = BusyRow(self._way.cancel, "a file is being made")
 
     def want(self, name: str, start: Callable[[], asyncio.Future[str]]) -> None:
-        """Have a file of a name made by what ``start()`` returns, and download it."""
+        """Make a file with the given name from the future that ``start()`` returns, and download it."""
         self._name = name
         self._way.want(start)
 
     def close(self) -> None:
-        """Cancel the file that is being made, as the page is gone."""
+        """Cancel the file that is being made, because the page was closed."""
         self._way.cancel()
 
     def _tell(self) -> None:
@@ -209,7 +209,7 @@ class FileMaking:
         if self._row.is_deleted:
             return
         self._tell()
-        with self._row:  # notifications go to the page that has this row
+        with self._row:  # notifications are shown on the page that has this row
             if future.cancelled():
                 ui.notify(f"{self._name} was cancelled")
             elif isinstance(error := future.exception(), TakesTooLong | BrokenExecutor):
@@ -223,12 +223,12 @@ class FileMaking:
 
 
 async def download(making: asyncio.Future[Any], name: str) -> None:
-    """Download bytes or a text as a file when they have been made; notify if that takes long, or fails.
+    """Download bytes or a text as a file when ready; notify the user if that takes long, or fails.
 
     Parameters
     ----------
     making : asyncio.Future
-        Future of the content, from `RunsTasks.submit`.
+        Future whose result is the content, from `RunsTasks.submit`.
     name : str
         Name of the file.
     """

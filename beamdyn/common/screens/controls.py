@@ -1,4 +1,4 @@
-"""Controls of a drawing: a slider that the page moves itself, a player of it, and a choice of branches."""
+"""Controls of a drawing: a slider, a button that animates it, and a choice of solution branches."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screen_parts import Slider
 
 _OFTEN = (
-    0.03  # least time between two messages of a dragged slider, or between two pictures of a played one [s]
+    0.03  # least time between two messages of a dragged slider, or between two pictures of an animation [s]
 )
-_LONGEST = 0.2  # longest time by which one picture of a played motion advances, so that it does not jump [s]
-_REST = 0.3  # time after a release or a step by key from which a slider counts as at rest [s]
-_STILL = 1.0  # time for which each picture stays where reduced motion is preferred [s]
-_STILLS = 4  # number of pictures from one end to the other where reduced motion is preferred
-_PATIENCE = 3.0  # time without painting, after which a page counts as not visible [s]
+_LONGEST = 0.2  # longest step in time between two pictures of an animation, so that it does not jump [s]
+_REST = 0.3  # time after a release or a key press after which a slider counts as at rest [s]
+_STILL = 1.0  # time for which each picture is shown if the user prefers reduced motion [s]
+_STILLS = 4  # number of pictures of an animation if the user prefers reduced motion
+_PATIENCE = 3.0  # time without painting after which a page counts as hidden [s]
 
-# All that was sent is in the page when this script runs, and is painted once the next frame has begun.
+# The script waits until the changes sent to the browser are painted: to the next frame, and its end.
 _PAINTED = """return new Promise(done => requestAnimationFrame(() => setTimeout(() => {{
   const seen = getHtmlElement({id})?.offsetParent;
   done(!seen ? "away" : matchMedia("(prefers-reduced-motion: reduce)").matches ? "still" : "moving");
@@ -29,12 +29,12 @@ _PAINTED = """return new Promise(done => requestAnimationFrame(() => setTimeout(
 
 
 class DragSlider(ui.slider, component="drag_slider.js"):
-    """A slider that the page itself moves, and that reports while dragged, without waiting for the server.
+    """A slider that the browser moves itself; while dragged it sends messages without waiting for replies.
 
     Parameters
     ----------
     dragged : callable
-        Called with its position, and whether it has been let go, as after a step by a key or a click.
+        Called with the position, and whether the slider was released (also after a key press or click).
     **options
         Options of `ui.slider`.
     """
@@ -46,7 +46,7 @@ class DragSlider(ui.slider, component="drag_slider.js"):
         self.on("drag", lambda e: dragged(*e.args), throttle=_OFTEN)
 
     def put(self, place: float, writer: PageWriter) -> None:
-        """Move the slider to a position; directly in the page while the writer is ahead of NiceGUI."""
+        """Move the slider to a position; directly in the browser while the writer is ahead of NiceGUI."""
         with writer.writing(self):
             self.set_value(place)
         if writer.is_ahead:
@@ -54,26 +54,26 @@ class DragSlider(ui.slider, component="drag_slider.js"):
 
 
 class Player:
-    """A slider above a drawing, with a button (or the space bar) that plays and pauses it.
+    """A slider above a drawing, with a button (or the space bar) that starts and pauses an animation.
 
-    The slider moves on when the page has painted the last picture, so that pictures never pile up.  Moving it
-    by hand pauses it, and so does a page that is not seen.  Where the browser prefers reduced motion, a few
-    stills are shown.
+    The slider advances when the browser has painted the last picture, so that pictures never pile up.  The
+    animation pauses if the user moves the slider, or if the page is hidden.  If the browser is set to reduced
+    motion, a few still pictures are shown instead.
 
     Parameters
     ----------
     motion : Slider
-        Name of the slider, and its positions over time.
+        Label of the slider, and its position as a function of time.
     writer : PageWriter
-        Writes into the page while it plays or is dragged.
+        Object that updates the page while the slider is animated or dragged.
     turned : callable
-        Called when the slider has been moved, or paused.
+        Called when the slider was moved, or the animation paused.
     """
 
     def __init__(self, motion: Slider, writer: PageWriter, turned: Callable[[], object]) -> None:
         self._motion, self._writer, self._turned = motion, writer, turned
         self._task: asyncio.Task[None] | None = None
-        # Whether the player sets the slider, and whether a hand moves it.
+        # Whether the program is setting the slider, and whether the user moves it.
         self._sets, self._swings = False, False
         self._rest: asyncio.TimerHandle | None = None
         last, marks = motion.last, ", ".join(f"{i}: '{mark}'" for i, mark in enumerate(motion.marks))
@@ -89,12 +89,12 @@ class Player:
 
     @property
     def place(self) -> float:
-        """Position of the slider."""
+        """Return the position of the slider."""
         return float(self._slider.value or 0.0)
 
     @property
     def moves(self) -> bool:
-        """Whether the slider is played or moved by hand, also by single steps."""
+        """Return whether the slider is animated or moved by the user, also in single steps."""
         return self.plays or self._swings
 
     def _swing(self, place: float, done: bool) -> None:
@@ -103,11 +103,11 @@ class Player:
             self._slider.set_value(place)
         if self._rest is not None:
             self._rest.cancel()
-        if done:  # another step of a key may follow soon
+        if done:  # the user may soon press a key again
             self._rest = asyncio.get_running_loop().call_later(_REST, self._stop)
 
     def _stop(self) -> None:
-        """Come to rest, and tell NiceGUI what has been written into the page."""
+        """Stop, and report to NiceGUI the changes that were written directly into the page."""
         self._swings = False
         if not self._slider.is_deleted:
             with self._slider:
@@ -115,11 +115,11 @@ class Player:
 
     @property
     def plays(self) -> bool:
-        """Whether the slider is being played."""
+        """Return whether the animation is running."""
         return self._task is not None
 
     def toggle(self) -> None:
-        """Start playing if at rest; else pause."""
+        """Start the animation if it is paused; else pause it."""
         if self.plays:
             self.pause()
         else:
@@ -127,7 +127,7 @@ class Player:
             self._show_button()
 
     def pause(self) -> None:
-        """Pause at the present position."""
+        """Pause the animation at the present position."""
         task, self._task = self._task, None
         if task is not None:
             self._show_button()
@@ -144,7 +144,7 @@ class Player:
         task = asyncio.current_task()
         elapsed, last = self._motion.elapsed(self.place), time.monotonic()
         while self._task is task and not self._slider.is_deleted:
-            try:  # waits until the page has painted what it was sent
+            try:  # waits until the browser has painted the changes
                 code = _PAINTED.format(id=self._button.id)
                 seen = await self._button.client.run_javascript(code, timeout=_PATIENCE)
             except TimeoutError:
@@ -167,12 +167,12 @@ class Player:
 
 
 class BranchChoice:
-    """Buttons that choose which branch of an answer is drawn; hidden if the answer has only one.
+    """Buttons to choose which solution branch is drawn; hidden if there is only one branch.
 
     Parameters
     ----------
     chosen : callable
-        Called when another branch has been chosen.
+        Called when the user has chosen another branch.
     """
 
     def __init__(self, chosen: Callable[[], object]) -> None:
@@ -184,7 +184,7 @@ class BranchChoice:
         self._row.set_visibility(False)
 
     def choose(self, answer: Any, branches: Mapping[str, Any]) -> Any:
-        """Return the chosen branch of an answer; the first one until another is chosen."""
+        """Return the result with the chosen branch; with the first branch until the user chooses another."""
         names = [*branches]
         if names != self._toggle.options:
             kept = self._toggle.value if self._toggle.value in names else next(iter(names), None)

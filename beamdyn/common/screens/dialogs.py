@@ -1,4 +1,4 @@
-"""Dialogs of the page: opening a file, named designs and examples, and the link to a design."""
+"""Dialogs of the page: open a file, list of named designs and examples, and link to a design."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from beamdyn.common.screens.examples import Example
 from beamdyn.common.screens.form_entries import Entries
 from beamdyn.common.screens.screens import Document
 
-_LARGEST = 200_000  # largest number of bytes of an opened file
+_LARGEST = 200_000  # largest size of an opened file in bytes
 _TOO_LARGE = f"the file is larger than {_LARGEST} bytes"
 
 
 class FileDialog:
-    """A dialog that opens a TOML file, or tells why it cannot be opened.
+    """A dialog that opens a TOML file, or shows why the file cannot be opened.
 
     Parameters
     ----------
     opened : callable
-        Called with the text of a file and its name.
+        Called with the text and the name of the chosen file.
     """
 
     def __init__(self, opened: Callable[[str, str], object]) -> None:
@@ -39,12 +39,12 @@ class FileDialog:
             ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
 
     def ask(self) -> None:
-        """Open the dialog, so that a file can be chosen."""
+        """Open the dialog in which the user chooses a file."""
         self._upload.reset()
         self.refuse("")
 
     def refuse(self, sentence: str) -> None:
-        """Show why a file cannot be opened, and stay open."""
+        """Show why a file cannot be opened, and keep the dialog open."""
         self._said.set_text(sentence)
         self._dialog.open()
 
@@ -54,7 +54,7 @@ class FileDialog:
 
     async def _uploaded(self, event: Any) -> None:
         name, content = event.file.name, await event.file.read()
-        if len(content) > _LARGEST:  # checked here, whatever the browser has let through
+        if len(content) > _LARGEST:  # checked again: the browser's check can be bypassed
             return self._said.set_text(_TOO_LARGE)
         try:
             text = content.decode("utf-8-sig")
@@ -69,9 +69,9 @@ class DesignsDialog:
     Parameters
     ----------
     keep : callable
-        ``keep(name)`` stores the open design under a name; returns "", or why it cannot.
+        ``keep(name)`` stores the open design under a name; it returns "", or the reason if it fails.
     open, compare : callable
-        Called with name, document and entries of a design.
+        Called with name, document and field texts of a design.
     delete : callable
         Called with the name of a design.
     """
@@ -100,9 +100,9 @@ class DesignsDialog:
     def show(
         self, kept: Mapping[str, tuple[str, Entries]], examples: Sequence[Example], document: Document
     ) -> None:
-        """Open the dialog with named designs and examples; only those of `document` can be compared.
+        """Show the dialog with named designs and examples; only designs of `document` can be compared.
 
-        An example opens in `document` if that reads the same kind of file as the example's own document.
+        An example opens in `document` if it reads the same kind of file as the document of the example.
         """
         self._said.set_text("")
         self._list.clear()
@@ -143,7 +143,7 @@ class DesignsDialog:
 
 
 class LinkDialog:
-    """A dialog with the link to a design, or with the reason why there is none."""
+    """A dialog with the link to a design, or with the reason why there is no link."""
 
     def __init__(self) -> None:
         with ui.dialog() as self._dialog, ui.card().classes("designs"):
@@ -157,7 +157,7 @@ class LinkDialog:
                 self._copy: Any = ui.button("Copy").props("no-caps")
                 ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
         field = json.dumps(f"#{self._link.html_id}")
-        # The element with the field's id, which is the input or contains it.
+        # This id belongs to the input field, or to an element that contains it.
         take = f"document.querySelector({field})"
         self._copy.on(
             "click",
@@ -167,12 +167,12 @@ class LinkDialog:
         )
 
     async def show(self, fragment: str) -> None:
-        """Show the link whose part after "#" is given."""
+        """Show a link, given its part after "#"."""
         address = await ui.run_javascript("return location.origin + location.pathname;", timeout=10)
         self._show_link(f"{address}#{fragment}", "")
 
     def refuse(self, sentence: str) -> None:
-        """Show why there is no link."""
+        """Show the reason why there is no link."""
         self._show_link("", sentence)
 
     def _show_link(self, link: str, sentence: str) -> None:

@@ -1,4 +1,4 @@
-"""A drawing on the page with handles, which are moved by pointer, finger or arrow keys."""
+"""A drawing on the page with handles that can be moved by mouse, finger or arrow keys."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from beamdyn.common.screens.handles import Place, Sheet, Viewport
 from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.screen_parts import Handle
 
-_OFTEN = 0.03  # least time between two messages of a moving handle [s]
-_PAUSE = 0.01  # pause after a drawing, in which it is sent and later places may arrive [s]
-# Functions of page.js that send the place of the pointer, and the direction of an arrow key.
+_OFTEN = 0.03  # least time between two messages while a handle is dragged [s]
+_PAUSE = 0.01  # pause after each drawing, in which the browser receives it and sends newer positions [s]
+# Functions of page.js that send the position of the pointer, and the direction of an arrow key.
 _HOLD, _KEY = "(event) => holdHandle(event, emit)", "(event) => stepHandle(event, emit)"
-_FAR = 10  # factor of a step by arrow key with shift
+_FAR = 10  # factor on the step of an arrow key while the shift key is pressed
 
 
 class DraggableDrawing:
@@ -26,18 +26,19 @@ class DraggableDrawing:
     Parameters
     ----------
     words : str
-        What the drawing shows, for screen readers.
+        Description of the drawing for screen readers.
     moved : callable
-        Called when a handle is moved: handle, its new place (x, y) [m], whether it has been released.
+        Called when a handle is moved, with the handle, its new position (x, y) [m], and whether it was
+        released.
     writer : PageWriter
-        Writes the drawing into the page while a handle or slider is held.
+        Object that updates the drawing on the page while a handle or slider is held.
 
     Attributes
     ----------
     held : Viewport, optional
-        Viewport that the drawing keeps while a handle is held.
+        Viewport that is kept while a handle is held.
     view : Viewport, optional
-        Viewport of the drawing that is shown.
+        Viewport of the visible drawing.
     """
 
     def __init__(
@@ -49,7 +50,7 @@ class DraggableDrawing:
         self._sheet = Sheet("")
         self._wanted: tuple[int, Place, bool] | None = None
         self._follows = False
-        # Places to which keys have moved handles, until they are drawn there.
+        # Positions of handles that arrow keys have moved, until these positions are drawn.
         self._stepped_to: dict[int, Place] = {}
         self._handles: list[Any] = []
         self._places: dict[int, str] = {}
@@ -65,7 +66,7 @@ class DraggableDrawing:
         self._how.set_visibility(False)
 
     def show(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
-        """Show a drawing, with words for screen readers on the position of each handle."""
+        """Show a drawing, with a text for screen readers on the position of each handle."""
         parts, self.view = (self._said, self._board, self._machine, self._how), sheet.view
         with self._writer.writing(*parts, *self._handles):
             self._said.set_text(sheet.said)
@@ -77,11 +78,11 @@ class DraggableDrawing:
             self._how.set_visibility(bool(sheet.handles))
             for element in self._handles:
                 toggle(element, "away", not sheet.handles)
-            if sheet.handles:  # without new handles the last ones stay, hidden, as one may be held
+            if sheet.handles:  # otherwise old handles are only hidden, as one may be held
                 self._put_handles(sheet, words)
 
     def _put_handles(self, sheet: Sheet, words: Callable[[Handle], str]) -> None:
-        """Move handles to their places, with a message to the page only for those that have changed."""
+        """Move handles to their positions; the browser gets messages only for handles that have changed."""
         labels = [handle.label for handle in sheet.handles]
         if labels != [handle.label for handle in self._sheet.handles]:
             for element in self._handles:
@@ -114,11 +115,11 @@ class DraggableDrawing:
         self._moved(handle, self._stepped_to[i], True)
 
     def forget_steps(self) -> None:
-        """Forget the steps that arrow keys have made, once the drawing shows the present entries."""
+        """Discard the positions set by arrow keys once the drawing shows the present inputs."""
         self._stepped_to.clear()
 
     async def _pulled(self, i: int, event: Any) -> None:
-        """Move a handle to its latest place received; places that arrive during a drawing may be skipped."""
+        """Move a handle to the latest received position; positions received during drawing may be skipped."""
         x, y, done = event.args
         self._wanted = (i, (x, y), done)
         if self._follows:

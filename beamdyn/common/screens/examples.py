@@ -1,4 +1,4 @@
-"""The examples that come with the packages."""
+"""The example files that are part of the packages."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from textwrap import shorten
 
 from beamdyn.common.screens.screens import Document, Program
 
-_LONGEST = 110  # largest number of characters of a title
-_SENTENCE = re.compile(r"\.\s+(?=[A-Z])")  # end of a sentence
+_LONGEST = 110  # most characters of an example's title
+_SENTENCE = re.compile(r"\.\s+(?=[A-Z])")  # pattern of the end of a sentence
 _CLAUSE = re.compile(r"[;:,] ")
 
 
 @dataclass(frozen=True)
 class Example:
-    """An example that comes with a program.
+    """An example file of a program.
 
     Parameters
     ----------
     name : str
-        Name of its file, without the suffix.
+        Name of the file, without its suffix.
     title : str
-        Description in a sentence.
+        Description of the example in one sentence.
     document : Document
-        The document that can open it.
+        The document (kind of file) that can open the example.
     text : str
-        Content of its file.
+        Content of the file.
     """
 
     name: str
@@ -38,24 +38,24 @@ class Example:
     text: str
 
 
-_KNOWN: dict[str, tuple[Example, ...]] = {}  # checked examples by program, kept as the check takes a second
+_KNOWN: dict[str, tuple[Example, ...]] = {}  # stored, as checking takes a second
 
 
 def examples_of(program: Program) -> tuple[Example, ...]:
-    """Return the examples that one of a program's documents accepts, by name."""
+    """Return the examples that any document of a program can open, by name."""
     if program.name not in _KNOWN:
         _KNOWN[program.name] = tuple(_accepted(program))
     return _KNOWN[program.name]
 
 
 def examples_folder() -> Path:
-    """Return the folder of examples of the installed package, or of the source tree around it."""
+    """Return the folder of examples of the installed package, or of the source tree."""
     packed = Path(__file__).with_name("shipped_examples")
     return packed if packed.is_dir() else Path(__file__).parents[3] / "examples"
 
 
 def _accepted(program: Program) -> Iterator[Example]:
-    """Yield the TOML files that a document of the program accepts."""
+    """Yield the TOML files that a document of the program can open."""
     folder = examples_folder()
     found = [file for place in (folder, folder / "calipers") for file in place.glob("*.toml")]
     for file in sorted(found, key=lambda file: file.name):
@@ -67,7 +67,7 @@ def _accepted(program: Program) -> Iterator[Example]:
 
 
 def _title(text: str, name: str) -> str:
-    """Return the first sentence of a file's comment at its head, shortened to whole clauses; or its name."""
+    """Return the first sentence of the comment at the start of a file, shortened; or the name of the file."""
     lines = takewhile(lambda line: line.startswith("#"), text.splitlines())
     words = _SENTENCE.split(" ".join(line.lstrip("# ") for line in lines))[0]
     if len(words) > _LONGEST:

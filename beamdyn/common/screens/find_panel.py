@@ -1,4 +1,4 @@
-"""The panel of inverse questions on a screen: which value of an input gives a result its wanted value."""
+"""The panel of a screen that finds the value of an input for which a result has a wanted value."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ _WITHIN = "from:to:samples unit; if empty, from a tenth to ten times its value"
 
 
 class FindPanel:
-    """A panel below a screen's results for inverse questions, which can be folded.
+    """A foldable panel below the results, for inverse questions: which input gives a wanted result.
 
     Parameters
     ----------
     work : OpenDocument
-        The document.
+        The open document.
     screen : Screen
-        The screen of the document on which the panel stands.
+        The screen of the document that contains the panel.
     backwards : Backwards
-        The questions that the screen offers.
+        The inverse questions that the screen offers.
     solver : RunsTasks
-        Runs the searches.
+        Object that runs the searches in worker processes.
     """
 
     def __init__(self, work: OpenDocument, screen: Screen, backwards: Backwards, solver: RunsTasks) -> None:
         self.work, self.screen, self.backwards, self._solver = work, screen, backwards, solver
         self._way = LatestComputation(self._settle, self._fail, self._tell)
-        self._asked: Entries | None = None  # the design of the last question
-        self._units: dict[str, str] = {}  # units of the results offered
+        self._asked: Entries | None = None  # the inputs for which the last question was asked
+        self._units: dict[str, str] = {}  # units of the available results
         self._fold: Any = ui.expansion("Find an input", on_value_change=self.state)
         with self._fold.classes("w-full section").props("dense"):
             with ui.row().classes("w-full"):
@@ -62,12 +62,12 @@ class FindPanel:
         return made.classes("grow")
 
     def state(self) -> None:
-        """Update the inputs and results offered, and grey a stale answer, if the panel is open."""
+        """If the panel is open: update the available inputs and results, and grey an outdated result."""
         if not self._fold.value:
             return
         needed = self.work.needed(self.screen)
         self._offer(self._input, [*inputs_with_value(self.work, self.screen)])
-        with suppress(ConfigError):  # an error is shown by the screen itself
+        with suppress(ConfigError):  # the screen itself shows the error
             self._units = dict(self.backwards.units(tables_of(needed, self.work.inputs)))
             self._offer(self._result, [*self._units])
             self._name_unit()
@@ -82,7 +82,7 @@ class FindPanel:
         self._target.props["suffix"] = self._units.get(self._result.value, "")
 
     def ask(self) -> None:
-        """Start the search; its answer is shown when it comes."""
+        """Start the search; its result is shown when it is available."""
         within, target = ((field.value or "").strip() for field in (self._within, self._target))
         unit = self._units.get(self._result.value, "") if is_bare(target) else ""
         sought = f"{self._input.value}={within}" if within else f"{self._input.value}"
@@ -101,7 +101,7 @@ class FindPanel:
         self._busy.show(self._way.slow, self._way.words)
 
     def _settle(self, future: asyncio.Future[str], last: bool) -> None:
-        """Show the inputs that an inverse question has found, or why it has found none."""
+        """Show the input value that the search has found, or the reason why it found none."""
         if self._found.is_deleted:
             return
         self._tell()

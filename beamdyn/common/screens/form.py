@@ -1,4 +1,4 @@
-"""Forms made from descriptions of inputs: a field for each, with symbol, unit, bounds and help."""
+"""Forms made from descriptions of inputs: a field per input, with symbol, unit, bounds and help."""
 
 from __future__ import annotations
 
@@ -16,31 +16,31 @@ from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screen_parts import Drag, Preset
 from beamdyn.common.screens.screens import Screen
 
-_FEW = 3  # least number of fields to fold; tables with so few fields, all with defaults, are open at first
+_FEW = 3  # tables with at most this many fields, all with defaults, are unfolded
 
 
 class Form:
-    """The fields of a screen's tables.
+    """The input fields of a screen, in a group per table of the file.
 
     Parameters
     ----------
     work : OpenDocument
-        The document, whose entries stand in the fields at first.
+        The open document, whose texts are in the fields at first.
     screen : Screen
-        The screen of the document on which the form stands.
+        The screen of the document that contains the form.
     inputs : sequence of Input
-        Inputs that have a field, if they are in one of the screen's tables.
+        Inputs; those in the tables of the screen have a field.
     changed : callable
-        Called with path and text when a field changes.
+        Called with the path of the input and the new text when a field changes.
     hold : callable
-        Called with True when a slider is taken hold of, with False when it is let go.
+        Called with True when the user takes hold of a slider, with False when the user releases it.
     writer : PageWriter
-        Writes into the fields while a handle or slider is held.
+        Object that updates the fields while a handle or slider is held.
 
     Attributes
     ----------
     typed : dict
-        Text that was typed last into each field, by path.
+        Last text typed into each field, by path of the input.
     """
 
     def __init__(
@@ -56,10 +56,10 @@ class Form:
         self.fields: dict[str, Any] = {}
         self.typed: dict[str, str] = {}
         self._inputs = {entry.path: entry for entry in inputs}
-        self._units: dict[str, str] = {}  # units for bare numbers, by path
+        self._units: dict[str, str] = {}  # units of numbers typed without a unit, by path of the input
         self._tables: dict[str, Any] = {}
-        self._places: dict[str, Any] = {}  # elements around the fields, by path
-        self._rest: dict[str, Any] = {}  # folded parts of tables, by path
+        self._places: dict[str, Any] = {}  # elements around the fields, by path of the input
+        self._rest: dict[str, Any] = {}  # foldable parts of tables, by path
         self._drags = {drag.path: drag for drag in screen.drags}
         for section in screen.sections:
             chosen = [entry for entry in inputs if form_entries.table_of(entry.path) == section]
@@ -70,7 +70,7 @@ class Form:
     def _section(
         self, section: str, chosen: Sequence[Input], presets: Sequence[Preset], work: OpenDocument
     ) -> None:
-        """Make a table of the form: given, needed and slider-driven fields first, the rest folded."""
+        """Make a table of the form: required, given and slider-driven fields first, the others folded."""
         entries, drags = work.entries, self._drags
         first = [e for e in chosen if e.required or e.path in drags or entries.get(e.path, "")]
         rest = [entry for entry in chosen if entry not in first]
@@ -99,7 +99,7 @@ class Form:
                 self._field(entry, entries.get(entry.path, ""))
 
     def _preset(self, preset: Preset) -> None:
-        """Make a list that fills in several fields, and shows the choice that they agree with, if any."""
+        """Make a list of presets, each of which fills in several fields; it shows the one that matches."""
 
         def fill(choice: str | None) -> None:
             for path, text in preset.choices.get(choice or "", {}).items():
@@ -115,7 +115,7 @@ class Form:
 
     def _field(self, entry: Input, text: str) -> None:
         made = self._select(entry, text) if form_entries.options_of(entry) else self._input(entry, text)
-        made.without_auto_validation()  # mistakes are marked once the answer comes, not by the field
+        made.without_auto_validation()  # errors are shown after the computation, not by the field itself
         made.classes("w-full").props(
             f'dense outlined stack-label hide-hint hide-bottom-space data-path="{entry.path}"'
         )
@@ -127,7 +127,7 @@ class Form:
             self._slider(self._drags[entry.path], entry, made)
 
     def _slider(self, drag: Drag, entry: Input, field: Any) -> None:
-        """Make a slider that writes into a field and follows what is written there, within its range."""
+        """Make a slider that writes into a field, and moves when the text of the field changes."""
 
         def place() -> float | None:
             text = self._read(entry.path).text
@@ -138,7 +138,7 @@ class Form:
                 return None
 
         def write(at: float | None) -> None:
-            if at is not None and at != place():  # equal if the slider has only followed the field
+            if at is not None and at != place():  # equal if the slider only follows the field
                 field.set_value(f"{at:g} {drag.unit}".rstrip())
 
         def hold(held: bool) -> None:
@@ -161,7 +161,7 @@ class Form:
         made.props(f'dense aria-label="{form_entries.label(entry)}{unit}"').classes("q-px-md")
 
         def follow_field() -> None:
-            """Move the slider to the value written into the field; one that is held is there already."""
+            """Move the slider to the value in the field, unless the user holds the slider."""
             if (at := place()) is not None:
                 (made.set_value(at) if self._held else made.put(at, self._writer))
 
@@ -188,7 +188,7 @@ class Form:
         )
         field.props("debounce=20 autocomplete=off spellcheck=false" + " autogrow" * several)
 
-        def tidy() -> None:  # on leaving the field, the text as read replaces the text as typed
+        def tidy() -> None:  # called when the user leaves the field; shows the text as understood
             read = self._read(entry.path)
             if read.remark and not field.error:
                 field.set_value(read.text)
@@ -203,7 +203,7 @@ class Form:
         return field
 
     def _heard(self, entry: Input, typed: str) -> None:
-        """Read a text that was typed or written into a field, and show how it was read."""
+        """Read a text that was typed or written into a field, and show how it was understood."""
         self.typed[entry.path] = typed
         read, field = self._read(entry.path), self.fields[entry.path]
         self._units[entry.path] = form_entries.unit_of(read.text, entry) or self._units[entry.path]
@@ -214,14 +214,14 @@ class Form:
         self._changed(entry.path, read.text)
 
     def _read(self, path: str) -> form_entries.Reading:
-        """Return the reading of a field's text."""
+        """Return the text of a field as the form understands it."""
         typed = self.fields[path].value or ""
         return form_entries.read_entry(typed, self._inputs[path], self._units.get(path, ""))
 
     def _unit_button(self, entry: Input, field: Any, units: Sequence[str]) -> None:
-        """Make a button with a menu of units, to which the field's value is converted.
+        """Make a button with a menu of units; choosing one converts the value in the field.
 
-        The menu is filled when the button is first clicked.
+        The menu is filled at the first click.
         """
 
         def put(unit: str) -> None:
@@ -238,7 +238,7 @@ class Form:
         button.props(f'flat dense round size=sm aria-label="unit of {form_entries.name_words(entry)}"')
 
     def put(self, entries: Mapping[str, str]) -> None:
-        """Show entries in the fields; leave alone those that show theirs already."""
+        """Show the given texts in the fields; fields that show them already are not changed."""
         for path, field in self.fields.items():
             if self._read(path).text != entries.get(path, ""):
                 field.set_value(entries.get(path, ""))
@@ -246,14 +246,14 @@ class Form:
                     self._rest[path].open()
 
     def write(self, texts: Mapping[str, str]) -> None:
-        """Write texts into fields, also during a drag; ignore paths without a field."""
+        """Write texts into fields, also while something is dragged; ignore paths without a field."""
         fields = {path: self.fields[path] for path in texts if path in self.fields}
         with self._writer.writing(*fields.values()):
             for path, field in fields.items():
                 field.set_value(texts[path])
 
     def hide(self, paths: Collection[str]) -> None:
-        """Hide the fields of given paths, and tables with no others; show all other fields."""
+        """Hide the fields of the given paths, and tables without visible fields; show all other fields."""
         shown = {form_entries.table_of(path) for path in self.fields if path not in paths}
         for path, place in self._places.items():
             place.set_visibility(path not in paths)
@@ -261,7 +261,7 @@ class Form:
             table.set_visibility(section in shown)
 
     def mark(self, mistakes: Mapping[str, Sequence[str]]) -> None:
-        """Mark the fields with mistakes, clear the others, and unfold tables with a mistake."""
+        """Mark the fields with errors, clear all other marks, and unfold tables with errors."""
         for path, field in self.fields.items():
             said = mistakes.get(path)
             field.error = " ".join(said) if said else None
@@ -269,13 +269,13 @@ class Form:
                 self._unfold(path)
 
     def _unfold(self, path: str) -> None:
-        """Unfold the table that holds a field, and its folded part if the field is in that."""
+        """Unfold the table that contains a field, and the foldable part with the field."""
         self._tables[form_entries.table_of(path)].open()
         if path in self._rest:
             self._rest[path].open()
 
 
 def _set_property(field: Any, name: str, words: str) -> None:
-    """Set a property of a field, if it differs: the page would be rendered for an equal one as well."""
+    """Set a property of a field only if it changes, as setting it makes the page render again."""
     if field.props.get(name, "") != words:
         field.props[name] = words

@@ -1,4 +1,4 @@
-"""Texts of a form's fields: names and defaults of inputs, readings of what is typed, and TOML tables."""
+"""Texts of form fields: conversion from and to TOML tables, reading of typed texts, names and defaults."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from beamdyn.common.edge.units import show
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.common.words import name_in_words
 
-Entries = dict[str, str]  # text of each field by the path of its input; "" for an empty field
+Entries = dict[str, str]  # text of each field, by path of the input; "" for an empty field
 
 _UNITS = {
     "m": ("m", "cm", "mm", "in"),
@@ -37,7 +37,7 @@ _UNITS = {
 
 
 def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
-    """Return the entries for tables; values without a field become entries, too."""
+    """Return the field texts for TOML tables; values without a field are included, too."""
     found = {entry.path: "" for entry in inputs}
     leaves = {*found}
 
@@ -54,9 +54,9 @@ def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
 
 
 def _lined(value: Any) -> str:
-    """Write a value as TOML; a list of tables, or of rows of plain numbers, has a line for each.
+    """Return a value as TOML; a list of tables, or of rows of plain numbers, has one line per item.
 
-    A list of points stays on one line: their coordinates have units.
+    A list of points stays on one line, since coordinates with units are no plain numbers.
     """
     rows = _is_list_of(list, value) and any(isinstance(cell, int | float) for cell in value[-1])
     if rows or _is_list_of(dict, value):
@@ -69,7 +69,7 @@ def _is_list_of(kind: type, value: Any) -> bool:
 
 
 def has_rows(entry: Input) -> bool:
-    """Whether an input takes several lines: a list of tables or of rows, or a long text."""
+    """Return whether an input needs several lines: a list of tables or of rows, or a long text."""
     if isinstance(entry.quantity, Lines):
         return True
     parts = (part for kind in parts_of(entry.kind) if get_origin(kind) is list for part in get_args(kind))
@@ -79,16 +79,16 @@ def has_rows(entry: Input) -> bool:
 def tables_of(
     entries: Mapping[str, str], inputs: Sequence[Input], names: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """Return the tables for entries, as tomllib would read them; empty fields are left out.
+    """Return the TOML tables for field texts, as tomllib would return them; empty fields are omitted.
 
     Parameters
     ----------
     entries : mapping
-        Text by path.
+        Field texts, by path of the input.
     inputs : sequence of Input
-        Their descriptions, which tell numbers from words.
+        Descriptions of the inputs, which say whether a text is a number.
     names : sequence of str
-        Tables wanted; all if empty.
+        Names of the requested tables; all if empty.
     """
     known = {entry.path: entry for entry in inputs}
     tables: dict[str, Any] = {}
@@ -103,7 +103,7 @@ def tables_of(
 
 
 def _value(text: str, entry: Input | None) -> Any:
-    """Read a text as a TOML value: a number, list or table if the input is one, else a string."""
+    """Convert a field text to a TOML value: a number, list or table if the input is one, else a string."""
     if entry is not None:
         is_text = entry.kind is str or (get_origin(entry.kind) is not list and str in get_args(entry.kind))
         if text in map(str, entry.choices):
@@ -119,7 +119,7 @@ def _value(text: str, entry: Input | None) -> Any:
 
 
 def _takes_numbers(entry: Input) -> bool:
-    """Whether the input may be a number, even if there are words to choose from."""
+    """Return whether the input may be a number, even if it offers words to choose from."""
     return bool({float, int} & {*parts_of(entry.kind)})
 
 
@@ -142,12 +142,12 @@ def toml_of(tables: Mapping[str, Any]) -> str:
 
 
 def _key(name: str) -> str:
-    """Write a key, in quotes where it needs them."""
+    """Return a TOML key, in quotes if necessary."""
     return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else toml_value(name)
 
 
 def toml_value(value: Any) -> str:
-    """Write a value as one line of TOML."""
+    """Return a value as TOML text on one line."""
     match value:
         case bool():
             return str(value).lower()
@@ -163,9 +163,9 @@ def toml_value(value: Any) -> str:
 def by_field(
     error: Exception, inputs: Sequence[Input], entries: Mapping[str, str] = MappingProxyType({})
 ) -> dict[str, list[str]]:
-    """Sort the sentences of an error by the path of the field each is about; "" for no single field.
+    """Sort the sentences of an error message by the path of the field; "" for no single field.
 
-    A sentence on the value of a field quotes the text in the field.
+    A sentence about the value of a field quotes the field's text.
     """
     paths = [entry.path for entry in inputs]
     if not isinstance(error, ConfigError):
@@ -175,24 +175,24 @@ def by_field(
         return {path: [reason_of(error) if isinstance(error, ArithmeticError) else say(error)]}
     sentences: dict[str, list[str]] = {}
     for sentence, place in zip(error.mistakes, error.paths, strict=True):
-        # The place of the error may lie within an input.
+        # The path in the error may lead to a part of an input, such as one coordinate.
         around = [path for path in paths if f"{place}.".startswith(f"{path}.")]
         sentences.setdefault(max(around, key=len, default=""), []).append(sentence)
     return sentences
 
 
 def units_for(unit: str) -> tuple[str, ...]:
-    """Return the units in common use for an SI unit."""
+    """Return common units for the quantity with a given SI unit."""
     return _UNITS.get(unit, (unit,) if unit else ())
 
 
 def units_of(entry: Input) -> tuple[str, ...]:
-    """Return the units in common use for an input."""
+    """Return common units for an input."""
     return *units_for(entry.quantity.unit), *entry.quantity.further_units
 
 
 def in_unit(text: str, quantity: Quantity, target: str) -> str:
-    """Convert a quantity, or a list of them, to another unit; return any other text unchanged."""
+    """Convert a quantity in a text, or a list of them, to another unit; return other texts unchanged."""
     try:
         if text.startswith("["):
             return toml_value([in_unit(part, quantity, target) for part in tomllib.loads(f"v = {text}")["v"]])
@@ -205,20 +205,20 @@ def in_unit(text: str, quantity: Quantity, target: str) -> str:
 _NUMBER = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?"
 _BARE = re.compile(_NUMBER, re.ASCII)
 _QUANTITY = re.compile(rf"({_NUMBER})(\s*[^\d\s.,+-].*|\s+1/.*)?", re.ASCII | re.DOTALL)
-_PAIR = re.compile(r"\s*;\s*|\s*,\s+")  # pattern of the separator of a point's coordinates
-_USUAL = {"m": "mm", "rad": "deg"}  # units shown until one is chosen, for SI units
+_PAIR = re.compile(r"\s*;\s*|\s*,\s+")  # pattern of the separator between the coordinates of a point
+_USUAL = {"m": "mm", "rad": "deg"}  # units shown for each SI unit until the user chooses another unit
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A text with the way it was read.
+    """A field text, and how it was understood.
 
     Parameters
     ----------
     text : str
-        The text as a file has it.
+        The text in the notation of files.
     remark : str
-        How it was read, if that differs from what was typed.
+        Explanation, if the text as understood differs from the typed text.
     """
 
     text: str
@@ -226,19 +226,19 @@ class Reading:
 
 
 def read_entry(typed: str, entry: Input, unit: str) -> Reading:
-    """Read what was typed into a field.
+    """Read a text typed into a field.
 
     Parameters
     ----------
     typed : str
-        The text.
+        The typed text.
     entry : Input
         The input of the field.
     unit : str
-        The unit shown at the field, which a bare number is given.
+        The unit shown at the field; it is used for a number without a unit.
     """
     if isinstance(entry.default, tuple) and len(parts := _PAIR.split(typed.strip("() "))) == 2:
-        # These parts are coordinates of a point, such as "26.9, 4" or "26.9 mm, 4 mm".
+        # The parts are the coordinates of a point, as in "26.9, 4" or "26.9 mm, 4 mm".
         each = [_QUANTITY.fullmatch(part.strip()) for part in parts]
         made = [f"{m[1].replace(',', '.')} {(m[2] or '').strip() or unit}".strip() for m in each if m]
         text = toml_value(made)
@@ -255,12 +255,12 @@ def read_entry(typed: str, entry: Input, unit: str) -> Reading:
 
 
 def is_bare(typed: str) -> bool:
-    """Whether a text is a number without a unit."""
+    """Return whether a text is a number without a unit."""
     return _BARE.fullmatch(typed.strip()) is not None
 
 
 def unit_of(text: str, entry: Input) -> str:
-    """Return the unit in a text, if it is a quantity of its input; else ""."""
+    """Return the unit in a text if the text is a valid quantity for the input; else ""."""
     match = _QUANTITY.fullmatch(text.strip())
     unit = (match[2] or "").strip() if match else ""
     try:
@@ -271,7 +271,7 @@ def unit_of(text: str, entry: Input) -> str:
 
 
 def usual_unit(unit: str) -> str:
-    """Return the unit that a field shows for an SI unit until another is chosen."""
+    """Return the unit that a field shows for an SI unit until the user chooses another unit."""
     return _USUAL.get(unit, unit)
 
 
@@ -291,17 +291,17 @@ def label_html(entry: Input) -> str:
 
 
 def help_of(entry: Input) -> str:
-    """Return meaning, unit and bounds of an input, and whether it may be left out."""
+    """Return meaning, unit and bounds of an input, and whether it is optional."""
     return entry.help if entry.required else f"{entry.help}; not required"
 
 
 def name_words(entry: Input) -> str:
-    """Return the name of an input in words, without that of its outermost table."""
+    """Return the name of an input in words, without the name of the outermost table."""
     return name_in_words(entry.path.partition(".")[2] or entry.path)
 
 
 def table_of(path: str) -> str:
-    """Return the name of the table that holds an input; "" outside any table."""
+    """Return the name of the table that contains an input; "" for an input outside any table."""
     return path.partition(".")[0] if "." in path else ""
 
 
@@ -311,7 +311,7 @@ def heading_of(section: str, headings: Mapping[str, str]) -> str:
 
 
 def options_of(entry: Input) -> tuple[str, ...]:
-    """Return the words or numbers from which an input is chosen; empty where it is typed."""
+    """Return the options among which the user chooses an input; empty if the input is typed."""
     if entry.kind is bool:
         return ("true", "false")
     few = all(isinstance(choice, str | int) for choice in entry.choices) and not _takes_numbers(entry)

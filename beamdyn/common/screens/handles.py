@@ -1,4 +1,4 @@
-"""Handles of a drawing: their places in the picture, and the texts of fields for a new place."""
+"""Handles of a drawing: their positions in the picture, and the field texts that follow from moving them."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.screens.screens import Screen
 
 Place = tuple[float, float]
-_NARROW = 400.0  # width of a drawing's paper on a narrow page [pt]
-_ANGLE = math.radians(0.1)  # step to which angles are rounded [rad]
+_NARROW = 400.0  # width of a drawing on a narrow page [pt]
+_ANGLE = math.radians(0.1)  # increment to which angles are rounded [rad]
 
 
-# In the picture -----------------------------------------------------------------------------------------
+# Positions in the picture -------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class Viewport:
-    """Place of the first drawing within a picture, for conversion of points.
+    """Position of the first drawing within a picture; converts points between the two.
 
     Parameters
     ----------
     paper : Paper
-        Paper of all drawings of the picture.
+        Size of the sheet with all drawings of the picture.
     layout : Layout
         Layout of the first drawing.
     """
@@ -46,12 +46,12 @@ class Viewport:
     layout: Layout
 
     def place(self, point: Place) -> Place:
-        """Convert a point of the drawing to a place: fractions of the picture from its top left corner."""
+        """Convert a point of the drawing to a position: fractions of the picture from its top left corner."""
         x, y = self.layout.fit.to_paper(point) / self._size
         return float(x), float(y)
 
     def point(self, place: Place) -> Place:
-        """Convert a place of the picture to the point of the drawing there."""
+        """Convert a position in the picture to the point of the drawing at this position."""
         x, y = self.layout.fit.from_paper(np.multiply(place, self._size))
         return float(x), float(y)
 
@@ -62,20 +62,20 @@ class Viewport:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A drawing and its handles.
+    """A drawing and its handles (points that the user can drag).
 
     Parameters
     ----------
     said : str
-        Why there is no drawing; empty if there is one.
+        The reason why there is no drawing; empty if there is one.
     handles : tuple of Handle
-        Its points that can be moved.
+        The points of the drawing that the user can drag.
     view : Viewport, optional
         Viewport of the first drawing; None if there is no drawing.
     ratio : float
-        Its width over its height.
+        Width of the drawing divided by its height.
     element : str
-        The drawing as an element of the page, in its colours.
+        The drawing as an SVG element with the colours of the page.
     """
 
     said: str
@@ -86,16 +86,16 @@ class Sheet:
 
     @cached_property
     def text(self) -> str:
-        """Text of the SVG file of the drawing, or of why there is none."""
+        """Return the text of the drawing's SVG file, or the reason why there is no drawing."""
         return as_file(self.element) if self.element else self.said
 
     @property
     def name(self) -> str:
-        """Name of the picture: a checksum of its content."""
+        """Return the name of the picture: a checksum of its content."""
         return f"p{crc32((self.element or self.said).encode()):08x}"
 
     def place(self, handle: Handle) -> Place:
-        """Return the place of a handle in the picture."""
+        """Return the position of a handle in the picture."""
         assert self.view is not None
         x, y = handle.at
         return self.view.place((handle.scale * x, handle.scale * y))
@@ -110,24 +110,24 @@ def draw_sheet(
     name: str = "",
     narrow: bool = False,
 ) -> Sheet:
-    """Draw an answer, with its handles.
+    """Draw a result, with its handles.
 
     Parameters
     ----------
     screen : Screen
-        The screen that shows the answer.
+        The screen that shows the result.
     answer : object
-        The answer.
+        The result.
     progress : float
         Position of the slider.
     view : Viewport, optional
-        Viewport to keep, so that the picture stays in place while a point of it moves.
+        Viewport to keep, so that the picture does not shift while a handle moves.
     other : sequence of sequences of Drawing
-        Drawings of another design, to be drawn beneath.
+        Drawings of another design, which are drawn behind.
     name : str
         Name of the other design.
     narrow : bool
-        Whether the page is narrow: then drawings stand below one another, on narrow paper.
+        Whether the page is narrow; drawings are then placed below one another.
     """
     rows = screen.drawings(answer, progress)
     if not rows:
@@ -136,7 +136,7 @@ def draw_sheet(
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)
             marks = len(screen.slider.marks) if screen.slider is not None and view is None else 0
-            if marks:  # the first drawing leaves room for its shapes at every mark of the slider
+            if marks:  # the first drawing reserves space for its shapes at all positions of the slider
                 corners = [screen.drawings(answer, float(mark))[0][0].extent() for mark in range(marks)]
                 rows = _with_first(rows, room=np.vstack(corners))
             rows = with_ghost(rows, other, name) if other else rows
@@ -154,27 +154,27 @@ def draw_sheet(
 
 
 def _with_first(rows: Rows, **changes: Any) -> Rows:
-    """Return rows of drawings with the first drawing changed."""
+    """Return rows of drawings in which the first drawing is replaced."""
     (first, *others), *more = rows
     return [[replace(first, **changes), *others], *more]
 
 
-# What a moved handle writes into the fields of the form --------------------------------------------------
+# Field texts that follow from moving a handle ------------------------------------------------------------
 
 
 def changed_texts(
     handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]
 ) -> Entries:
-    """Return the texts of the fields that change when a handle is moved, by path.
+    """Return the texts of the fields that change when a handle is moved, by path of the input.
 
     Parameters
     ----------
     handle : Handle
         The handle.
     target : tuple of float
-        Its new place (x, y) [m].
+        New position of the handle (x, y) [m].
     entries : mapping
-        Texts of the fields; a field keeps its unit.
+        Texts of the fields; the new texts keep the units.
     inputs : sequence of Input
         Descriptions of the fields.
     """
@@ -183,16 +183,16 @@ def changed_texts(
 
 
 def describe_place(handle: Handle, entries: Mapping[str, str], inputs: Sequence[Input]) -> str:
-    """Describe the position of a handle, by the fields that it sets."""
+    """Describe the position of a handle by the names and values of the fields that it sets."""
     texts = _texts(handle, handle.at, entries, inputs)
     return ", ".join(f"{path.rpartition('.')[2].replace('_', ' ')} {text}" for path, text in texts.items())
 
 
 def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Sequence[Input]) -> Entries:
-    """Return the texts of the fields that a handle sets; parts of old texts that still hold are kept."""
+    """Return the texts of the fields that a handle sets; unchanged parts of the old texts are kept."""
     known, texts = {entry.path: entry for entry in inputs}, {}
     for path, value in handle.moved(*target).items():
-        if path in known:  # a drawing that is stale may be of another kind, with other inputs
+        if path in known:  # an outdated drawing may have other inputs
             text, unit = entries.get(path, ""), known[path].quantity.unit
             if isinstance(value, tuple):
                 pairs = zip(value, _coordinates(text, known[path]), strict=True)
@@ -203,7 +203,7 @@ def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Se
 
 
 def _coordinates(text: str, entry: Input) -> Sequence[str]:
-    """Return the texts of a point's coordinates: as given, or the defaults."""
+    """Return the texts of a point's coordinates: the given ones, or the defaults."""
     if not text.strip() and isinstance(entry.default, tuple):
         return [f"{1e3 * value:.6g} mm" for value in entry.default]
     values = tables_of({"point": text}, ()).get("point")
@@ -211,9 +211,9 @@ def _coordinates(text: str, entry: Input) -> Sequence[str]:
 
 
 def _number(value: float, text: str, unit: str, grain: float) -> str:
-    """Write a quantity in the unit of the old text, rounded.
+    """Return a quantity in the unit of the old text, rounded to the increment `grain`.
 
-    Keep the old text if it agrees within rounding.
+    If the old text agrees within rounding, it is returned.
     """
     grain = grain if unit == "m" else _ANGLE
     try:

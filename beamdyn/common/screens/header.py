@@ -1,4 +1,4 @@
-"""Style and scripts of the page, and the bar at its head: screens, undo and redo, designs, files, look."""
+"""Style and scripts of the page, and its header bar: screens, undo and redo, designs, files, theme."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _LOOKS = {"": ("brightness_auto", None), "light": ("light_mode", False), "dark":
 
 
 class Header:
-    """The bar at the head of the page, with a tab for each screen.
+    """The header bar of the page, with a tab for each screen.
 
     Parameters
     ----------
@@ -54,9 +54,9 @@ class Header:
     screens : sequence of str
         Names of the screens of the program.
     turned : callable
-        Called when another screen has been chosen.
+        Called when the user has chosen another screen.
     files : mapping
-        Entries of the menu of files, and the function that each calls.
+        Entries of the file menu, with the function that each entry calls.
     do : object
         The page: an object with the methods `undo`, `redo`, `designs`, `stop_comparing` and `keep_look`.
     """
@@ -89,10 +89,10 @@ class Header:
                     ui.menu_item(words, act)
 
     def mark(self, stale: Collection[str], history: History, other: OtherDesign | None) -> None:
-        """Show which screens are stale, what can be undone, and which design is compared."""
+        """Show which screens are outdated, whether undo and redo are possible, and the compared design."""
         for name, tab in self._tabs.items():
             label = f"{name} (stale)" if name in stale else name
-            if tab.props["label"] != label:  # an equal one would have the page rendered as well
+            if tab.props["label"] != label:  # setting an unchanged property would render the page again
                 tab.props["label"] = label
         self._undo.set_enabled(history.can_undo)
         self._redo.set_enabled(history.can_redo)
@@ -107,7 +107,7 @@ class Header:
         self._do.keep_look(self._look)
 
     def show_look(self, look: str) -> None:
-        """Show the page "light" or "dark", or as the system prefers ("")."""
+        """Set the theme of the page: "light", "dark", or "" for the setting of the system."""
         self._look = look if look in _LOOKS else ""
         icon, self._dark.value = _LOOKS[self._look]
         words = f"colours: {self._look or 'as the system'}"

@@ -1,4 +1,4 @@
-"""Editing lists of named items on the page: buttons add and remove items, chosen names join them."""
+"""Editors for lists of named items: buttons add and remove items, selections connect them."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from nicegui import ui
 from beamdyn.common.screens.lists import Cell, Entries, Item, ListGroup, Lists, gone_with
 from beamdyn.common.screens.page_writer import PageWriter
 
-Put = Callable[[Item, str, str], object]  # a function of an item, the key of its cell, and the new text
+Put = Callable[[Item, str, str], object]  # a function of an item, the key of a value, and the new text
 
-_READ = 10_000  # time for which a notice stays [ms]
+_READ = 10_000  # time for which a notification is shown [ms]
 
 
 class ItemRow:
-    """The row of an item: its fields, and a button that removes it.
+    """The row of an item: its fields, and a button that removes the item.
 
-    A row is kept for other items with the same fields, since a new field would lose the focus, and a new
-    button the click on it.
+    A row is reused for another item with the same fields, since a new field would lose the keyboard focus,
+    and a new button would miss a click.
 
     Parameters
     ----------
     item : Item
-        The item at first.
+        The item that is shown at first.
     put : callable
-        Called with item, key and text when another text has been typed or chosen.
+        Called with item, key and new text when the user has typed or chosen a text.
     remove : callable, optional
-        Called with the item when it is to be removed; None if it cannot be.
+        Called with the item when the user removes it; None if it cannot be removed.
     """
 
     def __init__(self, item: Item, put: Put, remove: Callable[[Item], object] | None) -> None:
@@ -59,7 +59,7 @@ class ItemRow:
             self._bin.props("flat dense round size=sm")
 
     def _make_field(self, cell: Cell) -> None:
-        """Make the field of a cell: a choice, or text that counts when the field is left."""
+        """Make the field of a value: a selection list, or a text field that is read when it is left."""
 
         def text() -> str:
             return next(each.text for each in self._item.cells if each.key == cell.key)
@@ -68,7 +68,7 @@ class ItemRow:
             if (now := made.value or "") != text():
                 self._put(self._item, cell.key, now)
             if not cell.options:
-                made.set_value(text())  # a text that is not accepted is undone
+                made.set_value(text())  # a text that is not accepted is replaced by the previous one
 
         made: Any
         if cell.options:
@@ -92,16 +92,16 @@ class ItemRow:
 
     @property
     def texts(self) -> list[Any]:
-        """The fields into which text is typed."""
+        """Return the fields into which the user types text."""
         return [self._fields[cell.key] for cell in self._item.cells if not cell.options]
 
     def fits(self, item: Item) -> bool:
-        """Whether the row's fields suit an item: the same keys and labels, chosen or typed alike."""
+        """Return whether the row's fields suit an item: same keys, same labels, same kinds of fields."""
         kinds = ([(c.key, c.label, bool(c.options)) for c in each.cells] for each in (self._item, item))
         return next(kinds) == next(kinds)
 
     def show(self, item: Item) -> None:
-        """Show another item; a field whose text is unchanged keeps what is being typed."""
+        """Show another item; a field whose text does not change keeps unfinished typing."""
         before, self._item = self._item, item
         for old, cell in zip(before.cells, item.cells, strict=True):
             field = self._fields[cell.key]
@@ -126,14 +126,14 @@ def _chosen(cell: Cell) -> str | None:
 
 
 class GroupRows:
-    """The rows of a group of items, and buttons that add one.
+    """The rows of a group of items, and buttons that add an item.
 
     Parameters
     ----------
     group : ListGroup
         The group.
     put : callable
-        Called with item, key and text of a cell that changes.
+        Called with item, key and new text when a value changes.
     add : callable
         Called with the kind of item to add.
     remove : callable
@@ -155,7 +155,7 @@ class GroupRows:
         self.show(group.items)
 
     def show(self, items: Sequence[Item]) -> None:
-        """Show these items; keep rows as far as their fields suit."""
+        """Show the given items; reuse rows whose fields suit them."""
         pairs = zip(self.rows, items, strict=False)
         kept = [*takewhile(lambda pair: pair[0].fits(pair[1]), pairs)]
         for row in self.rows[len(kept) :]:
@@ -168,18 +168,18 @@ class GroupRows:
 
 
 class ListEditor:
-    """The editor of all lists of a screen.
+    """The editor for all lists of a screen.
 
     Parameters
     ----------
     lists : Lists
         The lists.
     now : callable
-        Returns all present entries, also those that other fields have written.
+        Returns the texts of all fields, including those outside the lists.
     changed : callable
-        Called with all entries after a change.
+        Called with the texts of all fields after a change.
     writer : PageWriter
-        Writes into the fields while a handle or slider is held.
+        Object that updates the fields while a handle or slider is held.
     """
 
     def __init__(
@@ -208,12 +208,12 @@ class ListEditor:
         self._advise(now())
 
     def show(self, entries: Mapping[str, str]) -> None:
-        """Show entries in the lists, and say what is missing."""
+        """Show the field texts in the lists, and say which items are missing."""
         self.follow(entries)
         self._advise(entries)
 
     def follow(self, entries: Mapping[str, str]) -> None:
-        """Show entries in the lists; leave the sentences on what is missing as they are."""
+        """Show the field texts in the lists; do not change the advice on missing items."""
         rows = [row for group in self._groups for row in group.rows]
         with self._writer.writing(*(field for row in rows for field in row.texts)):
             for shown, group in zip(self._groups, self._lists.groups(entries), strict=True):

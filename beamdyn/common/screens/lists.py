@@ -1,4 +1,4 @@
-"""Descriptions of lists of named items in a document, which a form of fixed fields cannot show."""
+"""Descriptions of lists of named items in a document, for which a form has no fixed number of fields."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ Entries = dict[str, str]
 
 @dataclass(frozen=True)
 class Cell:
-    """A value of an item, with the values that it can be chosen from.
+    """A value of an item, with the options among which it can be chosen.
 
     Parameters
     ----------
     key : str
-        Its key within the item.
+        Key of the value within the item.
     label : str
-        The key in words.
+        Name of the value in words.
     text : str
         The value, as typed.
     options : tuple of str
-        Values that can be chosen; if there are none, any text can be typed.
+        Options to choose from; if there are none, any text can be typed.
     hint : str
-        Description, with the unit.
+        Description of the value, with its unit.
     usual : str
-        The default that holds while the cell is empty, in words.
+        Default for an empty field, in words.
     """
 
     key: str
@@ -39,18 +39,18 @@ class Cell:
 
 @dataclass(frozen=True)
 class Item:
-    """An item of a list.
+    """An item of a list, such as a part of a mechanism.
 
     Parameters
     ----------
     path : str
-        Path of its entry.
+        Path of the input that holds the item.
     number : int, optional
-        Index in that entry, if it is a list.
+        Index of the item in this input, if the input is a list.
     name : str
         Name of the item.
     cells : tuple of Cell
-        Its values.
+        Values of the item.
     """
 
     path: str
@@ -60,24 +60,24 @@ class Item:
 
     @property
     def id(self) -> str:
-        """Identifier of the item among all items."""
+        """Return the identifier of the item among all items."""
         return self.path if self.number is None else f"{self.path}.{self.number}"
 
 
 @dataclass(frozen=True)
 class ListGroup:
-    """A group of items of one sort.
+    """A group of items of the same kind.
 
     Parameters
     ----------
     heading : str
         Heading of the group.
     about : str
-        Description, in a sentence.
+        Description of the group in one sentence.
     items : tuple of Item
         The items.
     kinds : mapping
-        Kinds of items that can be added, and what they are called; none if the group is fixed.
+        Kinds of items that can be added, with their names; empty if the group is fixed.
     """
 
     heading: str
@@ -87,7 +87,7 @@ class ListGroup:
 
 
 def gone_with(item: Item, before: Sequence[ListGroup], after: Sequence[ListGroup]) -> list[str]:
-    """Return the names of items that went with a removed one, as they refer to it."""
+    """Return the names of items that were removed with a removed item, because they refer to it."""
 
     def names(groups: Sequence[ListGroup]) -> Counter[str]:
         return Counter(one.name for group in groups for one in group.items)
@@ -97,24 +97,24 @@ def gone_with(item: Item, before: Sequence[ListGroup], after: Sequence[ListGroup
 
 @dataclass(frozen=True)
 class Lists:
-    """The lists of a screen, as functions of the document's entries.
+    """The lists of a screen, as functions of the texts of all fields.
 
     Parameters
     ----------
     covers : callable
-        ``covers(path)``: whether an input is shown in the lists, not in the form.
+        ``covers(path)`` returns whether an input is shown in the lists, not in the form.
     groups : callable
-        ``groups(entries)``: the groups of items.
+        ``groups(entries)`` returns the groups of items.
     put : callable
-        ``put(entries, item, key, text)``: entries with another text in a cell.
+        ``put(entries, item, key, text)`` returns the field texts with a changed value of an item.
     add : callable
-        ``add(entries, kind)``: entries with one more item.
+        ``add(entries, kind)`` returns the field texts with one more item.
     remove : callable
-        ``remove(entries, item)``: entries without an item, and without the items that refer to it.
+        ``remove(entries, item)`` returns the field texts without an item and the items that refer to it.
     advice : callable
-        ``advice(entries)``: what is still missing, a sentence each.
+        ``advice(entries)`` returns a sentence on each missing item.
     empty : callable
-        ``empty(entries)``: entries of a new design.
+        ``empty(entries)`` returns the field texts of a new design.
     """
 
     covers: Callable[[str], bool]

@@ -1,4 +1,4 @@
-"""A document that one client has open: its entries and their history, its answers, and mistakes."""
+"""A document that a client has opened: its field texts and their history, its results, and errors."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
-_MOST = 200  # largest number of states of a document that undo can bring back
-_TOGETHER = 1.0  # time within which changes of the same fields count as one step of undo [s]
+_MOST = 200  # largest number of earlier states of a document that undo can restore
+_TOGETHER = 1.0  # time within which changes of the same fields are one step of undo [s]
 
 
 class History:
-    """The states that a design has had, and which of them is shown.
+    """The states that a design has had, for undo and redo, and the state that is shown.
 
     Parameters
     ----------
     first : mapping
-        The entries at first.
+        The field texts at first.
     """
 
     def __init__(self, first: Entries) -> None:
@@ -41,16 +41,16 @@ class History:
         self._when = -1.0  # time of the last change [s]
 
     def record(self, entries: Mapping[str, str], now: float | None = None) -> None:
-        """Add a state if it differs from the one shown, and forget the states after that one.
+        """Add a state if it differs from the one shown, and discard the states after that one.
 
-        Changes of the same fields in quick succession, as of a field that is typed into, are one step.
+        Changes of the same fields in quick succession, such as typing into a field, are one step.
 
         Parameters
         ----------
         entries : mapping
-            The state.
+            The field texts of the new state.
         now : float, optional
-            Time of the change [s]; now if not given.
+            Time of the change [s]; the present time if not given.
         """
         changed = differing(self._states[self._place], entries)
         if not changed:
@@ -66,7 +66,7 @@ class History:
         self._place = len(self._states) - 1
 
     def part(self) -> None:
-        """Make the next change a step of its own, however soon it comes."""
+        """Make the next change a separate step of undo, however soon it comes."""
         self._changed = frozenset()
 
     def go(self, steps: int) -> Entries | None:
@@ -79,48 +79,48 @@ class History:
 
     @property
     def can_undo(self) -> bool:
-        """Whether there is an earlier state."""
+        """Return whether there is an earlier state."""
         return self._place > 0
 
     @property
     def can_redo(self) -> bool:
-        """Whether there is a later state."""
+        """Return whether there is a later state."""
         return self._place + 1 < len(self._states)
 
 
 def differing(one: Mapping[str, str], other: Mapping[str, str]) -> frozenset[str]:
-    """Return the paths of entries that differ; an empty entry equals a missing one."""
+    """Return the paths of field texts that differ; an empty text equals a missing one."""
     return frozenset(path for path in {*one, *other} if one.get(path, "") != other.get(path, ""))
 
 
-# Pattern of an option in the head of a file that `OpenDocument.file` has written.
+# Pattern of an option in the comment at the start of a file written by `OpenDocument.file`.
 _OPTION = re.compile(r"^# (\S+) = (.*)$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
 class ShownAnswer:
-    """An answer, with what a screen shows of it.
+    """A result, with the tables, notes and picture that a screen shows.
 
     Parameters
     ----------
     answer : object
-        The answer.
+        The result.
     tables : sequence of rich renderables
         Tables and sentences.
     notes : sequence of str
-        Warnings and refusals, a sentence each.
+        Warnings and error messages, a sentence each.
     entries : dict
-        The entries that were solved.
+        The field texts for which the result was computed.
     headline : sequence of KeyResult
         The most important results.
     rest : float
-        Time that all but its drawing took [s].
+        Computing time of everything except the drawing [s].
     is_whole : bool
-        Whether tables and notes are those of the answer; else they are made later.
+        Whether tables and notes belong to this result; if not, they are made later.
     is_rough : bool
-        Whether it was solved for the drawing alone, by `Screen.coarser`: it is preliminary.
+        Whether the result is preliminary: computed only for the drawing, by `Screen.coarser`.
     picture : str
-        Picture in HTML that comes with an answer solved for the drawing alone; empty if there is none.
+        Picture in HTML, which is made together with a preliminary result; empty if there is none.
     """
 
     answer: Any
@@ -134,11 +134,11 @@ class ShownAnswer:
     picture: str = ""
 
 
-Outcome = ShownAnswer | Mapping[str, list[str]]  # an answer, or mistakes by field
+Outcome = ShownAnswer | Mapping[str, list[str]]  # a result, or error messages by field
 
 
 class OtherDesign(NamedTuple):
-    """The design with which the open one is compared: its name and entries."""
+    """The design with which the open design is compared: its name and field texts."""
 
     name: str
     entries: Entries
@@ -146,7 +146,7 @@ class OtherDesign(NamedTuple):
 
 @dataclass
 class OpenDocument:
-    """A document that a client has open; each client has its own.
+    """A document that a client has opened; clients do not share documents.
 
     Parameters
     ----------
@@ -166,16 +166,16 @@ class OpenDocument:
         self.history = History(self.entries)
 
     def compare(self, other: OtherDesign | None) -> None:
-        """Compare with another design from now on, or with none."""
+        """Compare the open design with another design; None ends the comparison."""
         self.other = other
         self.compared.clear()
 
     def wants_other(self, screen: Screen) -> bool:
-        """Whether the other design still has to be solved for a screen."""
+        """Return whether the compared design still has to be computed for a screen."""
         return self.other is not None and screen.name not in self.compared
 
     def other_answer(self, screen: Screen) -> ShownAnswer | None:
-        """Return the answer to the other design; None if it has none."""
+        """Return the result of the compared design; None if there is none."""
         found = self.compared.get(screen.name)
         return found if isinstance(found, ShownAnswer) else None
 
@@ -189,16 +189,16 @@ class OpenDocument:
 
     @property
     def inputs(self) -> list[Input]:
-        """Descriptions of the inputs that the present entries have."""
+        """Return the descriptions of the inputs that exist for the present field texts."""
         return self.document.inputs(self.entries)
 
     @property
     def idle(self) -> set[str]:
-        """Return paths of inputs that are not given, and have no effect with the present entries."""
+        """Return the paths of inputs that are not given, and have no effect for the present field texts."""
         return {path for path in self.document.idle(self.entries) if not self.entries.get(path, "").strip()}
 
     def open(self, text: str, source: str) -> None:
-        """Replace the design by the text of a file; on `ConfigError` nothing changes."""
+        """Replace the design by the text of a file; if this raises `ConfigError`, nothing changes."""
         opened = self.document.opened(text, source)
         kept = dict(_OPTION.findall(text))
         options = {path: kept.get(path, self.entries[path]) for path in self.document.aside}
@@ -206,13 +206,13 @@ class OpenDocument:
         self.history.part()
 
     def show(self, entries: Mapping[str, str]) -> None:
-        """Replace the design by entries that were kept earlier."""
+        """Replace the design by stored field texts."""
         self._replace_entries({path: str(text) for path, text in entries.items()})
         self.mistakes = {}
         self.history.part()
 
     def recall(self, stored: Mapping[str, object]) -> bool:
-        """Restore entries of an earlier page, except those changed since; return whether any differed."""
+        """Restore the stored texts of fields that have not changed since; return whether any text changed."""
         base = self.document.base_entries
         changed = {path: text for path, text in self.entries.items() if base.get(path) != text}
         before = self.entries
@@ -220,25 +220,25 @@ class OpenDocument:
         return self.entries != before
 
     def text(self) -> str:
-        """Return the design as TOML, including entries with mistakes."""
+        """Return the design as TOML, including invalid texts."""
         tables = tables_of(self.entries, self.inputs)
         return toml_of({name: value for name, value in tables.items() if name not in self.document.beside})
 
     def file(self) -> str:
-        """Return the design as a TOML file; comments hold the options of the screens, which `open` reads."""
+        """Return the design as a TOML file; comments hold the options of the screens, for `open`."""
         options = "".join(f"# {path} = {self.entries[path]}\n" for path in self.document.aside)
         return "\n".join(filter(None, (options, self.text())))
 
     def put(self, path: str, text: str) -> None:
-        """Change one entry; drop entries of inputs that no longer exist."""
+        """Change the text of one field; drop the texts of inputs that no longer exist."""
         self._replace_entries(self.entries | {path: text})
 
     def _replace_entries(self, entries: Entries) -> None:
-        """Replace the entries, as far as there are inputs for them."""
+        """Replace the field texts; texts without an input are ignored."""
         self.entries = {entry.path: entries.get(entry.path, "") for entry in self.document.inputs(entries)}
 
     def needed(self, screen: Screen) -> Entries:
-        """Return the entries on which a screen's answer depends."""
+        """Return the field texts on which the result of a screen depends."""
         return {
             path: text.strip()
             for path, text in self.entries.items()
@@ -246,37 +246,37 @@ class OpenDocument:
         }
 
     def stale(self, screen: Screen) -> bool:
-        """Whether a screen has no whole answer to the present entries."""
+        """Return whether a screen lacks a complete result for the present field texts."""
         return not self.drawn(screen) or not self.answered[screen.name].is_whole
 
     def drawn(self, screen: Screen) -> bool:
-        """Whether a screen has an answer to the present entries, at least what its drawing needs."""
+        """Return whether a screen has a result for the present field texts, at least one for the drawing."""
         last = self.answered.get(screen.name)
         return last is not None and last.entries == self.needed(screen)
 
     def outdated(self, screen: Screen) -> bool:
-        """Whether a screen's answer is to earlier entries."""
+        """Return whether the result of a screen is for earlier field texts."""
         return screen.name in self.answered and self.stale(screen)
 
     def attempt(self, screen: Screen, for_drawing: bool = False, drawn: ShownAnswer | None = None) -> Outcome:
-        """Solve the present entries for a screen, without keeping the answer or the mistakes.
+        """Compute a screen's result for the present field texts, without storing the result or errors.
 
         Parameters
         ----------
         screen : Screen
-            The screen.
+            The screen to compute.
         for_drawing : bool
-            Whether to solve as far as the drawing needs it, without tables and notes; else all, also what
-            takes time, such as the model error.
+            Whether to compute only what the drawing needs, without tables and notes; otherwise everything is
+            computed, including slow parts such as the model error.
         drawn : ShownAnswer, optional
-            Answer to these entries that was solved for the drawing alone, to be completed.
+            Preliminary result for the same field texts, which is completed.
         """
         entries, inputs = self.needed(screen), self.inputs
         with on_form(partial(heading_of, headings=self.document.headings)):
             try:
                 return self._answer(screen, for_drawing, drawn)
             except (ValueError, ArithmeticError, NoAnswer) as error:
-                if for_drawing:  # the coarse solution may have no answer while the full one has
+                if for_drawing:  # the preliminary computation may fail although the full one succeeds
                     return self.attempt(screen)
                 return by_field(error, inputs, entries)
 
@@ -295,7 +295,7 @@ class OpenDocument:
         return ShownAnswer(answer, shown, notes, entries, headline, perf_counter() - start)
 
     def keep(self, screen: Screen, outcome: Outcome) -> bool:
-        """Keep an answer; or keep the last one, and store the mistakes that prevent another."""
+        """Store a new result; or keep the last one, and store the errors that prevent a new one."""
         found = isinstance(outcome, ShownAnswer)
         if found:
             self.answered[screen.name] = outcome
@@ -303,8 +303,8 @@ class OpenDocument:
         return found
 
     def solve(self, screen: Screen) -> bool:
-        """Solve the present entries, and keep the answer or the mistakes.
+        """Compute the result for the present field texts, and store it or the errors.
 
-        Return whether there is an answer.
+        Return whether there is a result.
         """
         return self.keep(screen, self.attempt(screen))

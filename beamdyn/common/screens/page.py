@@ -1,4 +1,4 @@
-"""The page of an interactive program, one per client: its screens, files, designs, undo and redo."""
+"""The web page of an interactive program, one per client: screens, files, designs, undo and redo."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from beamdyn.common.screens.processes import RunsTasks
 from beamdyn.common.screens.screen_view import ScreenView
 from beamdyn.common.screens.screens import Document, Program, Screen
 
-_CONNECTS = 10.0  # time after which a page whose browser has not connected is dropped [s]
-_ANSWERS = 60.0  # time within which a browser must tell what it has stored [s]
+_CONNECTS = 10.0  # time after which a page is deleted if no browser has connected to it [s]
+_ANSWERS = 60.0  # time within which a browser must send the data that it has stored [s]
 
 
 def add_style_and_scripts(program: Program) -> None:
-    """Add a program's style and scripts to every page of the process."""
+    """Add the style and scripts of a program to every page of this process."""
     ui.add_css(STYLE, shared=True)
     ui.add_body_html(scripts_of(program.name), shared=True)
 
 
 async def open_page(program: Program, solver: RunsTasks) -> None:
-    """Make the page of a client when it connects: a client that never connects costs next to nothing.
+    """Make the page of a client only when its browser connects, which saves time if it never does.
 
-    What the browser has stored is asked for first, so that nobody types into a form that is yet to change.
+    Data stored in the browser are restored first, so that no user types into a form that is about to change.
     """
     await ui.context.client.connected(timeout=_CONNECTS)
     try:
@@ -46,14 +46,14 @@ async def open_page(program: Program, solver: RunsTasks) -> None:
 
 
 class Page:
-    """The page of one client; nothing in it is shared with another.
+    """The web page of one client; pages share no data.
 
     Parameters
     ----------
     program : Program
-        The program that the page belongs to.
+        The program shown on the page.
     solver : RunsTasks
-        Solver that makes the answers.
+        Object that computes results in worker processes.
     """
 
     def __init__(self, program: Program, solver: RunsTasks) -> None:
@@ -63,7 +63,7 @@ class Page:
         self.places: dict[str, tuple[Document, Screen]] = {
             screen.name: (document, screen) for document in program.documents for screen in document.screens
         }
-        self._recalled = False  # until stored data are restored nothing is stored, as it would replace them
+        self._recalled = False  # else stored data would be overwritten before they are read
         ui.colors(primary=BLUE, secondary="#444444", negative=RED)
         files = {
             "Open a file": lambda: self._file.ask(),
@@ -93,26 +93,26 @@ class Page:
         self._bar.client.on_delete(lambda: [each.close() for each in (self._making, *self.panels.values())])
 
     def _run(self, script: str) -> None:
-        """Run a script in the page's own client, since the element whose event is handled may be gone."""
+        """Run a script on this page, even if the element whose event is handled was removed."""
         self._bar.client.run_javascript(script)
 
     @property
     def front(self) -> str:
-        """Name of the screen in front: the one that the page shows."""
+        """Return the name of the screen that the page shows."""
         return str(self._bar.value)
 
     @property
     def current(self) -> tuple[Document, Screen]:
-        """The document and screen in front."""
+        """Return the document and the screen that the page shows."""
         return self.places[self.front]
 
     @property
     def work(self) -> OpenDocument:
-        """The open document in front."""
+        """Return the open document that the page shows."""
         return self.works[self.current[0].name]
 
     def _turned(self) -> None:
-        """Show the screen that was chosen, from its top."""
+        """Show the screen that the user has chosen, scrolled to its top."""
         self._entered()
         self._remember()
         ui.run_javascript("window.scrollTo(0, 0)")
@@ -124,10 +124,10 @@ class Page:
             self.panels[self.front].comparison.solve()
 
     def _edited(self) -> None:
-        """Update which screens are stale, the history and the stored data, after a change of entries."""
+        """Update outdated screens, history and stored data after a change of field texts."""
         for panel in self.panels.values():
             panel.state()
-        if not any(panel.dragged for panel in self.panels.values()):  # a whole drag counts as one step
+        if not any(panel.dragged for panel in self.panels.values()):  # a whole drag is one undo step
             for work in self.works.values():
                 work.history.record(work.entries)
         self._mark()
@@ -138,13 +138,13 @@ class Page:
         self.header.mark(stale, self.work.history, self.work.other)
 
     def _bring(self, document: Document) -> None:
-        """Bring to the front a document whose design has been replaced."""
+        """Show a document whose design has been replaced."""
         if self.current[0] is not document:
             self._bar.set_value(document.screens[0].name)
         self._rebuild(document)
 
     def _rebuild(self, document: Document) -> None:
-        if self.current[0] is document:  # other screens are updated when they come to the front
+        if self.current[0] is document:  # other screens are updated when they are shown
             self.panels[self.front].rebuild()
         if self._recalled:
             self._run(call("forgetTyped"))
@@ -154,7 +154,7 @@ class Page:
     # Undo and redo ----------------------------------------------------------------------------------
 
     def undo(self) -> None:
-        """Undo the last change of the design in front."""
+        """Undo the last change of the design that is shown."""
         self._go(-1)
 
     def redo(self) -> None:
@@ -170,9 +170,9 @@ class Page:
     # Files ------------------------------------------------------------------------------------------
 
     def open(self, text: str, name: str) -> None:
-        """Open the text of a file as the first document that accepts it, or show the parser's message.
+        """Open the text of a file as the first document that accepts it, or show the error message.
 
-        The document in front is tried first.
+        The document that is shown is tried first.
         """
         front = self.current[0]
         accepting = (each for each in (front, *self.program.documents) if each.accepts(text))
@@ -186,11 +186,11 @@ class Page:
         ui.notify(f"{name} is open")
 
     def save(self) -> None:
-        """Download the design in front as TOML."""
+        """Download the design that is shown as a TOML file."""
         ui.download.content(self.work.file().encode(), f"{self.work.document.name}.toml")
 
     def report(self) -> None:
-        """Download the HTML report on the document in front, when all its screens have been solved."""
+        """Download the HTML report on the document that is shown, after all its screens are computed."""
         document = self.current[0]
         self._making.want(f"{document.name}.html", lambda: asyncio.ensure_future(self._report_on(document)))
 
@@ -210,13 +210,13 @@ class Page:
         return await self.solver.submit(page_tasks.report, document, document.screens[0], *given)
 
     def reset(self) -> None:
-        """Return to the base design of the document in front."""
+        """Return to the initial design of the document that is shown."""
         document = self.current[0]
         self.work.open(document.base, document.name)
         self._rebuild(document)
 
     async def link(self) -> None:
-        """Show a link to the design in front; a design with mistakes has none."""
+        """Show a link to the design that is shown; a design with errors has no link."""
         work = self.work
         try:
             work.document.opened(work.text(), "this design")
@@ -229,7 +229,7 @@ class Page:
     # Designs ----------------------------------------------------------------------------------------
 
     async def designs(self) -> None:
-        """Show the named designs of this browser, and the examples."""
+        """Show the dialog with the named designs of this browser, and the examples."""
         stored = await ui.run_javascript(call("namedDesigns"), timeout=_ANSWERS)
         kept = {name: found for name, found in named_designs(stored).items() if found[0] in self.works}
         self._kept = kept
@@ -260,16 +260,16 @@ class Page:
         self._entered()
 
     def stop_comparing(self) -> None:
-        """Stop comparing the design in front with another."""
+        """End the comparison of the design that is shown with another one."""
         self.work.compare(None)
         for screen in self.current[0].screens:
             self.panels[screen.name].show()
         self._mark()
 
-    # Over a reload, or a restart of the program -----------------------------------------------------
+    # Restoring after a reload of the page, or a restart of the program ------------------------------
 
     def _remember(self, heard: Mapping[str, Mapping[str, str]] | None = None) -> None:
-        """Store the entries and the name of the screen in front in this tab of the browser."""
+        """Store the field texts and the name of the shown screen in this browser tab."""
         if not self._recalled:
             return
         designs = {name: work.entries for name, work in self.works.items()}
@@ -278,9 +278,9 @@ class Page:
         self._run(call("rememberPage", {"front": self.front, "designs": designs}, heard))
 
     def recall(self, stored: Mapping[str, Any]) -> None:
-        """Restore what the browser stored, and store every change from now on.
+        """Restore the data stored in the browser, and store every change from now on.
 
-        A form that shows its design already is left alone.
+        A form that already shows its design is not changed.
         """
         self.header.show_look(stored.get("look") or "")
         self._be_narrow(stored.get("narrow") is True)
@@ -301,7 +301,7 @@ class Page:
             panel.be_narrow(narrow)
 
     def _follow(self, fragment: str) -> None:
-        """Open the design in a link, checked like a file."""
+        """Open the design that a link encodes, checked like a file."""
         try:
             design = LinkedDesign.of_fragment(fragment)
             work = self.works.get(design.document)
@@ -315,5 +315,5 @@ class Page:
         self._bring(work.document)
 
     def keep_look(self, look: str) -> None:
-        """Store whether the page is light or dark."""
+        """Store whether the page has the light or the dark theme."""
         self._run(call("keepLook", look))

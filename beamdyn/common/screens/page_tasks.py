@@ -1,4 +1,4 @@
-"""Tasks of a page that run in any process: answers, sweeps, files, reports; and reasons for no answer."""
+"""Tasks of a page that any process can run: results, sweeps, files, reports; causes of missing results."""
 
 from __future__ import annotations
 
@@ -27,24 +27,23 @@ from beamdyn.common.screens.screens import Document, Screen
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Swept = InputSweep | str  # a sweep, or why there is none
-# Sweeps that are shown, each with its screen's name and a title.
+Swept = InputSweep | str  # a sweep, or the reason why there is none
+# Sweeps that are shown: name of the screen, title and result of each.
 Shown = Sequence[tuple[str, str, InputSweep]]
-# Largest number of fields that people change by hand between two answers; if more have changed, a file was
-# opened.
+# Most fields that a user changes by hand between two results; if more have changed, a file was opened.
 _FEW = 3
 
 
-# Tasks: functions of a document, a screen, and further arguments, which run in any process
-# ----------------------
+# Tasks: functions of a document, a screen, and further arguments, which any process can run
+# ---------------------
 
 
 def solve(
     document: Document, screen: Screen, entries: form_entries.Entries, drawn: ShownAnswer | None = None
 ) -> Outcome:
-    """Solve entries for a screen; return the answer, or mistakes by field.
+    """Compute a screen's result for field texts; return the result, or error messages by field.
 
-    An answer to the entries that was solved for the drawing alone, `drawn`, is completed.
+    A preliminary result for the same texts, `drawn`, is completed.
     """
     return _opened(document, entries).attempt(screen, drawn=drawn)
 
@@ -52,9 +51,9 @@ def solve(
 def solve_for_drawing(
     document: Document, screen: Screen, entries: form_entries.Entries, narrow: bool = False
 ) -> Outcome:
-    """Solve entries as far as the drawing needs it, without tables and notes; or return mistakes by field.
+    """Compute only what the drawing needs, without tables and notes; or return error messages by field.
 
-    Where the screen has a picture that other processes make, it comes with the answer, drawn fast.
+    If the screen has a picture, a quickly drawn one is returned with the result.
     """
     found = _opened(document, entries).attempt(screen, for_drawing=True)
     if screen.picture is None or not isinstance(found, ShownAnswer) or found.is_whole:
@@ -66,7 +65,7 @@ def solve_for_drawing(
 def sweep(
     document: Document, screen: Screen, entries: form_entries.Entries, text: str, results: str
 ) -> Swept:
-    """Sweep one of the entries; return the sweep, or why there is none."""
+    """Vary one of the inputs; return the results, or the reason why there are none."""
     work = _opened(document, entries)
     assert screen.sweeps is not None
     try:
@@ -76,7 +75,7 @@ def sweep(
 
 
 def find(document: Document, screen: Screen, entries: form_entries.Entries, sought: str, so_that: str) -> str:
-    """Answer an inverse question (see `Backwards`) as HTML; or word what is wrong with the question."""
+    """Answer an inverse question (see `Backwards`) as HTML, or with a sentence on errors in the question."""
     work = _opened(document, entries)
     assert screen.backwards is not None
     try:
@@ -88,12 +87,12 @@ def find(document: Document, screen: Screen, entries: form_entries.Entries, soug
 
 
 def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
-    """Make a part of an answer that folds out, in HTML."""
+    """Return a foldable part of a result as HTML."""
     return screen.more[number].on_page(answer)
 
 
 def picture_part(document: Document, screen: Screen, answer: Any, narrow: bool) -> str:
-    """Return the picture of an answer in HTML, for a narrow page or a wide one."""
+    """Return the picture of a result as HTML, for a narrow or a wide page."""
     return _picture(screen, answer, narrow)
 
 
@@ -104,17 +103,17 @@ def _picture(screen: Screen, answer: Any, narrow: bool, *finish: Callable[[Figur
 
 
 def rows_file(document: Document, screen: Screen, answer: Any) -> str:
-    """Write the numbers of an answer as a CSV file; for a beam this computes the model error, too."""
+    """Return the numbers of a result as a CSV file; for a beam, the model error is computed, too."""
     return csv_text(screen.rows(answer))
 
 
 def drawing_file(document: Document, screen: Screen, answer: Any, place: float, kind: str) -> bytes:
-    """Write the drawing of an answer as a file, "svg" or "png"."""
+    """Return the drawing of a result as an "svg" or "png" file."""
     return png(screen.draw(answer, place)) if kind == "png" else drawn(screen, answer, place).encode()
 
 
 def sweep_file(document: Document, screen: Screen, swept: InputSweep, kind: str) -> bytes:
-    """Draw the picture of a sweep as a file, "svg" or "png"."""
+    """Return the picture of a sweep as an "svg" or "png" file."""
     assert screen.sweeps is not None
     draw = screen.sweeps.draw
     return png(draw(swept)) if kind == "png" else drawing(lambda: draw(swept)).encode()
@@ -128,7 +127,7 @@ def report(
     title: str,
     sweeps: Shown,
 ) -> str:
-    """Write the HTML report on a document, from answers by the names of their screens."""
+    """Return the HTML report on a document, from the results of its screens, by name of the screen."""
     work = _opened(document, entries)
     work.answered = dict(answered)
     by_name = {screen.name: screen for screen in document.screens}
@@ -146,22 +145,22 @@ def _opened(document: Document, entries: form_entries.Entries) -> OpenDocument:
 
 
 def drawn(screen: Screen, answer: object, place: float) -> str:
-    """Draw an answer, at a position of the slider, as SVG; a sentence if it cannot be drawn."""
+    """Return the drawing of a result at a position of the slider as SVG; a sentence if it cannot be drawn."""
     return drawing(lambda: screen.draw(answer, place))
 
 
 def report_of(work: OpenDocument, title: str, sweeps: Iterable[tuple[str, str]] = ()) -> str:
-    """Write the HTML report on a document.
+    """Return the HTML report on a document.
 
     Parameters
     ----------
     work : OpenDocument
-        The document; in the report are tables and drawing of each screen whose answer is up to date, and
-        every input, with its default where none is given.
+        The open document.  The report contains tables and drawing of each screen whose result is up to date,
+        and all inputs, with defaults for those that are not given.
     title : str
         Title of the report.
     sweeps : iterable of (title, picture)
-        Sweeps that are shown, as HTML.
+        The sweeps that are shown, as HTML.
     """
     parts: list[tuple[str, Sequence[str], str, str]] = []
     for screen in work.document.screens:
@@ -177,7 +176,7 @@ def report_of(work: OpenDocument, title: str, sweeps: Iterable[tuple[str, str]] 
 
 
 def inputs_html(work: OpenDocument) -> str:
-    """Write an HTML table of all inputs: name and symbol, value, whether it was given, and meaning."""
+    """Return an HTML table of all inputs: name and symbol, value, whether it was given, and meaning."""
     made, idle = FittedTable(("input", "value", "", "meaning"), (0, 1, 2, 3)), work.idle
     for entry in work.inputs:
         if entry.path not in idle:
@@ -189,13 +188,15 @@ def inputs_html(work: OpenDocument) -> str:
     return html([made])
 
 
-# Why there is no answer -----------------------------------------------------------------------------------
+# Causes of missing results
+# ------------------------------------------------------------------------------------
 
 
 def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Screen) -> Outcome:
-    """Return the outcome of a finished computation; if it has none, sentences by field that say why.
+    """Return the result of a finished computation; if it failed, sentences on the cause, by field.
 
-    If the process died or took too long, the inputs that have changed since the last answer are named.
+    If the process died or took too long, the sentences name the inputs that have changed since the last
+    result.
     """
     if future.cancelled():
         return {"": ["Cancelled. The next change of an input is computed again."]}
@@ -212,7 +213,7 @@ def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Scre
 
 
 def changed(work: OpenDocument, screen: Screen) -> list[str]:
-    """Return the paths of entries changed since a screen's last answer; empty if there is none."""
+    """Return the paths of inputs that have changed since a screen's last result; empty if there is none."""
     if (before := work.answered.get(screen.name)) is None:
         return []
     now = work.needed(screen)
@@ -220,10 +221,11 @@ def changed(work: OpenDocument, screen: Screen) -> list[str]:
 
 
 def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
-    """Return the mistakes on a screen, by the path of the field at fault.
+    """Return the error messages on a screen, by path of the field that caused the error.
 
-    A mistake about no single field stands at all fields that have changed since the last answer.  So do
-    mistakes at unchanged fields if few have changed: a longer beam may cause the refusal of a top speed.
+    An error without a single field is shown at all fields that have changed since the last result.  So are
+    errors at unchanged fields if only few fields have changed: for example, a longer beam may make the
+    unchanged top speed invalid.
     """
     mistakes = dict(work.mistakes.get(screen.name, {}))
     since = changed(work, screen)
@@ -237,5 +239,5 @@ def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
 
 
 def _before(work: OpenDocument, screen: Screen, path: str) -> str:
-    """Return the text that an entry had when the screen's last answer was computed."""
+    """Return the text that a field had when the screen's last result was computed."""
     return work.answered[screen.name].entries.get(path) or "empty"

@@ -1,4 +1,4 @@
-"""Direct changes of the page during a drag, since NiceGUI would render the whole page for each."""
+"""Direct changes of the page during a drag, since NiceGUI would render the whole page at each change."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ _WRITTEN = ("innerHTML", "text", "value", "style", "class", "data-", "aria-")
 
 
 class PageWriter:
-    """A writer that changes elements of the page directly while a point or a slider is held.
+    """Changes elements in the browser directly while the user holds a handle or a slider.
 
-    NiceGUI renders the page as a whole for each change that it is told: 10 to 40 ms where the form is long.
-    It is told of what has been written when nothing is held any longer.
+    NiceGUI, the web framework, renders the whole page at each change that it knows of, which takes 10 to 40
+    ms for a long form.  Therefore it receives the changes only after the user releases the handle or slider.
 
     Parameters
     ----------
     held : callable
-        Returns whether a point or a slider is held.
+        Function that returns whether a handle or slider is held.
     """
 
     def __init__(self, held: Callable[[], bool] = lambda: False) -> None:
@@ -31,24 +31,24 @@ class PageWriter:
 
     @property
     def is_ahead(self) -> bool:
-        """Whether something is held, or NiceGUI has not yet been told all that was written."""
+        """Return whether something is held, or NiceGUI has not yet received all changes."""
         return self._held() or bool(self._untold)
 
     @contextmanager
     def writing(self, *elements: Any) -> Iterator[None]:
-        """Write changes of elements, made within this context, directly into the page.
+        """In this context, write changes of elements directly into the page.
 
-        Text, content, style, classes and attributes are written, and the text of a field, but no other
-        property of a component.
+        Changes of text, content, style, classes, attributes and field texts are written; changes of other
+        properties are not.
         """
-        elements = tuple(e for e in elements if "update" not in vars(e))  # others are written further out
+        elements = tuple(e for e in elements if "update" not in vars(e))  # an outer context writes the others
         if not elements or not self.is_ahead:
             yield
             return
         before = {element: _written(element) for element in elements}
         for element in elements:
             element.update = partial(self.tell_later, element)
-            element.run_method = _do_nothing  # without this, a field would ask the page for an update
+            element.run_method = _do_nothing  # otherwise a text field would request an update of the page
         try:
             yield
         finally:
@@ -61,17 +61,17 @@ class PageWriter:
             self.synchronize()
 
     def tell_later(self, element: Any) -> None:
-        """Tell NiceGUI of a changed element once nothing is held."""
+        """Report a changed element to NiceGUI once nothing is held."""
         self._untold[element.id] = element
 
     def synchronize(self) -> None:
-        """Tell NiceGUI all that has been written."""
+        """Report all changes to NiceGUI."""
         untold, self._untold = self._untold, {}
         for element in untold.values():
             element.update()
 
     def write(self, element: Any, changed: dict[str, Any]) -> None:
-        """Collect changes of an element; all that come before the next message are sent in it."""
+        """Collect changes of an element, which are sent to the browser in one message."""
         if changed and not self._unwritten:
             asyncio.get_running_loop().call_soon(self._send, element.client)
         if changed:
@@ -83,7 +83,7 @@ class PageWriter:
 
 
 def toggle(element: Any, name: str, on: bool) -> None:
-    """Add a class to an element, or remove it."""
+    """Add a CSS class to an element, or remove it."""
     element.classes(add=name if on else "", remove="" if on else name)
 
 

@@ -1,4 +1,4 @@
-"""Panels of a screen that can be folded: comparison with another design, further parts, and the sketch."""
+"""Foldable panels of a screen: comparison with another design, further parts of a result, the sketch."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from beamdyn.common.screens.screens import Screen
 
 
 class ComparisonPanel:
-    """Tables of the inputs and results that differ from another design; hidden while none is compared.
+    """Tables of inputs and results that differ from another design; hidden without a comparison.
 
     Parameters
     ----------
     work : OpenDocument
-        The document.
+        The open document.
     screen : Screen
-        The screen of the document on which the panel stands.
+        The screen of the document that contains the panel.
     solver : RunsTasks
-        Solves the other design.
+        Object that computes the other design in a worker process.
     solved : callable
-        Called when the other design has been solved, or could not be.
+        Called when the computation of the other design has ended or failed.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class ComparisonPanel:
         self._fold.set_visibility(False)
 
     def solve(self) -> None:
-        """Have the other design solved, unless that is under way."""
+        """Start the computation of the other design, unless it is running."""
         if (other := self.work.other) is None or (self._way.busy and other is self._asked):
             return
         self._asked, given = other, dict(other.entries)
@@ -64,7 +64,7 @@ class ComparisonPanel:
         self._way.want(lambda: self._solver.submit(page_tasks.solve, self.work.document, self.screen, given))
 
     def close(self) -> None:
-        """Cancel the solution of the other design."""
+        """Cancel the computation of the other design."""
         self._way.cancel()
 
     def _tell(self) -> None:
@@ -82,14 +82,14 @@ class ComparisonPanel:
         self._said.set_text(f"The other design cannot be shown: {error}")
 
     def _entitle(self) -> OtherDesign | None:
-        """Show the panel with the other design's name, or hide it; return that design, None without one."""
+        """Show the panel with the other design's name, or hide it; return that design or None."""
         if other := self.work.other:
             self._fold.set_text(f"Compared with {other.name}")
         self._fold.set_visibility(other is not None)
         return other
 
     def show(self, answered: ShownAnswer) -> None:
-        """Compare an answer with that of the other design, if that has been solved."""
+        """Compare a result with the result of the other design, if that is available."""
         if (other := self._entitle()) is None:
             return
         found, there = self.work.compared.get(self.screen.name), self.work.other_answer(self.screen)
@@ -103,21 +103,21 @@ class ComparisonPanel:
 
 
 def headline_of(work: OpenDocument, screen: Screen, answered: ShownAnswer) -> str:
-    """Return the most important results of an answer in HTML, beside those of the compared design."""
+    """Return the most important results as HTML, beside those of the compared design."""
     there = work.other_answer(screen)
     other = () if there is None else there.headline
     return headline_html(answered.headline, other, work.other.name if work.other else "")
 
 
 class PicturePanel:
-    """A part of an answer that another process makes; the last part stays until the next has come.
+    """A part of a result that another process makes; the old part is shown until the new one is ready.
 
     Parameters
     ----------
     make : callable
-        ``make(answer)`` returns a future of the part as HTML.
+        ``make(answer)`` returns a future with the part as HTML.
     writer : PageWriter
-        Writer of the part while a handle or slider is held.
+        Object that updates the part on the page while a handle or slider is held.
     """
 
     def __init__(self, make: Callable[[Any], asyncio.Future[str]], writer: PageWriter) -> None:
@@ -127,12 +127,12 @@ class PicturePanel:
         self._frame: Any = ui.html("", sanitize=False).classes("w-full drawing-frame")
 
     def show(self, answer: object) -> None:
-        """Have the part made for another answer, and show it."""
+        """Start making the part for another result, and show it when ready."""
         self._answer = answer
         self._fill()
 
     def put(self, answer: object, part: str) -> None:
-        """Show another answer whose part is made already."""
+        """Show another result together with its part, which is made already."""
         self.close()
         self._answer = answer
         self._write(part)
@@ -162,7 +162,7 @@ class PicturePanel:
 
 
 class FoldedPanel(PicturePanel):
-    """A part of an answer that folds out, and is made only then.
+    """A foldable part of a result, which is made when the user unfolds it.
 
     Parameters
     ----------
@@ -184,16 +184,16 @@ class FoldedPanel(PicturePanel):
 
 
 class SketchPanel:
-    """The sketch of a form, which can be folded; hidden if there is none.
+    """The explanatory sketch of a form, which can be folded; hidden if there is none.
 
     Parameters
     ----------
     sketch : callable
-        ``sketch(entries)``: rows of drawings.
+        ``sketch(entries)`` returns rows of drawings.
     entries : mapping
-        Entries of the form at first.
+        Field texts at first.
     shown : bool
-        Whether it is unfolded.
+        Whether the panel is unfolded at first.
     """
 
     def __init__(self, sketch: Sketcher, entries: Mapping[str, str], shown: bool) -> None:
@@ -206,13 +206,13 @@ class SketchPanel:
                 self._drawing: Any = ui.html(made, sanitize=False)
 
     def show(self, entries: Mapping[str, str]) -> None:
-        """Show the sketch for other entries."""
+        """Show the sketch that belongs to the given field texts."""
         if self._fold is not None:
             self._drawing.set_content(_drawn(self._sketch, entries))
 
     @property
     def shown(self) -> bool:
-        """Whether the sketch is unfolded."""
+        """Return whether the sketch is unfolded."""
         return bool(self._fold.value) if self._fold is not None else self._shown
 
     def fold(self) -> None:
@@ -223,7 +223,7 @@ class SketchPanel:
 
 
 def _drawn(sketch: Sketcher, entries: Mapping[str, str]) -> str:
-    """Draw a sketch as an element of the page; "" where there is none."""
+    """Return a sketch as an element of the page; "" if there is none."""
     rows = sketch(entries)
     if not rows:
         return ""

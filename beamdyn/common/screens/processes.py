@@ -1,4 +1,4 @@
-"""Worker processes that compute answers: the server stays responsive, and can end each of them."""
+"""Worker processes that compute results, so that the server stays responsive and can stop computations."""
 
 from __future__ import annotations
 
@@ -22,47 +22,47 @@ from typing import Any, Protocol
 from beamdyn.common.parallel.workers import serve
 from beamdyn.common.screens.screens import Document, Program, Screen
 
-LONGEST = 120.0  # time limit of an answer [s]
-MEMORY = 800  # memory that an answer may take beyond that of an idle process [MB]
-_MOST = max(3, (os.cpu_count() or 1) + 1)  # number of processes: one stays free during long answers
-_NICE = 5  # niceness of the processes: the server and the browser come first
-_HEEDS = 0.3  # time that an interrupted process has to stop its task, before it is ended [s]
-_AGAIN = 0.03  # time after which it is interrupted again [s]: imports of modules ignore interruptions
+LONGEST = 120.0  # time limit of a computation [s]
+MEMORY = 800  # memory that a computation may use in addition to an idle process [MB]
+_MOST = max(3, (os.cpu_count() or 1) + 1)  # number of processes: one stays free during long computations
+_NICE = 5  # niceness of the processes: the server and the browser have higher priority
+_HEEDS = 0.3  # time that an interrupted process has to stop its task, before it is terminated [s]
+_AGAIN = 0.03  # interval of repeated interrupts [s]: a process ignores them during imports
 _SOON_FREE = (
-    0.05  # time for which the next task waits for an interrupted process before it takes another one [s]
+    0.05  # time for which the next task waits for an interrupted process before it uses another one [s]
 )
-_SPARE = 0.5  # time after which a task that still runs has an idle process started, for other tasks [s]
+_SPARE = 0.5  # running time of a task after which an idle process is started for other tasks [s]
 _SERVE = "from beamdyn.common.screens.processes import serve_tasks; serve_tasks({caller})"
-_IMPORTING = "<frozen importlib._bootstrap>"  # file of the code that imports modules
+_IMPORTING = "<frozen importlib._bootstrap>"  # file name of Python's code that imports modules
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
 
 Task = Callable[..., Any]  # function of a document, one of its screens, and further arguments
 
 
 class TakesTooLong(Exception):
-    """Raised when an answer takes more time or memory than allowed."""
+    """Raised when a computation takes more time or memory than allowed."""
 
 
 class RunsTasks(Protocol):
-    """Interface of what runs tasks: `Processes`, or a page's `Share` of them."""
+    """Interface of objects that run tasks: `Processes`, or a `Share` of them for one page."""
 
     def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
-        """Start ``task(document, screen, *rest)``; cancelling the future ends the task."""
+        """Start ``task(document, screen, *rest)``; cancelling the future stops the task."""
         ...
 
 
 class Processes:
     """Worker processes of one program, which belong to the event loop in which they are first used.
 
-    Each runs one task at a time; other tasks wait in their order.  A task that is cancelled is interrupted;
-    if it does not heed that, or takes too long, it is ended with its process, and another one is started.
-    The first process starts when `start` is called, further ones while all are busy.  They end with the
-    calling process, however that ends.
+    Each process runs one task at a time; other tasks wait in a queue.  A cancelled task is interrupted; if it
+    does not stop, or takes too long, its process is terminated and replaced.  The first process starts when
+    `start` is called, further processes start when all are busy.  All of them end when the calling process
+    ends, for whatever reason.
 
     Parameters
     ----------
     make : callable
-        Makes the program; a function of a module, since each process calls it.
+        Function that makes the program; it must be importable, since each process calls it.
     longest : float
         Time limit of a task [s].
     most : int
@@ -76,35 +76,36 @@ class Processes:
         self._waiting: deque[asyncio.Future[_Worker]] = deque()
         self._starts: set[asyncio.Task[None]] = set()
         self._interrupted: set[asyncio.Task[None]] = set()
-        self._count = 0  # number of processes, with those that are being started
+        self._count = 0  # number of processes, including those that are being started
 
     @property
     def ids(self) -> set[int]:
-        """Process ids of the present processes."""
+        """Return the ids of the present processes in the operating system."""
         return {worker.process.pid for worker in self._all}
 
     def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
-        """Start ``task(document, screen, *rest)``; cancelling the future ends the task.
+        """Start ``task(document, screen, *rest)``; cancelling the future stops the task.
 
         Parameters
         ----------
         task : callable
-            A function of a module.
+            An importable function.
         document, screen : Document, Screen
             A document of the program and one of its screens.
         *rest
-            Further arguments, which must pickle.
+            Further arguments, which can be pickled.
 
         Returns
         -------
         asyncio.Future
-            It may raise what the task raises, `TakesTooLong`, or `BrokenExecutor` where its process died.
+            Future of the result.  It raises the errors of the task, `TakesTooLong`, or `BrokenExecutor` if
+            the process has died.
         """
         wanted = pickle.dumps((_do, (self.make, task, document.name, screen.name, *rest), {}))
         return asyncio.ensure_future(self._run(wanted))
 
     def start(self) -> None:
-        """Start a process before it is needed, unless there are enough, as that takes a second."""
+        """Start a process in advance, as a start takes a second; do nothing if there are enough."""
         if self._count < self.most:
             self._count += 1
             start = asyncio.ensure_future(self._start())
@@ -112,7 +113,7 @@ class Processes:
             start.add_done_callback(self._starts.discard)
 
     async def close(self) -> None:
-        """End all processes; no other one starts."""
+        """Terminate all processes; no new ones are started."""
         self.most = 0
         under_way = self._starts | self._interrupted
         for task in under_way:
@@ -139,7 +140,7 @@ class Processes:
         self._free(worker)
 
     def _fail(self, why: str) -> None:
-        """Fail all waiting tasks, as no process can be started."""
+        """Let all waiting tasks fail, as no process can be started."""
         while self._waiting:
             if not (place := self._waiting.popleft()).done():
                 place.set_exception(BrokenExecutor(f"no process can be started to compute it: {why}"))
@@ -176,7 +177,7 @@ class Processes:
         raise result
 
     async def _interrupt(self, worker: _Worker, asked: asyncio.Future[bytes]) -> None:
-        """Interrupt the task of a process, and free the process for others; end it if it does not stop."""
+        """Interrupt the task of a process, which is then free; terminate the process if the task goes on."""
         try:
             async with asyncio.timeout(_HEEDS):
                 while not asked.done():
@@ -200,7 +201,8 @@ class Processes:
     async def _idle_worker(self) -> _Worker:
         """Return an idle process; if there is none, start one, and return the first that becomes free.
 
-        A process that has just been interrupted is soon free, and has run such tasks before.
+        A process that has just been interrupted will soon be free, and has already imported the necessary
+        modules.
         """
         if self._interrupted:
             await asyncio.wait(self._interrupted, timeout=_SOON_FREE, return_when=asyncio.FIRST_COMPLETED)
@@ -214,7 +216,7 @@ class Processes:
         try:
             return await place
         except asyncio.CancelledError:
-            # A process was given to this task at the moment of its cancellation.
+            # The task was cancelled at the moment at which it got this process.
             if place.done() and not place.cancelled():
                 self._free(place.result())
             raise
@@ -235,14 +237,14 @@ class Processes:
 
 
 class Share:
-    """The processes as one page may use them: never all at once, so that one is left for other pages.
+    """The processes as one page may use them: never all, so that one is left for other pages.
 
     Parameters
     ----------
     solver : RunsTasks
         The processes.
     most : int
-        Number of tasks of the page that may be under way; others wait in their order.
+        Number of tasks of the page that may run at a time; others wait in a queue.
     """
 
     def __init__(self, solver: RunsTasks, most: int = _MOST - 1) -> None:
@@ -250,7 +252,7 @@ class Share:
         self._waiting: deque[asyncio.Future[None]] = deque()
 
     def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
-        """Start ``task(document, screen, *rest)``, or let it wait; cancelling the future ends the task."""
+        """Start ``task(document, screen, *rest)``, or queue it; cancelling the future stops the task."""
         given = task, document, screen, *rest
         if not self._room:
             return asyncio.ensure_future(self._later(given))
@@ -274,13 +276,13 @@ class Share:
         try:
             await place
         except asyncio.CancelledError:
-            if not place.cancelled():  # room was given to this task at the moment of its cancellation
+            if not place.cancelled():  # the task was cancelled at the moment at which it was allowed to start
                 self._leave()
             raise
         return await self._start(given)
 
     def _leave(self) -> None:
-        """Give the place of a task that has ended to the next task that waits."""
+        """Let the next waiting task start after another one has ended."""
         while self._waiting:
             if not (place := self._waiting.popleft()).done():
                 return place.set_result(None)
@@ -288,7 +290,7 @@ class Share:
 
 
 class _Worker:
-    """A process that reads pickled tasks from standard input and writes answers to standard output."""
+    """A process that reads pickled tasks from standard input and writes results to standard output."""
 
     def __init__(self, process: subprocess.Process) -> None:
         assert process.stdin is not None and process.stdout is not None
@@ -303,29 +305,29 @@ class _Worker:
         return cls(await asyncio.create_subprocess_exec(*given, stdin=pipe, stdout=pipe, env=environment))
 
     async def ask(self, task: bytes) -> bytes:
-        """Return the pickled answer to a task; raise `EOFError` or `OSError` if the process dies."""
+        """Return the pickled result of a task; raise `EOFError` or `OSError` if the process dies."""
         self._tasks.write(len(task).to_bytes(8, "big") + task)
         await self._tasks.drain()
         return await self._answers.readexactly(int.from_bytes(await self._answers.readexactly(8), "big"))
 
     def interrupt(self) -> None:
         """Interrupt the task of the process; raise `OSError` if the signal cannot be sent."""
-        if not hasattr(signal, "SIGUSR1"):  # on Windows
+        if not hasattr(signal, "SIGUSR1"):  # Windows has no such signal
             raise OSError
         self.process.send_signal(signal.SIGUSR1)
 
 
-# In a worker process --------------------------------------------------------------------------------------
+# Code that runs in a worker process -----------------------------------------------------------------------
 
 
 class _NoLongerWanted(BaseException):
-    """Raised within a cancelled task; a BaseException, as the task might catch an `Exception`."""
+    """Raised within a cancelled task; a BaseException, which the task's `except Exception` does not catch."""
 
 
 class _Interrupts:
-    """Handler of interruptions of a process's tasks; it ignores those between tasks, or amid an import.
+    """Handles interrupts of tasks; ignores interrupts between tasks and during an import.
 
-    A module whose import is interrupted would stay half imported, for all tasks that follow.
+    A module whose import is interrupted would stay half imported, and later tasks would fail.
     """
 
     _at_task = False
@@ -341,10 +343,10 @@ class _Interrupts:
             raise _NoLongerWanted
 
     def run(self, task: Callable[[], Any]) -> Any:
-        """Run a task and return its result; None if it is interrupted, as nobody waits for it then.
+        """Run a task and return its result; None if it is interrupted, as the result is then not needed.
 
-        The task has context variables of its own, such as those of `few_digits`, which therefore never
-        outlive it.
+        The task has its own copy of context variables, such as the one of `few_digits`, so that its settings
+        do not affect later tasks.
         """
         try:
             self._at_task = True
@@ -358,7 +360,7 @@ class _Interrupts:
 
 
 def _imports(frame: FrameType | None) -> bool:
-    """Whether a module is being imported in a frame, or in one that has called it."""
+    """Return whether a module is being imported in a stack frame or in one of its callers."""
     while frame is not None and frame.f_code.co_filename != _IMPORTING:
         frame = frame.f_back
     return frame is not None
@@ -368,15 +370,15 @@ _INTERRUPTS = _Interrupts()
 
 
 def serve_tasks(caller: int) -> None:
-    """Run the tasks that arrive on the standard input; end when the caller ends, even within a task."""
+    """Run tasks that arrive on standard input; end when the calling process ends, even within a task."""
 
-    def end_with_caller() -> None:  # end-of-file would be noticed only between two tasks
-        while os.name == "nt" or os.getppid() == caller:  # on Windows the parent's id stays the same
+    def end_with_caller() -> None:  # the end of standard input would be noticed only between two tasks
+        while os.name == "nt" or os.getppid() == caller:  # on Windows the parent's id never changes
             sleep(1.0)
         os._exit(1)
 
     _INTERRUPTS.listen()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the caller's to handle
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the calling process handles Ctrl-C
     if hasattr(os, "nice"):
         os.nice(_NICE)
     Thread(target=end_with_caller, daemon=True).start()
@@ -384,13 +386,14 @@ def serve_tasks(caller: int) -> None:
 
 
 def _prepare(make: Callable[[], Program], memory: int) -> None:
-    """Import the program; then limit the memory of this process to `memory` [MB] more than it takes now.
+    """Import the program; then limit the memory of this process to `memory` [MB] more than now.
 
-    Beyond the limit Python raises `MemoryError`. Systems that cannot limit memory have no limit.
+    Beyond the limit, Python raises `MemoryError`.  If the operating system cannot limit memory, there is no
+    limit.
     """
     _screens(make)
     try:
-        import resource  # a module that Windows lacks
+        import resource  # this module does not exist on Windows
 
         with open("/proc/self/statm") as file:
             data = int(file.read().split()[5]) * resource.getpagesize()
@@ -401,7 +404,7 @@ def _prepare(make: Callable[[], Program], memory: int) -> None:
 
 
 def _do(make: Callable[[], Program], task: Task, document: str, screen: str, *rest: Any) -> Any:
-    """Run a task for a document and one of its screens, both given by name."""
+    """Run a task for a document and one of its screens, both of which are given by name."""
     return _INTERRUPTS.run(partial(task, *_screens(make)[document, screen], *rest))
 
 

@@ -1,6 +1,7 @@
-"""Parts of a screen that an answer describes: sliders, points to drag, and the results that come first.
+"""Parts of a screen: sliders, points that the user can drag, and the most important results.
 
-They are apart from `Screen`, so that a command can describe them without loading what draws a screen.
+They are separate from `Screen`, so that a command can use them without importing the modules that draw a
+screen.
 """
 
 from __future__ import annotations
@@ -13,21 +14,21 @@ from typing import NamedTuple
 
 @dataclass(frozen=True)
 class Slider:
-    """A slider above the drawing, which changes nothing but the drawing.
+    """A slider above the drawing, which affects the drawing but not the result.
 
     Parameters
     ----------
     label : str
-        Name of the quantity that it sets.
+        Name of the quantity that the slider sets.
     marks : tuple of str
-        Labels of its positions 0, 1, ...
+        Labels of the positions 0, 1, ...
     step : float
-        Step between positions when it is moved by hand.
+        Step between positions when the user moves the slider.
     seconds : float
-        Time to play it from one end to the other [s].
+        Duration of the animation from one end to the other [s].
     onward : bool
-        Whether it is played at a constant rate, and from 0 again after the end; else back and forth, slowly
-        at both ends.
+        Whether the animation runs at a constant rate and starts again at 0 after the end; else it runs back
+        and forth, slowly near both ends.
     """
 
     label: str
@@ -38,17 +39,17 @@ class Slider:
 
     @property
     def last(self) -> float:
-        """The slider's largest position."""
+        """Return the largest position of the slider."""
         return len(self.marks) - 1.0
 
     def place(self, elapsed: float) -> float:
-        """Compute the position at a time [s] after play began."""
+        """Compute the slider's position at a time [s] after the start of the animation."""
         if self.onward:
             return self.last * (elapsed / self.seconds % 1.0)
         return self.last * (1 - math.cos(math.pi * elapsed / self.seconds)) / 2
 
     def elapsed(self, place: float) -> float:
-        """Compute the time after the start of play [s] at which a position is reached first."""
+        """Compute the time after the start of the animation [s] at which a position is first reached."""
         if self.onward:
             return self.seconds * place / self.last
         if place >= self.last:
@@ -58,16 +59,16 @@ class Slider:
 
 @dataclass(frozen=True)
 class Drag:
-    """A slider below a field of the form, which writes into the field.
+    """A slider below a field of the form, which sets the field's text.
 
     Parameters
     ----------
     path : str
-        Path of the field's input.
+        Path of the input of the field.
     low, high, step : float
-        Its range and step, in `unit`.
+        Smallest value, largest value and step, in `unit`.
     unit : str
-        Unit in which it writes.
+        Unit of the values.
     """
 
     path: str
@@ -79,7 +80,7 @@ class Drag:
 
 @dataclass(frozen=True)
 class Preset:
-    """A list above the fields of a table; each of its choices fills in some of them.
+    """A list above the fields of a table; each choice fills in several fields, such as those of a material.
 
     Parameters
     ----------
@@ -88,7 +89,7 @@ class Preset:
     words : str
         Name of the list, such as "material".
     choices : mapping
-        By the name of a choice: texts by the path of their field.
+        For each choice, by name: the texts of fields, by path of the input.
     """
 
     table: str
@@ -96,7 +97,7 @@ class Preset:
     choices: Mapping[str, Mapping[str, str]]
 
     def chosen(self, texts: Callable[[str], str]) -> str | None:
-        """Return the name of the choice whose texts all fields have; None if there is no such choice."""
+        """Return the name of the choice that matches the texts of all its fields; None if there is none."""
         return next(
             (
                 name
@@ -108,7 +109,7 @@ class Preset:
 
 
 class KeyResult(NamedTuple):
-    """A result that comes first on a screen, such as ("stopping distance", "13.4 m").
+    """One of a screen's most important results: name and value, as in ("stopping distance", "13.4 m").
 
     Parameters
     ----------
@@ -131,16 +132,16 @@ class Handle:
     label : str
         Name of the point.
     at : tuple of float
-        Its place (x, y) [m].
+        Position of the point (x, y) [m].
     moved : callable
-        ``moved(x, y)``: values in SI for a new place [m], by the path of their input: a number, or a pair for
-        a point.
+        ``moved(x, y)`` returns the inputs for a new position [m], in SI units by path: a number, or a pair
+        for a point.
     scale : float
-        Units of the drawing in a metre: 1000 where it is in mm.
+        Length units of the drawing per metre: 1000 if it is drawn in mm.
     step : float
-        Distance by which an arrow key moves it [m].
+        Distance by which an arrow key moves the point [m].
     grain : float
-        Step to which a length is rounded [m].
+        Increment to which lengths are rounded [m].
     """
 
     label: str

@@ -1,4 +1,4 @@
-"""One screen on the page: the form on the left, the results on the right."""
+"""A screen on the page: the form on the left, the results on the right."""
 
 from __future__ import annotations
 
@@ -58,13 +58,13 @@ class ScreenView:
     work : OpenDocument
         The document.
     screen : Screen
-        The screen of the document that is shown.
+        The screen of the document to show.
     edited : callable
         Called after a field of this screen has changed.
     open_file : callable
-        ``open_file(text, name)``: open a file that follows from the answer.
+        ``open_file(text, name)`` opens a file that was made from the result.
     solver : RunsTasks
-        Solver that makes the answers.
+        Object that computes results in worker processes.
     """
 
     def __init__(
@@ -77,17 +77,17 @@ class ScreenView:
     ) -> None:
         self.work, self.screen, self._edited, self._solver = work, screen, edited, solver
         self._open_file = open_file
-        self.narrow = False  # whether the page is narrow, so that drawings have narrow paper
+        self.narrow = False  # whether the page is narrow, so that drawings are made narrow, too
         self._drawn = False
-        self._sentences: list[tuple[str, str]] = []  # sentences that are shown, with their classes
+        self._sentences: list[tuple[str, str]] = []  # sentences that are shown, with their CSS classes
         self._way = LatestComputation(self._settle, self._fail, self.state)
-        self._holds = False  # whether a slider of the form is held
-        self._charted = 0.0  # time at which the charts were shown last [s]
+        self._holds = False  # whether the user holds a slider of the form
+        self._charted = 0.0  # time at which the charts were last updated [s]
         self._player: Player | None = None
-        self._previews = False  # whether a part of an answer is shown, or soon will be, whose rest follows
+        self._previews = False  # whether a preliminary result is shown, or soon will be
         self._writer = PageWriter(lambda: self.dragged or self._previews or self._plays)
-        self._asked: Entries = {}  # entries that were last submitted to be solved
-        # Entries for which a picture was requested last; pictures that come with a rough answer do not count.
+        self._asked: Entries = {}  # field texts of the computation requested last
+        # Field texts for which a picture was last requested; pictures of preliminary results do not count.
         self._pictured: Entries = {}
         self._sketch: SketchPanel | None = None
         with ui.element("div").classes("screen"):
@@ -95,7 +95,7 @@ class ScreenView:
             with ui.column().classes("right gap-2"):
                 self._make_head()
                 self._make_results()
-        # Inputs of the form; None as long as it is not made, so that pages open sooner.
+        # Inputs of the form; None until the form is made, which is done late so that pages open sooner.
         self._shape: list[str] | None = None
         self.state()
 
@@ -123,7 +123,7 @@ class ScreenView:
 
     def _make_results(self) -> None:
         screen, name = self.screen, self.screen.name
-        self._made: list[PicturePanel] = []  # parts that other processes make
+        self._made: list[PicturePanel] = []  # parts of the result that other processes make
         self._good: Any = ui.element("div").classes("w-full shown")
         with self._good:
             with ui.column().classes("pictures gap-2"):
@@ -152,7 +152,7 @@ class ScreenView:
     # The form -----------------------------------------------------------------------------------------
 
     def rebuild(self) -> None:
-        """Make the form anew, for instance after another file has been opened."""
+        """Make the form again, for example after another file was opened."""
         shown = not self.narrow if self._sketch is None else self._sketch.shown
         work, lists, fielded = self.work, self.screen.lists, self._fielded
         self._left.clear()
@@ -170,17 +170,17 @@ class ScreenView:
 
     @property
     def _fielded(self) -> list[Input]:
-        """Descriptions of the inputs that have a field of the form: all that are not in lists."""
+        """Return the descriptions of the inputs that have a field: all that are not in lists."""
         lists = self.screen.lists
         return [entry for entry in self.work.inputs if lists is None or not lists.covers(entry.path)]
 
     @property
     def _has_shape(self) -> bool:
-        """Whether the form has exactly one field for each present input."""
+        """Return whether the form has exactly one field for each present input."""
         return [entry.path for entry in self._fielded] == self._shape
 
     def _listed(self, entries: Entries) -> None:
-        """Store and solve entries that were changed in the lists."""
+        """Store field texts that were changed in the lists, and compute the result."""
         self.work.show(entries)
         self._put_entries()
         self.solve()
@@ -188,29 +188,29 @@ class ScreenView:
 
     def _changed(self, path: str, text: str) -> None:
         if self.work.entries.get(path) == text:
-            return  # a moved handle of the drawing has already stored this text
+            return  # when a handle is moved, this text is stored already
         self.work.put(path, text)
         if not self._has_shape:
             self.rebuild()
         elif self._sketch is not None and path in self._choices:
             self._sketch.show(self.work.entries)
         self.form.hide(self.work.idle)
-        self._previews = self._drawn  # the picture comes sooner if the page is not rendered before
+        self._previews = self._drawn  # the picture appears sooner if the page is not rendered before
         self.solve(held=self._holds)
-        if not self._holds:  # while a slider is held, entries are neither stored nor told to other screens
+        if not self._holds:  # while a slider is held, texts are neither stored nor reported to other screens
             self._edited()
 
     def _hold(self, held: bool) -> None:
-        """Store whether a slider of the form is held; when it is released, solve in full."""
+        """Store whether the user holds a slider of the form; on release, compute the full result."""
         self._holds = held
         if not held:
             self.solve()
             self._edited()
 
     def enter(self) -> None:
-        """Come to the front: show what other screens have written, and solve if the answer is stale.
+        """Update the form when the screen is shown again, and compute the result if it is outdated.
 
-        Also solve if the entries that are being solved are others, as after undo.
+        Also compute it if the running computation is for other field texts, as after undo.
         """
         self._put_entries()
         if self._lists is not None:
@@ -220,7 +220,7 @@ class ScreenView:
             self.solve()
 
     def _put_entries(self) -> None:
-        """Show the entries in the form, which is made anew only if its fields have changed."""
+        """Show the texts in the form, which is made again only if its fields have changed."""
         if not self._has_shape:
             return self.rebuild()
         self.form.put(self.work.entries)
@@ -228,11 +228,11 @@ class ScreenView:
         if self._sketch is not None:
             self._sketch.show(self.work.entries)
 
-    # Answers ------------------------------------------------------------------------------------------
+    # Results ------------------------------------------------------------------------------------------
 
     @property
     def _answered(self) -> ShownAnswer | None:
-        """The latest answer of this screen; None if there is none."""
+        """Return the latest result of this screen; None if there is none."""
         return self.work.answered.get(self.screen.name)
 
     def _make(self, task: Task, *given: Any) -> asyncio.Future[Any]:
@@ -243,15 +243,15 @@ class ScreenView:
         return self._make(page_tasks.picture_part, answer, self.narrow)
 
     def solve(self, held: bool = False) -> None:
-        """Have the present entries solved.
+        """Start the computation of the result for the present field texts.
 
-        The last answer stays until theirs comes.  Entries that change meanwhile are solved next, in their
-        last state alone.
+        The old result is shown until the new one is available.  If field texts change meanwhile, only their
+        last state is computed next.
 
         Parameters
         ----------
         held : bool
-            Whether a handle or slider is being dragged: then only what the drawing shows is solved.
+            Whether the user drags a handle or slider: then only what the drawing needs is computed.
         """
         entries, drawn = dict(self.work.entries), self._answered
         self._asked = self.work.needed(self.screen)
@@ -265,10 +265,10 @@ class ScreenView:
         self.state()
 
     def _draw_first(self, entries: Entries, held: bool) -> None:
-        """Have entries solved as far as the drawing shows them; cancel a picture of other entries.
+        """Compute what the drawing needs for field texts; cancel a picture of other texts.
 
-        While something is dragged, each picture that has been begun is shown; while text is typed into a
-        field, only the last.
+        While the user drags, each picture that has been started is shown; while the user types, only the last
+        one.
         """
         if self.screen.picture is not None:
             self._made[0].close()
@@ -277,11 +277,11 @@ class ScreenView:
         self._way.want(start, gives_way=not held)
 
     async def settled(self) -> None:
-        """Wait until the present entries have been solved."""
+        """Wait until the result for the present field texts is computed."""
         await self._way.done()
 
     def close(self) -> None:
-        """Cancel all computations, as the page is gone."""
+        """Cancel all computations, because the page was closed."""
         for more in self._made:
             more.close()
         self._way.cancel()
@@ -290,7 +290,7 @@ class ScreenView:
             panel.close()
 
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
-        """Show an answer; or say why the newest entries have none, and grey the last answer."""
+        """Show a result; or show why the newest field texts have none, and grey the old result."""
         if self._left.is_deleted:
             return
         outcome, before = outcome_of(future, self.work, self.screen), self._answered
@@ -299,7 +299,7 @@ class ScreenView:
         if last:
             self.board.forget_steps()
         is_part = False
-        # A partial answer keeps the tables shown before.
+        # A preliminary result keeps the tables shown before.
         if isinstance(outcome, ShownAnswer) and not outcome.is_whole:
             is_part, kept = True, before or outcome
             outcome = replace(outcome, tables=kept.tables, notes=kept.notes, rest=kept.rest)
@@ -314,11 +314,11 @@ class ScreenView:
             return self.solve()
         self.state()
         if not self.dragged:
-            self._writer.synchronize()  # at this point, as otherwise the page would be rendered twice
+            self._writer.synchronize()  # shown here, as otherwise the page would be rendered twice
             self._edited()
 
     def _fail(self, error: Exception) -> None:
-        """Say that an answer cannot be shown, though parts of it may already stand on the page."""
+        """Show that a result cannot be displayed, although parts of it may already be on the page."""
         self._previews = False
         self.work.answered.pop(self.screen.name, None)
         self.work.mistakes[self.screen.name] = mistakes = {"": [_NOT_SHOWN.format(error)]}
@@ -327,7 +327,7 @@ class ScreenView:
         self._show_sentences(mistakes)
 
     def state(self) -> None:
-        """Say whether the answer shown is the present one, and grey it while another is computed for long."""
+        """Show whether the result is up to date, and grey it during a long computation."""
         busy, slow, held = self._way.busy, self._way.slow, self.dragged
         stale, drawn = self.work.stale(self.screen), self.work.drawn(self.screen)
         failed = bool(self.work.mistakes.get(self.screen.name))
@@ -347,7 +347,7 @@ class ScreenView:
             panel.state()
 
     def _show_sentences(self, mistakes: dict[str, list[str]]) -> None:
-        """Show the mistakes that are about no field of this form, and the warnings of the answer."""
+        """Show errors that concern no field of this form, and the warnings of the result."""
         answered, fields = self._answered, self.form.fields
         each = [(said, path in fields) for path, sentences in mistakes.items() for said in sentences]
         sentences = [(said, "mistake") for said, at_field in each if not at_field]
@@ -361,28 +361,28 @@ class ScreenView:
         with self._said:
             for said, kind in dict.fromkeys(sentences):
                 shown = ui.label(f"Warning: {said}" if kind == "warning" else said).classes(kind)
-                if kind == "warning":  # folded to its first line until it is pointed at or has the focus
+                if kind == "warning":  # the focus unfolds a long warning
                     shown.props("tabindex=0")
 
-    # What is shown ------------------------------------------------------------------------------------
+    # Display of results -------------------------------------------------------------------------------
 
     @property
     def dragged(self) -> bool:
-        """Whether a handle or a slider of the form is held."""
+        """Return whether the user holds a handle or a slider of the form."""
         return self._holds or self.board.held is not None
 
     @property
     def _plays(self) -> bool:
-        """Whether the slider above the drawing moves, by itself or by hand."""
+        """Return whether the slider above the drawing moves, by animation or by the user."""
         return self._player is not None and self._player.moves
 
     @property
     def progress(self) -> float:
-        """Position of the slider above the drawing."""
+        """Return the position of the slider above the drawing."""
         return self.screen.last if self._player is None else self._player.place
 
     def show(self) -> None:
-        """Show the latest answer, and the design that it is compared with."""
+        """Show the latest result, and the design with which it is compared."""
         answered = self._answered
         if answered is None:
             return
@@ -390,21 +390,21 @@ class ScreenView:
             self._headline.set_content(headline_of(self.work, self.screen, answered))
             self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
             toggle(self._tables, "waits", not answered.is_whole)
-            self.state()  # here, since what is written directly must be told together
+            self.state()  # done here, since all direct changes of the page must be reported together
         self._draw()
         if answered.picture:
             self._made[0].put(answered.answer, answered.picture)
         elif self.screen.picture is not None and answered.entries != self._pictured:
             self._pictured = answered.entries
             self._made[0].show(answered.answer)
-        if answered.is_whole:  # until then only drawing and picture are shown
+        if answered.is_whole:  # a preliminary result has only drawing and picture
             self._tables.set_content(html(answered.tables))
             self.comparison.show(answered)
             for more in self._made[self.screen.picture is not None :]:
                 more.show(answered.answer)
 
     def be_narrow(self, narrow: bool) -> None:
-        """Draw on narrow paper from now on, or on wide."""
+        """Draw for a narrow page from now on, or for a wide page."""
         if narrow == self.narrow:
             return
         self.narrow = narrow
@@ -415,7 +415,7 @@ class ScreenView:
             self._made[0].show(self._answered.answer)
 
     def _draw(self, view: Viewport | None = None) -> None:
-        """Draw the latest answer; charts beside a moving drawing follow at their own rate."""
+        """Draw the latest result; charts beside a moving drawing are updated less often."""
         answered, screen, place = self._answered, self.screen, self.progress
         if answered is None:
             return
@@ -436,18 +436,18 @@ class ScreenView:
         self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
 
     def _drawn_answer(self, answered: ShownAnswer) -> Any:
-        """Return the answer with the chosen branch, for the drawing."""
+        """Return the result with the chosen solution branch, for the drawing."""
         return self._branch.choose(answered.answer, self.screen.branches(answered.answer))
 
     def _moved(self, handle: Handle, target: Place, done: bool) -> None:
-        """Write the new place of a handle into the fields, and solve."""
+        """Write the new position of a handle into the fields, and compute the result."""
         if self._player is not None:
             self._player.pause()
         texts = changed_texts(handle, target, self.work.entries, self.work.inputs)
         for path, text in texts.items():
             self.work.put(path, text)
         self.form.write(texts)
-        if self._lists is not None:  # advice on missing items comes when the handle is released
+        if self._lists is not None:  # advice on missing items is shown when the handle is released
             (self._lists.show if done else self._lists.follow)(self.work.entries)
         if texts or done:
             self.solve(held=not done)
@@ -455,7 +455,7 @@ class ScreenView:
                 self._edited()
 
     async def _answer_for_file(self) -> ShownAnswer | None:
-        """Wait for an up-to-date answer and return it; notify and return None if it is only preliminary."""
+        """Wait for an up-to-date result and return it; notify and return None if it is only preliminary."""
         await self.settled()
         answered = self._answered
         if answered is None or answered.is_rough:
@@ -464,12 +464,12 @@ class ScreenView:
         return answered
 
     async def _open_following(self) -> None:
-        """Open the file that follows from the answer, once that is up to date."""
+        """Make a file from the result, once that is up to date, and open the file."""
         if self.screen.follows is not None and (answered := await self._answer_for_file()):
             self._open_file(self.screen.follows.text(answered.answer), self.screen.name)
 
     async def _download(self, kind: str) -> None:
-        """Download the drawing, as "svg" or "png", or the numbers, as "csv"."""
+        """Download the drawing ("svg" or "png") or the numbers ("csv")."""
         if answered := await self._answer_for_file():
             if kind == "csv":
                 made = self._make(page_tasks.rows_file, answered.answer)

@@ -30,20 +30,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Sweeps:
-    """The sweeps that a screen offers: any input against any result.
+    """The parameter sweeps that a screen offers: results over any input.
 
     Parameters
     ----------
     names : callable
-        ``names(tables)``: names of the results; it may raise `ConfigError`.
+        ``names(tables)`` returns the names of the results; it may raise `ConfigError`.
     example : str
-        The sweep that is shown at first, such as "stop.speed=10:30:9 km/h".
+        The varied input and its values at first, such as "stop.speed=10:30:9 km/h".
     results : str
         Names of the results chosen at first, separated by commas.
     run : callable
-        ``run(tables, text, names)``: the sweep that a text describes, of the results with these names.
+        ``run(tables, text, names)`` returns the named results for the varied input that a text describes.
     draw : callable
-        ``draw(sweep)``: its figure.
+        ``draw(sweep)`` returns the figure of a sweep.
     """
 
     names: Callable[[Mapping[str, Any]], Sequence[str]]
@@ -55,17 +55,17 @@ class Sweeps:
 
 @dataclass(frozen=True)
 class Backwards:
-    """The inverse questions that a screen offers: which value of an input gives a result a wanted value.
+    """The inverse questions that a screen offers: find the input for which a result has a wanted value.
 
     Parameters
     ----------
     units : callable
-        ``units(tables)``: units of the results, by their names; it may raise `ConfigError`.
+        ``units(tables)`` returns the unit of each result, by name; it may raise `ConfigError`.
     input, result : str
-        Path of the input and name of the result that are chosen at first.
+        Path of the input and name of the result that are selected at first.
     find : callable
-        ``find(tables, sought, so_that)``: what is found, in HTML; `sought` names the input, `so_that` says
-        what is wanted.
+        ``find(tables, sought, so_that)`` returns the values found as HTML; `sought` names the input,
+        `so_that` is the condition on the result.
     """
 
     units: Callable[[Mapping[str, Any]], Mapping[str, str]]
@@ -76,15 +76,15 @@ class Backwards:
 
 @dataclass(frozen=True)
 class FoldedPart:
-    """A further drawing or table of a screen, which folds out below its numbers, and is made only then.
+    """A further drawing or table of a screen, which is made when the user unfolds it.
 
     Parameters
     ----------
     title : str
         Title of the part.
     on_page, in_report : callable
-        ``on_page(answer)``: the part in HTML, in the colours of the page; ``in_report(answer)``: for a page
-        that has no colours of its own.
+        ``on_page(answer)`` returns the part as HTML with the colours of the page; ``in_report(answer)``
+        returns it for a report, with fixed colours.
     """
 
     title: str
@@ -93,7 +93,7 @@ class FoldedPart:
 
     @classmethod
     def of_drawings(cls, title: str, rows: Callable[[Any], Rows]) -> FoldedPart:
-        """Make the part that shows the drawings of ``rows(answer)``."""
+        """Make a part that shows the drawings that ``rows(answer)`` returns."""
 
         def on_page(answer: Any) -> str:
             drawn = rows(answer)
@@ -108,14 +108,14 @@ class FoldedPart:
 
 
 class FollowingFile(NamedTuple):
-    """A file that can be made from an answer.
+    """A file that can be made from a result, for another document.
 
     Parameters
     ----------
     words : str
-        Label of its button.
+        Label of the button that makes the file.
     text : callable
-        ``text(answer)``: the text of the file.
+        ``text(answer)`` returns the text of the file.
     """
 
     words: str
@@ -124,69 +124,69 @@ class FollowingFile(NamedTuple):
 
 @dataclass(frozen=True)
 class Screen:
-    """A screen: a form, and pure functions that solve its tables and show the answer.
+    """A screen: a form, and pure functions that compute the result and show it.
 
     Parameters
     ----------
     name : str
-        Name on its tab.
+        Name on the tab of the screen.
     purpose : str
-        Purpose, in a sentence.
+        Purpose of the screen in one sentence.
     sections : tuple of str
-        Tables whose inputs stand on its form; "" for inputs outside any table.
+        Tables of the file whose inputs are on the form; "" for inputs outside any table.
     needs : tuple of str
-        Tables, or inputs outside any, that the answer depends on.
+        Tables, and inputs outside any table, on which the result depends.
     solve : callable
-        ``solve(tables)``: the answer.
+        ``solve(tables)`` computes the result.
     tables : callable
-        ``tables(answer)``: tables and sentences on the answer.
+        ``tables(answer)`` returns tables and sentences on the result.
     draw : callable
-        ``draw(answer, place)``: the figure for files, with the slider at a position.
+        ``draw(answer, place)`` returns the figure for files, at a position of the slider.
     notes : callable
-        ``notes(answer)``: warnings and refusals, a sentence each.
+        ``notes(answer)`` returns warnings and error messages, a sentence each.
     rows : callable
-        ``rows(answer)``: rows of the CSV file.
+        ``rows(answer)`` returns the rows of the CSV file.
     slider : Slider, optional
         The slider above the drawing.
     sweeps : Sweeps, optional
-        Its sweeps.
+        Parameter sweeps that the screen offers.
     backwards : Backwards, optional
-        Its inverse questions.
+        Inverse questions that the screen offers.
     drags : tuple of Drag
-        Sliders in its form.
+        Sliders in the form.
     presets : tuple of Preset
-        Lists in its form that fill in several fields, such as a material.
+        Lists in the form whose choices fill in several fields, such as a material.
     more : tuple of FoldedPart
-        Drawings and tables that fold out; made when they are wanted.
+        Further drawings and tables, which are made when the user unfolds them.
     handles : callable
-        ``handles(answer, place)``: points of the first drawing that can be moved.
+        ``handles(answer, place)`` returns the points of the first drawing that the user can drag.
     drawings : callable
-        ``drawings(answer, place)``: rows of drawings; empty on a screen of charts.
+        ``drawings(answer, place)`` returns rows of drawings; empty for a screen that has only charts.
     coarser : callable
-        ``coarser(tables)``: tables with the same drawing that are solved sooner, for use while a point is
-        moved.
+        ``coarser(tables)`` returns inputs with about the same drawing that are computed faster, for use while
+        the user drags a point.
     lists : Lists, optional
-        Lists of named items above its form.
+        Lists of named items above the form.
     headline : callable
-        ``headline(answer)``: the two to four most important results, each in a few words.
+        ``headline(answer)`` returns the two to four most important results, each in a few words.
     quick_headline : callable, optional
-        The most important results without those that take time, for use while a handle or slider is held;
-        `headline` if not given.
+        Like `headline`, without results that take long to compute, for use while the user drags; `headline`
+        if not given.
     effort : str
-        What makes an answer take long, and what shortens it, in a sentence.
+        Sentence on what makes the computation slow, and what makes it faster.
     charts : callable, optional
-        ``charts(answer, place)``: charts below the drawings.
+        ``charts(answer, place)`` returns the charts below the drawings.
     picture : callable, optional
-        ``picture(answer, narrow)``: the figure that stands above the tables, for a narrow page or a wide one;
-        made in another process.
+        ``picture(answer, narrow)`` returns the figure above the tables, for a narrow or a wide page; it is
+        called in another process.
     branches : callable
-        ``branches(answer)``: where there are several solutions, the answer with each of them drawn, by name,
-        the usual one first; empty where there is one.
+        ``branches(answer)`` returns, if there are several solutions, a result for each of them, by name, the
+        usual one first; else an empty mapping.
     follows : FollowingFile, optional
-        A file that follows from an answer, which a button opens as another document.
+        A file made from the result, which a button opens as another document.
     sketch : callable
-        ``sketch(entries)``: rows of drawings that show what the symbols of the form mean, for the kinds that
-        are chosen there.
+        ``sketch(entries)`` returns rows of drawings that explain the symbols of the form, for the options
+        chosen in the form.
     """
 
     name: str
@@ -219,7 +219,7 @@ class Screen:
 
     @property
     def last(self) -> float:
-        """The largest position of the slider; 0 without one."""
+        """Return the largest position of the slider; 0 without a slider."""
         return self.slider.last if self.slider is not None else 0.0
 
 
@@ -230,26 +230,26 @@ class Document:
     Parameters
     ----------
     name : str
-        The file's usual name, without its suffix.
+        Usual name of the file, without its suffix.
     base : str
-        Text of the file that is shown on opening.
+        Text of the file that is shown at first.
     inputs : callable
-        ``inputs(entries)``: descriptions of the inputs, each path once.
+        ``inputs(entries)`` returns the descriptions of the inputs, each path once.
     check : callable
-        ``check(text, name)``: parse the text of a file, raising `ConfigError`.
+        ``check(text, name)`` parses the text of a file; it raises `ConfigError` for an invalid file.
     screens : tuple of Screen
-        Screens, each of which may use results of those before it.
+        Screens, each of which may use results of earlier screens.
     aside : mapping
-        Initial entries that are not part of the file, such as options of a command.
+        Initial field texts that are not part of the file, such as options of a command.
     read : callable
-        ``read(text, name)``: the tables of a file; raises `ConfigError`.
+        ``read(text, name)`` returns the tables of a file; it raises `ConfigError` for an invalid file.
     in_fields : callable
-        ``in_fields(tables)``: tables of a file with each value at the path of its input on the form.
+        ``in_fields(tables)`` rearranges the tables of a file so that each value is at the path of its field.
     headings : mapping
-        Headings of tables of the form; the name of a table where there is none.
+        Headings of the form's tables, by name; by default the name of the table.
     idle : callable
-        ``idle(entries)``: paths of inputs that have no effect beside these entries; they are shown only if
-        something is given for them.
+        ``idle(entries)`` returns the paths of inputs without effect for these field texts; their fields are
+        shown only if they contain a text.
     """
 
     name: str
@@ -264,38 +264,38 @@ class Document:
     idle: Callable[[Mapping[str, str]], Iterable[str]] = lambda _: ()
 
     def opened(self, text: str, source: str) -> Entries:
-        """Return the entries for the text of a file.
+        """Return the field texts for the text of a file.
 
         Parameters
         ----------
         text : str
-            The text.
+            Text of the file.
         source : str
             Name of the file, for messages.
 
         Raises
         ------
         ConfigError
-            If the parser of the commands does not accept it.
+            If the file is invalid for the commands.
         """
         self.check(text, source)
         tables = self.in_fields(self.read(text, source))
         return entries_of(tables, self.inputs(entries_of(tables, ()))) | dict(self.aside)
 
     def accepts(self, text: str) -> bool:
-        """Whether the text of a file can be opened as this document."""
+        """Return whether the text of a file can be opened as this document."""
         with suppress(ConfigError):
             return bool(self.opened(text, ""))
         return False
 
     @property
     def beside(self) -> set[str]:
-        """Tables that are not in the file."""
+        """Return the tables with inputs that are not part of the file."""
         return {path.partition(".")[0] for path in self.aside}
 
     @cached_property
     def base_entries(self) -> Entries:
-        """Entries of the base design, which is shown first."""
+        """Return the field texts of the initial design."""
         return self.opened(self.base, self.name)
 
 

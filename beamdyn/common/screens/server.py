@@ -1,15 +1,16 @@
-"""Serving an interactive program on this computer, to requests of its own page alone.
+"""Web server of an interactive program on this computer, which accepts requests of its own page only.
 
-A web page from elsewhere reaches a server on this computer through the visitor's browser: under a name of
-its own that is made to point to 127.0.0.1 ("DNS rebinding"), which shows in the request's Host; or as itself
-by a websocket or a form, which shows in its Origin; or by a picture or a link, which shows in Sec-Fetch-Site.
-All are checked here; starlette's `TrustedHostMiddleware` checks the first alone, and in its earlier versions
-takes no address in brackets.  The toolkit would make a page for every path and method: the others end here.
+A foreign web page can reach a server on this computer through the user's browser in three ways.  Its host
+name may be made to point to 127.0.0.1 ("DNS rebinding"), which shows in the header Host of the request.  It
+may open a websocket or send a form, which shows in the header Origin.  It may contain a picture or a link,
+which shows in the header Sec-Fetch-Site.  All three headers are checked here; starlette's
+`TrustedHostMiddleware` checks only Host, and its earlier versions accept no address in brackets.  The web
+framework NiceGUI would make a page for every path and method; all but the expected ones are refused here.
 
-What a page may load and send, its Content-Security-Policy says: nothing from elsewhere, nothing to there.
-The toolkit needs three exceptions: its page starts by a script within it ('unsafe-inline'), Vue
-compiles templates and NiceGUI runs the program's own code ('unsafe-eval'), and elements carry their styles
-('unsafe-inline').  What users enter is therefore shown as text or in escaped HTML alone.
+The header Content-Security-Policy forbids the page to load data from other servers, or to send data there.
+NiceGUI needs three exceptions: the page starts with an embedded script ('unsafe-inline'), Vue compiles
+templates and NiceGUI runs the program's own code ('unsafe-eval'), and elements contain styles
+('unsafe-inline').  Therefore texts of users are shown only as plain text or escaped HTML.
 """
 
 from __future__ import annotations
@@ -45,16 +46,16 @@ _GUARDS = (
 
 
 class RequestGuard:
-    """ASGI middleware that refuses requests to other host names than the program's, and from other pages.
+    """ASGI middleware that refuses requests to foreign host names, and requests from other pages.
 
     Parameters
     ----------
     app : callable
         The ASGI application.
     host : str
-        Address or name that the program listens on.  The program answers to it and to 127.0.0.1, [::1] and
-        localhost; where it listens on all addresses, to any address and to the computer's name: a foreign
-        page has a name, too, but another one.
+        Address or name on which the program listens.  Requests may be addressed to it and to 127.0.0.1, [::1]
+        and localhost.  If the program listens on all addresses, they may be addressed to any numerical
+        address and to the name of the computer, but not to other names, which a foreign page would have.
     """
 
     def __init__(self, app: ASGIApp, host: str) -> None:
@@ -69,7 +70,7 @@ class RequestGuard:
             return await self.app(scope, receive, send)
         headers, path, is_page = Headers(scope=scope), scope["path"], scope["type"] == "http"
         refusal = self.refusal(headers.getlist("host"), headers.getlist("origin"))
-        # A websocket always has an Origin, and browsers differ in the site that they state for it.
+        # A websocket always has the header Origin, but browsers differ in the value of Sec-Fetch-Site.
         sites = headers.getlist("sec-fetch-site") if is_page else []
         if not refusal and any(site not in ("same-origin", "none") for site in sites):
             refusal = (
@@ -84,11 +85,11 @@ class RequestGuard:
             sentence = refusal or "There is no such page; the program's only one is at /."
             await PlainTextResponse(f"{sentence}\n", 403 if refusal else 404)(scope, receive, send)
         else:
-            # A websocket that is closed before it is accepted gets status 403.
+            # A websocket that is closed before it is accepted gets the status 403.
             await send({"type": "websocket.close", "code": 1008})
 
     def refusal(self, hosts: list[str], origins: list[str]) -> str:
-        """Say why a request with these headers is refused; empty if it is accepted."""
+        """Return the reason why a request with these headers is refused; empty if it is accepted."""
         host = hosts[0].lower() if len(hosts) == 1 else ""
         match = _HOST.fullmatch(host)
         is_other_address = match and self.any_address and _is_address(match[1].strip("[]"))
@@ -113,15 +114,15 @@ def _is_address(name: str) -> bool:
 
 
 def _guarded(send: Send, host: str) -> Send:
-    """Wrap `send` to add headers: what the page may load, and that no other page may frame it.
+    """Wrap `send` to add headers: what the page may load, and that no other page may embed it.
 
     Parameters
     ----------
     send : callable
         The `send` of the request.
     host : str
-        The name that was asked for; its websockets are listed in the policy, as not every browser counts them
-        among 'self'.
+        Host name of the request; the policy lists its websockets, as not every browser includes them in
+        'self'.
     """
     sockets = f" ws://{host} wss://{host}" if host else ""
     policy = (b"content-security-policy", _POLICY.format(sockets=sockets).encode("latin-1"))
@@ -135,7 +136,7 @@ def _guarded(send: Send, host: str) -> Send:
 
 
 def root_of(program: Program, solver: RunsTasks) -> Callable[[], Awaitable[None]]:
-    """Make the function that builds the page for a client."""
+    """Return the function that builds the page for a client."""
 
     async def root() -> None:
         await open_page(program, Share(solver))
@@ -149,25 +150,25 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     Parameters
     ----------
     program : callable
-        Makes the program, here and in each process that makes answers: a function of a module.  It is called
-        only when it is known that the program can be shown.
+        Importable function that makes the program, here and in each worker process.  It is called only after
+        all checks have passed.
     host : str
         Address to listen on.
     port : int
         Port, from 1 to 65535.
     browser : bool
-        Open the browser.
+        Whether to open the browser.
 
     Raises
     ------
     ValueError
-        If the address is unknown or cannot be listened on, as where the port is taken.
+        If the address is unknown or cannot be used, for example because the port is in use.
     """
     _check_free(host, port)
     made, processes = program(), Processes(program)
     app.add_middleware(RequestGuard, host=host)
     add_style_and_scripts(made)
-    # No bar at the top, which has no name for screen readers; the page says "Computing".
+    # No loading bar at the top, as it has no name for screen readers; the page shows "Computing".
     app.config.quasar_config["loadingBar"]["skipHijack"] = True
     app.on_startup(processes.start)
     app.on_shutdown(processes.close)
@@ -180,7 +181,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
             language="en-US",
             show=browser,
             reload=False,
-            tailwind=False,  # Tailwind would search the page after each change
+            tailwind=False,  # Tailwind would scan the page after each change
             # Compression would delay each message, and gains little within one computer.
             ws_per_message_deflate=False,
             reconnect_timeout=30.0,
@@ -188,7 +189,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
 
 
 def _check_free(host: str, port: int) -> None:
-    """Refuse an address that is blank or unknown, or cannot be listened on, before the server tries."""
+    """Raise an error for an address that is blank, unknown or in use, before the server tries to start."""
     remedy = f"give an address or a name of this computer, such as {HOME}, or leave --host out"
     if not host.strip():
         raise ValueError(f'--host = "{host}": it is blank; {remedy}')

@@ -1,4 +1,4 @@
-"""The panel of a screen that sweeps an input: charts, picture and CSV of the results."""
+"""The panel of a screen for parameter sweeps: charts, picture and CSV file of results over an input."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ from beamdyn.common.screens.page_writer import PageWriter, toggle
 from beamdyn.common.screens.processes import RunsTasks, TakesTooLong
 from beamdyn.common.screens.screens import Screen, Sweeps
 
-_FEW = 60  # largest number of values of a sweep whose points are marked on the curves
+_FEW = 60  # largest number of values of a sweep for which the points on the curves are marked
 
 
 def sweep_charts(swept: InputSweep) -> list[Chart]:
-    """Make the charts of a sweep of one input, one for each unit of its results.
+    """Make the charts of results over one input, one chart for each unit of the results.
 
-    Points at the foot of a chart mark where curves have no value.
+    Points at the bottom of a chart mark values of the input without a result.
 
     Parameters
     ----------
@@ -64,26 +64,26 @@ def sweep_charts(swept: InputSweep) -> list[Chart]:
     return charts
 
 
-# Suggested number of values of a sweep, and their range as a share of the present value.
+# Suggested number of values of a sweep, and their range as a fraction of the present value.
 _COUNT, _AROUND = 21, 0.2
 
 
-_Request = tuple[Entries, str, str]  # a request: the design, the input with its values, the results
+_Request = tuple[Entries, str, str]  # field texts, input with values, names of results
 
 
 class SweepPanel:
-    """A panel below a screen's results that sweeps an input, and can be folded.
+    """A foldable panel below the results, which computes results over a varied input.
 
     Parameters
     ----------
     work : OpenDocument
-        The document.
+        The open document.
     screen : Screen
-        The screen of the document on which the panel stands.
+        The screen of the document that contains the panel.
     sweeps : Sweeps
         The sweeps that the screen offers.
     solver : RunsTasks
-        Runs the sweeps.
+        Object that runs the sweeps in worker processes.
     """
 
     def __init__(self, work: OpenDocument, screen: Screen, sweeps: Sweeps, solver: RunsTasks) -> None:
@@ -116,12 +116,12 @@ class SweepPanel:
                 self._charts = ChartBoard(f"{screen.name}: charts of the sweep", PageWriter())
 
     def state(self) -> None:
-        """Update the inputs and results offered, and grey a stale sweep, if the panel is open."""
+        """If the panel is open: update the available inputs and results, and grey an outdated sweep."""
         if not self._fold.value:
             return
         paths, needed = [*self._inputs()], self.work.needed(self.screen)
         self._input.set_options(paths, value=self._input.value if self._input.value in paths else paths[0])
-        with suppress(ConfigError):  # an error is shown by the screen itself
+        with suppress(ConfigError):  # the screen itself shows the error
             names = [*self.sweeps.names(tables_of(needed, self.work.inputs))]
             kept = [name for name in self._results.value if name in names]
             self._results.set_options(names, value=kept or names[:1])
@@ -133,12 +133,12 @@ class SweepPanel:
         return inputs_with_value(self.work, self.screen)
 
     def _suggest(self) -> None:
-        """Suggest values around the present one for the chosen input."""
+        """Suggest values around the present value of the chosen input."""
         if (entry := self._inputs().get(self._input.value)) is not None:
             self._write_range(around(entry, self.work.entries))
 
     def _write_range(self, text: str) -> None:
-        """Write a text "start:stop:count unit" into the fields, both ends with their unit."""
+        """Write a text "start:stop:count unit" into the fields; both limits get the unit."""
         numbers, _, unit = text.partition(" ")
         low, high, count = numbers.split(":")
         for field, shown in (
@@ -150,7 +150,7 @@ class SweepPanel:
 
     @property
     def _range(self) -> str:
-        """Read the fields as a text "start:stop:count unit"; an end without a unit takes the other's."""
+        """Return the fields as "start:stop:count unit"; a limit without a unit has the other limit's."""
         (low, _, unit), (high, _, other) = (
             (f.value or "").strip().partition(" ") for f in (self._low, self._high)
         )
@@ -160,7 +160,7 @@ class SweepPanel:
         return f"{low}:{high}:{(self._count.value or '').strip()} {(other or unit).strip()}".strip()
 
     async def _run(self) -> InputSweep | None:
-        """Run the sweep; None if it fails, with the reason shown.  One that is under way is ended first."""
+        """Run the sweep, after stopping a running one; return None and show the reason if it fails."""
         text, names = f"{self._input.value}={self._range}", ",".join(self._results.value)
         request = (self.work.needed(self.screen), text, names)
         if self._found is not None and self._found[0] == request:
@@ -206,7 +206,7 @@ class SweepPanel:
             self.state()
 
     def report(self) -> tuple[str, InputSweep] | None:
-        """Return title and result of the sweep shown; None if there is none, or it is stale."""
+        """Return title and result of the sweep that is shown; None if there is none, or it is outdated."""
         if self._found is None or self._shown != self.work.needed(self.screen):
             return None
         (_, text, names), swept = self._found
@@ -214,7 +214,7 @@ class SweepPanel:
         return title, swept
 
     async def _download(self, kind: str) -> None:
-        """Download the rows of the sweep, as "csv", or its picture, as "svg" or "png"."""
+        """Download the rows of the sweep ("csv"), or its picture ("svg" or "png")."""
         swept = await self._run()
         if swept and kind == "csv":
             ui.download.content(csv_text(sweep_csv(swept)).encode(), "sweep.csv")
@@ -224,23 +224,23 @@ class SweepPanel:
 
 
 def inputs_with_value(work: OpenDocument, screen: Screen) -> dict[str, Input]:
-    """Return a screen's inputs that are numbers and have a value, given or by default, by path."""
+    """Return the inputs of a screen that are numbers with a given or default value, by path."""
     known = [i for i in work.inputs if table_of(i.path) in screen.needs]
     there = [i for i in known if work.entries.get(i.path) or i.default is not None]
     return {entry.path: entry for entry in numbers(there)}
 
 
 def around(entry: Input, entries: Mapping[str, str]) -> str:
-    """Format values around the present one of an input, or its default: start:stop:count unit."""
+    """Return values around the present value of an input, or its default, as "start:stop:count unit"."""
     number, unit = _given(entry, entries)
     low, high = (number * (1 - _AROUND), number * (1 + _AROUND)) if number else (0.0, 1.0)
     return f"{low:.3g}:{high:.3g}:{_COUNT} {unit}".strip()
 
 
 def _given(entry: Input, entries: Mapping[str, str]) -> tuple[float, str]:
-    """Return number and unit of the text in an input's field, or of its default."""
+    """Return number and unit of the text in an input's field, or of the input's default."""
     text, default, unit = entries.get(entry.path, ""), entry.default, entry.quantity.unit
-    if isinstance(entry, Coordinate):  # the coordinate's part of the point's text, and of its default
+    if isinstance(entry, Coordinate):  # for a coordinate: its part of the point's text, and of the default
         whole: Any = entry.of.default or (0.0, 0.0)
         default = whole[entry.place]
         try:

@@ -1,3 +1,3 @@
-"""Ranges of answers over tolerances of inputs, for both packages, each of which evaluates its own answers."""
+"""Effects of tolerances of inputs on results; both packages use these modules with their own models."""
 
 DEFAULT_SAMPLES = 1024

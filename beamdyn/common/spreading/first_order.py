@@ -1,4 +1,4 @@
-"""First-order ranges: tolerances multiplied by the slopes at the nominal design."""
+"""First-order ranges of results: tolerances of inputs times derivatives at the nominal design."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ from beamdyn.common.spreading.tolerances import SpreadInput
 
 @dataclass(frozen=True)
 class KnownDerivatives:
-    """Derivatives of k answers that are known from equations.
+    """Derivatives of k results that are computed from equations, not by finite differences.
 
     Parameters
     ----------
     rows : mapping of int to pair of ndarray, shape (k,)
-        By the row of an input: derivatives by it, nan where there is none, and their absolute errors.
+        For each input, by index: derivatives of the results with respect to it (nan if unknown), and their
+        absolute errors.
     warnings : tuple of str
-        Why derivatives by the other inputs are not known.
+        Reasons why derivatives with respect to the other inputs are unknown.
     """
 
     rows: Mapping[int, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
@@ -28,14 +29,15 @@ class KnownDerivatives:
 
 @dataclass(frozen=True)
 class Slopes:
-    """Derivatives of k answers by d inputs at the nominal design, with their errors.
+    """Derivatives of k results with respect to d inputs at the nominal design, with their errors.
 
     Parameters
     ----------
     value, error : ndarray, shape (d, k)
-        Derivatives, nan where there is none, and their absolute errors [unit / unit of the input].
+        Derivatives (nan if unknown), and their absolute errors [unit of the result / unit of the input].
     exact : ndarray of bool, shape (d, k)
-        Which are derivatives of the equations; others are those of polynomials through designs.
+        Whether each derivative is computed from the equations; others are slopes of polynomials through
+        results of designs.
     """
 
     value: np.ndarray
@@ -43,7 +45,7 @@ class Slopes:
     exact: np.ndarray
 
     def replaced(self, rows: Mapping[int, tuple[np.ndarray, np.ndarray]]) -> Slopes:
-        """Return a copy with exact derivatives and errors (k,) of some inputs, where these are finite."""
+        """Return a copy in which some rows are replaced by exact derivatives (k,), if these are finite."""
         value, error, exact = self.value.copy(), self.error.copy(), self.exact.copy()
         for row, (slope, wrong) in rows.items():
             known = np.isfinite(slope)
@@ -54,24 +56,24 @@ class Slopes:
 def slopes_from(
     nominal: np.ndarray, beside: np.ndarray, steps: np.ndarray, error: np.ndarray | float = 0.0
 ) -> Slopes:
-    """Compute the slopes of polynomials of fourth degree through five designs for each input.
+    """Compute derivatives as slopes of fourth-degree polynomials through five designs for each input.
 
     Parameters
     ----------
     nominal : ndarray, shape (k,)
-        Answers of the nominal design.
+        Results of the nominal design.
     beside : ndarray, shape (d, 4, k)
-        Answers of the designs in which one input is off its nominal value by one of the steps.
+        Results of the designs in which one input differs from its nominal value by one of the steps.
     steps : ndarray, shape (d, 4)
         Steps of each input from its nominal value, in the input's unit.
     error : ndarray, shape (k,)
-        Absolute error of an answer.
+        Absolute error of each result.
 
     Returns
     -------
     Slopes
         The error is the difference from the slope of a parabola through three of the designs, plus the effect
-        of the answers' errors.  Where a design has no answer the slope is nan, and its error inf.
+        of errors of the results.  If a design lacks a result, the slope is nan and its error inf.
     """
     with np.errstate(invalid="ignore"):
         changes = beside - nominal
@@ -86,45 +88,47 @@ def slopes_from(
 
 
 def _slope_weights(steps: np.ndarray) -> np.ndarray:
-    """Compute weights of changes at given steps, whose weighted sum is a polynomial's slope at 0."""
+    """Compute weights of results at given steps, whose weighted sum is a polynomial's slope at 0."""
     size = np.abs(steps).max()
     powers = (steps / size)[None, :] ** np.arange(1, len(steps) + 1)[:, None]
     return np.linalg.solve(powers, np.eye(len(steps))[0]) / size
 
 
 def _parabola_weights(steps: np.ndarray) -> np.ndarray:
-    """Compute weights as `_slope_weights`, for a parabola through 0, the last step and an earlier one."""
+    """Compute weights for the slope at 0 of a parabola through 0, the last step and an earlier step."""
     used = [0, 3] if steps[0] * steps[3] < 0 else [1, 3]
     weights = np.zeros(len(steps))
     weights[used] = _slope_weights(steps[used])
     return weights
 
 
-# Ranges to first order ----------------------------------------------------------------------------
+# First-order ranges -------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class FirstOrderRange:
-    """Ranges of k answers to first order in d inputs; nan where a slope is missing.
+    """First-order ranges of k results over the tolerances of d inputs; nan if a derivative is missing.
 
     Parameters
     ----------
     smallest, largest : ndarray, shape (k,)
-        Answers with each input at the end of its tolerance that makes them smallest or largest [their units].
+        Results with each input at the end of its tolerance that makes them smallest or largest [units of the
+        results].
     mean, deviation : ndarray, shape (k,)
-        Mean and standard deviation [units of the answers].
+        Mean and standard deviation [units of the results].
     error : ndarray, shape (k,)
-        Largest effect of the errors of the slopes on the four numbers above [units of the answers].
+        Largest effect of errors of the derivatives on the four numbers above [units of the results].
     share : ndarray, shape (d, k)
-        Share of each input in the variance.
+        Contribution of each input to the variance, as a fraction.
     slope, slope_error : ndarray, shape (d, k)
-        Derivatives and their absolute errors [unit / unit of the input].
+        Derivatives and their absolute errors [unit of the result / unit of the input].
     exact : ndarray of bool, shape (d, k)
-        Which slopes are derivatives of the equations; others are those of polynomials through designs.
+        Whether each derivative is computed from the equations; others are slopes of polynomials through
+        results of designs.
 
     References
     ----------
-    Standard: propagation of tolerances by slopes.
+    Standard: linear propagation of tolerances.
 
     Examples
     --------
@@ -146,7 +150,7 @@ class FirstOrderRange:
 
 
 def first_order_of(inputs: Sequence[SpreadInput], nominal: np.ndarray, slopes: Slopes) -> FirstOrderRange:
-    """Compute first-order ranges of answers from slopes and tolerances.
+    """Compute first-order ranges of results from derivatives and tolerances.
 
     Parameters
     ----------
@@ -155,7 +159,7 @@ def first_order_of(inputs: Sequence[SpreadInput], nominal: np.ndarray, slopes: S
     nominal : ndarray, shape (k,)
         Answers of the nominal design.
     slopes : Slopes
-        Derivatives of the answers at the nominal design.
+        Derivatives of the results at the nominal design.
     """
     at = np.array([each.nominal for each in inputs])
     low, high = (np.array([each.distribution.ends for each in inputs]) - at[:, None]).T[..., None]

@@ -1,4 +1,4 @@
-"""Computation of a spread from the answers of designs, by whatever evaluates them."""
+"""Effects of tolerances on results, from the results of designs, which the caller's function computes."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import BOTH, WorstCases, trends_of, worst_cases
 from beamdyn.common.words import percent
 
-_FEW = 3  # largest number of reasons for missing answers that a warning lists
+_FEW = 3  # largest number of reasons for missing results that a warning lists
 
 
 @dataclass(frozen=True)
 class SpreadAnswers:
-    """Answers of N designs, with errors and statuses.
+    """Results of N designs, with errors and statuses.
 
     Parameters
     ----------
     answers, units : tuple of str, length k
-        Name of each answer, and its unit.
+        Name and unit of each result.
     value : ndarray, shape (N, k)
-        Answers; not finite where there is none.
+        Results; not finite where there is none.
     error : ndarray, shape (N, k)
-        Their estimated relative errors; nan where none is known.
+        Estimated relative errors of the results; nan if unknown.
     status : ndarray of str, shape (N, k)
-        Status of each answer, such as "stable" or "divergence".
+        Status of each result, such as "stable" or "divergence".
     warnings : tuple of str
-        Warnings about the answers.
+        Warnings about the results.
     method, compared_with : str
         As for `Provenance`.
     """
@@ -54,19 +54,19 @@ class SpreadAnswers:
 
     @property
     def absolute_error(self) -> np.ndarray:
-        """Absolute errors (N, k); nan where none is known."""
+        """Return the absolute errors (N, k); nan if unknown."""
         with np.errstate(invalid="ignore"):
             size = np.abs(self.value) * self.error
-        size = np.where(np.isinf(self.error), np.inf, size)  # infinite also for an answer of 0
+        size = np.where(np.isinf(self.error), np.inf, size)  # inf * 0 is nan, but the error is inf
         return np.where(np.isfinite(self.value), size, np.nan)
 
     @property
     def size_of_error(self) -> np.ndarray:
-        """Absolute errors (N, k); 0 where none is known."""
+        """Return the absolute errors (N, k); 0 if unknown."""
         return np.nan_to_num(self.absolute_error, nan=0.0, posinf=np.inf)
 
 
-# A function from the inputs of N designs, (N,) by name, to their answers; a ValueError if no design has one.
+# A function that computes results from the inputs of N designs, (N,) by name; a ValueError if all fail.
 Evaluate = Callable[[dict[str, np.ndarray]], SpreadAnswers]
 Derivatives = Callable[[], KnownDerivatives]
 
@@ -80,22 +80,22 @@ def solve_spread(
     derivatives: Derivatives = KnownDerivatives,
     cautions: Sequence[str] = (),
 ) -> Spread:
-    """Compute ranges of answers over tolerances of inputs.
+    """Compute ranges of results over tolerances of inputs.
 
     Parameters
     ----------
     what : str
-        Answers that are asked for.
+        Name of the requested results.
     inputs : sequence of SpreadInput
         The d inputs.
     samples, seed : int
-        As `check_samples` and `check_seed` return them.
+        Number of samples and seed, as returned by `check_samples` and `check_seed`.
     evaluate : callable
-        Computes the answers of designs.
+        Function that computes the results of designs.
     derivatives : callable
-        Derivatives of the answers at the nominal design, as far as they are known.
+        Function that returns the known derivatives of the results at the nominal design.
     cautions : sequence of str
-        Warnings that stand before those of the answers.
+        Warnings that precede the warnings of the results.
     """
     start = perf_counter()
     designs = SpreadDesigns(inputs, samples, seed)
@@ -142,26 +142,26 @@ def _columns(inputs: Sequence[SpreadInput], designs: np.ndarray) -> dict[str, np
 
 @dataclass
 class _FurtherAnswers:
-    """Evaluation of the designs of worst cases, with the warnings about them.
+    """Computes the designs of worst cases, and collects the warnings about them.
 
-    Designs that are refused, as inputs that are good alone may be wrong together, have no answer.
+    A combination of inputs may be invalid even if each input is valid; such a design has no result.
     """
 
     evaluate: Evaluate
     inputs: Sequence[SpreadInput]
-    wanted: Any  # mask of the answers that at least one design has; only these can be missing
+    wanted: Any  # which results at least one design has; only these can be missing
     _count: int = 0
     _without: dict[str, int] = field(default_factory=dict)
     _said: list[str] = field(default_factory=list)
 
     def __call__(self, designs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return answers (N, k) of designs (N, d), and their absolute errors."""
+        """Return results (N, k) of designs (N, d), and their absolute errors."""
         self._count += len(designs)
         value, error = zip(*self._parts(designs), strict=True)
         return np.concatenate(value), np.concatenate(error)
 
     def _parts(self, designs: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield answers of all designs; if one is refused, of each half of them in turn."""
+        """Yield results of all designs; if a design is invalid, split the designs into halves to find it."""
         try:
             found = self.evaluate(_columns(self.inputs, designs))
         except ValueError as error:
@@ -181,7 +181,7 @@ class _FurtherAnswers:
         yield found.value, found.absolute_error
 
     def warnings(self, before: Sequence[str]) -> Iterator[str]:
-        """Yield how many designs have no answer, and warnings about the others that were not given before."""
+        """Yield the number of designs without results, and warnings that were not given before."""
         if self._without:
             why = [f"{reason}: {number}" for reason, number in self._without.items()]
             parts = "; ".join([*why[:_FEW], *(["..."] if why[_FEW:] else [])])
@@ -195,20 +195,20 @@ class _FurtherAnswers:
 
 
 def _subject(sentence: str) -> tuple[str, ...]:
-    """Return a key of a warning's subject, which is said once: kind and quantity, or else the text."""
+    """Return the key by which repeated warnings are recognized: kind and quantity, or else the text."""
     is_data = isinstance(sentence, Statement)
     return (sentence.kind, sentence.quantity) if is_data else (sentence,)
 
 
 def _largest_error(found: SpreadAnswers) -> np.ndarray:
-    """Return the largest relative error of each answer (k,); nan where none is known."""
+    """Return the largest relative error of each result (k,); nan if unknown."""
     known = np.where(np.isfinite(found.value), found.error, np.nan)
     largest = np.where(np.isnan(known), -np.inf, known).max(axis=0)
     return np.where(largest < 0, np.nan, largest)
 
 
 def _states(status: np.ndarray) -> tuple[dict[str, float], ...]:
-    """Return the shares of designs (2, n, k) in each status, for each answer; the most frequent first."""
+    """Return the fraction of designs (2, n, k) in each status, for each result; the most frequent first."""
     made = []
     for column in status.reshape(-1, status.shape[-1]).T:
         words, counts = np.unique(column, return_counts=True)
@@ -229,7 +229,7 @@ def _notes(
     states: Sequence[dict[str, float]],
     error: np.ndarray,
 ) -> Iterator[str]:
-    """Yield what limits the statistics of each answer."""
+    """Yield sentences on what limits the statistics of each result."""
     yield from _without_answer(answers, scatter.no_answer, states)
     for k, name in enumerate(answers):
         if worst.searched[k]:
@@ -246,7 +246,7 @@ def _notes(
 def _without_answer(
     answers: Sequence[str], shares: np.ndarray, states: Sequence[dict[str, float]]
 ) -> Iterator[str]:
-    """Yield which answers some designs lack, together for answers with the same reasons."""
+    """Yield sentences on missing results, one for all results with the same reasons."""
     said: dict[str, list[str]] = {}
     for name, share, parts in zip(answers, shares, states, strict=True):
         why = ", ".join(f"{state} {percent(part)}" for state, part in parts.items())

@@ -1,4 +1,4 @@
-"""The result of a spread: ranges of answers over the tolerances of inputs."""
+"""Result of an analysis of tolerances: ranges of results over the tolerances of inputs."""
 
 from __future__ import annotations
 
@@ -17,57 +17,58 @@ from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import WorstCases
 from beamdyn.common.words import supported
 
-_DIGITS, _MOST_DIGITS = 4, 10  # digits in the headline, at least and at most
-_APART = 3.0  # number of standard errors by which two indices are told apart
+_DIGITS, _MOST_DIGITS = 4, 10  # smallest and largest number of digits in the one-line summary
+_APART = 3.0  # difference of two indices, in standard errors, from which they count as different
 
 
 @dataclass(frozen=True)
 class Spread(Result):
-    """Ranges of k answers over the tolerances of d inputs.
+    """Ranges of k results over the tolerances of d inputs.
 
-    All errors of statistics are standard errors, from 16 blocks of samples that were drawn independently: the
-    truth lies within 2.1 of them in 95 of 100 cases.
+    All errors of statistics are standard errors, from 16 independent blocks of samples: the true value is
+    within 2.1 standard errors in 95 of 100 cases.
 
     Parameters
     ----------
     what : str
-        The question.
+        Name of the requested results.
     answers, units : tuple of str, length k
-        Name of each answer, such as "mode 1", and its unit.
+        Name of each result, such as "mode 1", and its unit.
     inputs : tuple of SpreadInput, length d
-        Each with its `name`, `unit`, `nominal` value, `distribution` and the `text` of its tolerance.
+        Inputs, each with `name`, `unit`, `nominal` value, `distribution` and `text` of the tolerance.
     nominal : ndarray, shape (k,)
-        Answers of the nominal design [`units`].
+        Results of the nominal design [`units`].
     error : ndarray, shape (k,)
-        Largest estimated relative error of an answer over the nominal design, those for slopes and the random
-        ones; `worst` has its own.
+        Largest estimated relative error of each result over the nominal design, the designs for derivatives,
+        and the random designs; `worst` has its own errors.
     first_order : FirstOrderRange
-        What the derivatives at the nominal design say: `smallest`, `largest`, `mean`, `deviation`, `share` of
-        each input in the variance; `slope`, `slope_error`.
+        Estimates from the derivatives at the nominal design: `smallest`, `largest`, `mean`, `deviation`,
+        `share` of each input in the variance; `slope`, `slope_error`.
     worst : WorstCases
-        `smallest` and `largest` answers within all tolerances, with their errors, the inputs at which they
-        are found (`smallest_at`, `largest_at`), and whether they were `searched`, so that there may be worse.
+        `smallest` and `largest` results within all tolerances, with their errors, the inputs of these designs
+        (`smallest_at`, `largest_at`), and whether a search found them (`searched`), so that worse designs may
+        exist.
     trends : ndarray of str, shape (d, k)
-        How each answer changes with each input, as far as n pairs of random designs show: "rises", "falls",
-        "rises and falls", "does not change"; "no answer" where the answer is not known.
+        How each result changes with each input in n pairs of random designs: "rises", "falls", "rises and
+        falls", "does not change"; "no answer" if the result is missing.
     scatter : Scatter
-        Statistics of random designs: `mean`, standard `deviation` and `percentile` (1, 5, 50, 95, 99 %) over
-        those that have an answer, each with its error; and the share of designs that have `no_answer`.
+        Statistics of random designs: `mean`, standard `deviation` and `percentile` (1, 5, 50, 95, 99 %) of
+        the existing results, each with its error; and the fraction of designs without a result, `no_answer`.
     indices : SobolIndices
-        Sobol' indices: shares of the variance by each input alone (`first`), and with what it does together
-        with others (`total`), and their errors.
+        Sobol' indices: fraction of the variance due to each input alone (`first`), and including its
+        interactions with other inputs (`total`), and their errors.
     states : tuple of dict, length k
-        Share of random designs in each state, such as "stable" or "divergence".
+        Fraction of random designs in each state, such as "stable" or "divergence".
     samples, seed : int
-        Number n of designs in each of the 2 + d random samples, and the seed that they follow from.
+        Number n of designs in each of the 2 + d random samples, and the seed of the random numbers.
     sampled_inputs : ndarray, shape (2 n, d)
-        Random designs, of which the statistics are [SI units of the inputs].
+        Random designs on which the statistics are based [SI units of the inputs].
     sampled_answers : ndarray, shape (2 n, k)
-        Their answers [`units`]; not finite where there is none.
+        Results of the random designs [`units`]; not finite where there is none.
     warnings : tuple of str
-        Warnings about the answers.
+        Warnings about the results.
     provenance : Provenance
-        How it was found.
+        Version, method and computing time.
 
     Examples
     --------
@@ -97,7 +98,7 @@ class Spread(Result):
     provenance: Provenance
 
     def headline(self) -> Iterator[str]:
-        """Yield range and most important input of the first answer, parts of a one-line summary.
+        """Yield range and most influential input of the first result, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -113,13 +114,13 @@ class Spread(Result):
 
     @property
     def designs(self) -> int:
-        """Number of random designs that were answered: (2 + d) n."""
+        """Return the number of random designs that were computed: (2 + d) n."""
         return (2 + len(self.inputs)) * self.samples
 
     def matters_most(self, answer: int = 0) -> tuple[str, ...]:
-        """Return the input that contributes most to the variance of an answer, by its total index.
+        """Return the input that contributes most to the variance of a result, by its total index.
 
-        Several where their indices are not told apart by three standard errors; none where there are no
+        Return several inputs if their indices differ by less than three standard errors; none if there are no
         indices.
         """
         total, error = self.indices.total[:, answer], self.indices.total_error[:, answer]
@@ -132,12 +133,12 @@ class Spread(Result):
         return tuple(self.inputs[i].name for i in order if near[i])
 
     def design(self, row: int) -> dict[str, float]:
-        """Return the inputs of a random design by name, in SI: a row of `sampled_inputs`."""
+        """Return the inputs of a random design, by name, in SI units: a row of `sampled_inputs`."""
         values = self.sampled_inputs[row].tolist()
         return {each.name: value for each, value in zip(self.inputs, values, strict=True)}
 
     def plot(self, ax: Axes | None = None, answer: int = 0) -> Axes:
-        """Draw how an answer scatters: its random designs, percentiles, first order and worst cases."""
+        """Draw the scatter of a result: histogram, percentiles, first-order range and worst cases."""
         first, worst, unit = self.first_order, self.worst, self.units[answer]
         marks = (
             ("5 % and 95 %", "--", COLOURS[0], self.scatter.percentile[[1, 3], answer].tolist()),
@@ -149,42 +150,42 @@ class Spread(Result):
         return draw_scatter(self.sampled_answers[:, answer], label, marks, ax)
 
     def plot_indices(self, ax: Axes | None = None) -> Axes:
-        """Draw the shares of the variance of each answer that come from each input, with their errors."""
+        """Draw the contribution of each input to the variance of each result, with error bars."""
         found, names = self.indices, [each.name for each in self.inputs]
         return draw_indices(names, self.answers, found.total, found.total_error, found.first, ax)
 
 
 def _digits_of(low: float, high: float) -> int:
-    """Return the number of digits that tell both ends of a range apart, to some percent of the range."""
+    """Return the number of digits needed to distinguish both ends of a range."""
     with np.errstate(divide="ignore", invalid="ignore"):
         needed = 2 + np.log10(np.divide(max(abs(low), abs(high)), high - low))
     return int(np.clip(needed, _DIGITS, _MOST_DIGITS)) if np.isfinite(needed) else _DIGITS
 
 
-# Pictures of spreads ------------------------------------------------------------------------------
+# Pictures of scatter and variance -----------------------------------------------------------------
 
 
 _BINS = 24
-_MOST_PANELS = 4  # largest number of answers that a figure shows
-# Distance of a histogram's ends beyond the 5 % and 95 % points, over the distance of these two points.
+_MOST_PANELS = 4  # largest number of results that a figure shows
+# Distance of a histogram's limits from the 5 % and 95 % percentiles, divided by the distance of these two.
 _REACH = 1.0
 
 
 def draw_scatter(
     values: np.ndarray, label: str, marks: Sequence[tuple[str, str, str, Sequence[float]]], ax: Axes | None
 ) -> Axes:
-    """Draw a histogram of an answer, with marks.
+    """Draw a histogram of a result, with vertical marks.
 
     Parameters
     ----------
     values : ndarray, shape (n,)
-        Answers of random designs; those that are not finite count, but are not drawn.
+        Results of random designs; those that are not finite are counted, but not drawn.
     label : str
         Label of the axis.
     marks : sequence of (label, style, colour, places)
-        Vertical lines at places.
+        Vertical lines at the positions `places`.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     """
     ax, drawn = (ax or new_axes(height=4.0)), values[np.isfinite(values)]
     ax.set_xlabel(label)
@@ -206,7 +207,7 @@ def draw_scatter(
 
 
 def _seen(drawn: np.ndarray) -> tuple[float, float]:
-    """Return the ends of a histogram of answers, so that a few outliers do not hide the rest."""
+    """Return the limits of a histogram, which exclude a few outliers."""
     if not drawn.size:
         return -np.inf, np.inf
     low, high = np.percentile(drawn, [5, 95])
@@ -221,16 +222,16 @@ def draw_indices(
     first: np.ndarray,
     ax: Axes | None,
 ) -> Axes:
-    """Draw total indices as bars with their standard errors, those of first order as diamonds.
+    """Draw total Sobol' indices as bars with standard errors, first-order indices as diamonds.
 
     Parameters
     ----------
     inputs, answers : sequence of str
-        The d inputs and k answers; of many answers the first are drawn.
+        Names of the d inputs and k results; of many results, the first ones are drawn.
     total, error, first : ndarray, shape (d, k)
-        Indices and the errors of the total ones; those that are not finite are left out.
+        Total indices, their errors, and first-order indices; values that are not finite are omitted.
     ax : Axes, optional
-        Where to draw; new axes if not given.
+        Axes to draw on; new axes if not given.
     """
     ax, shown = (ax or new_axes(height=4.0)), min(len(answers), len(COLOURS))
     height, rows = 0.8 / shown, np.arange(len(inputs))[::-1]
@@ -254,7 +255,7 @@ def draw_indices(
 
 
 def spread_figure(spread: Any) -> Figure:
-    """Draw how the first answers of a `Spread` scatter, a panel each, and below them which inputs matter."""
+    """Draw the scatter of the first results of a `Spread`, and below it the influence of the inputs."""
     panels = min(len(spread.answers), _MOST_PANELS)
     below = 1.2 + 0.35 * len(spread.inputs)
     figure = new_figure(7.5, 2.4 * panels + below)

@@ -1,15 +1,15 @@
-"""Statistics of the answers of random designs, with their standard errors.
+"""Statistics of the results of random designs, with their standard errors.
 
-Samples come in blocks whose points were scrambled independently, so that the scatter over blocks says how far
-a mean is from the truth: it needs no assumption on the answers, and includes what the even distribution of
-the points gains.  A statistic is a mean or a ratio of means over blocks, its error that of its linear part.
+The samples are divided into blocks of points that are scrambled independently, so that the scatter of the
+block means gives the error of the mean.  This needs no assumption on the results, and includes the gain of
+evenly distributed points.  A statistic is a mean or a ratio of means over blocks; its error follows by
+linearization.
 
-Designs of a spread: random ones for its statistics, the nominal one, and those about it for slopes.
+The designs are: random designs for statistics, the nominal design, and neighbouring designs for derivatives.
 
-Of random designs there are two samples A and B (n each), and for each input one with the values of A but for
-that input, whose values are those of B (Saltelli et al., Computer Physics Communications 181 (2010) 259).
-A and B are points of `BLOCKS` Sobol' sequences, each scrambled by itself: the scatter over these blocks says
-how far a statistic may be from the truth.
+There are two random samples A and B of n designs each.  For each input, a further sample has that input from
+B and all other inputs from A (Saltelli et al., Computer Physics Communications 181 (2010) 259).  A and B are
+points of `BLOCKS` independently scrambled Sobol' sequences.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ if TYPE_CHECKING:
     from scipy.stats.qmc import QMCEngine
 
 BLOCKS = 16
-LEAST, MOST = 128, 2**17  # least and most samples: with fewer, blocks are too small to estimate errors
+LEAST, MOST = 128, 2**17  # allowed numbers of samples: fewer give blocks too small for errors
 MOST_SEED = 2**63
-# Largest step for slopes, over the way to an end of the tolerance: so large that rounding does not matter, so
-# small that answers are nearly linear.
+# Largest step for derivatives, as a fraction of the distance to an end of the tolerance: so large that
+# rounding is negligible, so small that results are nearly linear.
 _STEP = 1 / 8
 _ONE_SIDED, _BOTH_SIDES = np.array([0.25, 0.5, 0.75, 1.0]), np.array([-1.0, -0.5, 0.5, 1.0])
 
 
 def check_samples(samples: object) -> tuple[int, list[str]]:
-    """Return the number of samples to use, a power of two, with a warning if another was given."""
+    """Return the number of samples to use, a power of two, with a warning if another number was given."""
     given = count("samples", samples, LEAST, MOST)
     used = 1 << (given - 1).bit_length()
     said = [f"samples = {given}: {used}, the next power of two, are used"] if used != given else []
@@ -46,18 +46,18 @@ def check_samples(samples: object) -> tuple[int, list[str]]:
 
 
 def count_designs(inputs: int, samples: int) -> int:
-    """Compute the number of designs that are answered at first, for d inputs."""
+    """Compute the number of designs that are computed at first, for d inputs."""
     return 1 + 4 * inputs + (2 + inputs) * samples
 
 
 def check_seed(seed: object) -> int:
-    """Return the seed of the samples; refuse anything but a whole number from 0."""
+    """Return the seed of the samples; raise an error unless it is a whole number of 0 or more."""
     return count("seed", seed, 0, MOST_SEED)
 
 
 @dataclass(frozen=True)
 class SpreadDesigns:
-    """All designs that are answered at first: the nominal one, those for slopes, and random ones.
+    """All designs that are computed at first: nominal design, designs for derivatives, random designs.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class SpreadDesigns:
     samples : int
         Number n of designs of each random sample.
     seed : int
-        Seed from which the samples follow.
+        Seed of the random samples.
     """
 
     inputs: Sequence[SpreadInput]
@@ -75,15 +75,15 @@ class SpreadDesigns:
 
     @property
     def count(self) -> int:
-        """Number of inputs d."""
+        """Return the number d of inputs."""
         return len(self.inputs)
 
     @cached_property
     def table(self) -> np.ndarray:
-        """All designs, one in each row, (1 + 4 d + (d + 2) n, d), with d inputs and n samples.
+        """Return all designs, one per row, shape (1 + 4 d + (d + 2) n, d), for d inputs and n samples.
 
-        They are the nominal one, those for slopes, two random samples A and B, and A with each input in turn
-        from B.
+        The rows are the nominal design, the designs for derivatives, the random samples A and B, and A with
+        each input in turn from B.
         """
         first, second = self._random
         mixed = np.tile(first, (self.count, 1, 1))
@@ -93,21 +93,21 @@ class SpreadDesigns:
 
     @property
     def nominal(self) -> np.ndarray:
-        """The nominal design, shape (d,)."""
+        """Return the nominal design, shape (d,)."""
         return np.array([each.nominal for each in self.inputs])
 
     @cached_property
     def steps(self) -> np.ndarray:
-        """Distances from the nominal values of the designs for slopes, shape (d, 4).
+        """Return the steps from the nominal values of the designs for derivatives, shape (d, 4).
 
-        The largest go an eighth of the way to either end of the tolerance; where the nominal value is an end,
-        all go towards the other.
+        The largest steps are an eighth of the distance to either end of the tolerance; if the nominal value
+        is at an end, all steps are towards the other end.
         """
         return np.array([_steps(each) for each in self.inputs])
 
     @property
     def _beside(self) -> np.ndarray:
-        """Designs with one input off its nominal value, shape (4 d, d)."""
+        """Return the designs in which one input differs from its nominal value, shape (4 d, d)."""
         beside = np.tile(self.nominal, (self.count, 4, 1))
         each = np.arange(self.count)
         beside[each, :, each] += self.steps
@@ -115,21 +115,21 @@ class SpreadDesigns:
 
     @cached_property
     def _random(self) -> np.ndarray:
-        """Random samples A and B, shape (2, n, d)."""
+        """Return the random samples A and B, shape (2, n, d)."""
         blocks = np.random.SeedSequence(self.seed).spawn(BLOCKS)
         shares = np.stack([_sobol_points(2 * self.count, self.samples // BLOCKS, each) for each in blocks])
         shares = shares.reshape(self.samples, 2, self.count).transpose(1, 0, 2)
         return np.stack([each.distribution.at(shares[..., i]) for i, each in enumerate(self.inputs)], axis=-1)
 
     def part(self, answers: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Split the answers (N, k) of the designs into those of nominal, neighbouring and random designs.
+        """Split the results (N, k) of all designs into nominal, neighbouring and random designs.
 
         Returns
         -------
         nominal : ndarray, shape (k,)
         beside : ndarray, shape (d, 4, k)
         random : ndarray, shape (2 + d, n, k)
-            Answers of the samples A, of B, and of A with each input of B.
+            Results of the samples A, B, and A with each input in turn from B.
         """
         k, slopes = answers.shape[1], 1 + 4 * self.count
         beside = answers[1:slopes].reshape(self.count, 4, k)
@@ -144,8 +144,8 @@ def _steps(given: SpreadInput) -> np.ndarray:
 
 
 def _sobol_points(columns: int, rows: int, seed: np.random.SeedSequence) -> np.ndarray:
-    """Draw points of a scrambled Sobol' sequence, shape (rows, columns), none of which is 0 or 1."""
-    from scipy.stats import qmc  # imported here, because it takes long to load
+    """Return points of a scrambled Sobol' sequence, shape (rows, columns), all between 0 and 1."""
+    from scipy.stats import qmc  # imported here, because the import takes long
 
     if columns > qmc.Sobol.MAXDIM:
         raise InvalidValue("spread", columns // 2, f"at most {qmc.Sobol.MAXDIM // 2} inputs have a spread")
@@ -153,38 +153,38 @@ def _sobol_points(columns: int, rows: int, seed: np.random.SeedSequence) -> np.n
 
 
 def seeded(sequence: Callable[..., QMCEngine], columns: int, seed: np.random.SeedSequence | int) -> QMCEngine:
-    """Make a sequence of points of `scipy.stats.qmc`, whose seed had another name before scipy 1.15."""
+    """Make a sequence of points of `scipy.stats.qmc`; scipy before 1.15 has another name for the seed."""
     name = "rng" if "rng" in signature(sequence).parameters else "seed"
     return sequence(columns, **{name: np.random.default_rng(seed)})
 
 
-# Statistics of the answers ------------------------------------------------------------------------
+# Statistics of the results ------------------------------------------------------------------------
 
 
 PERCENTS = (1.0, 5.0, 50.0, 95.0, 99.0)
-_LEAST_BLOCKS = 8  # least number of blocks with answers, whose scatter gives an error
-_ROUNDING = 1e-12  # relative scatter of answers below which they count as equal
+_LEAST_BLOCKS = 8  # least number of blocks with results from which an error is estimated
+_ROUNDING = 1e-12  # relative scatter of results below which they count as equal
 
 
 @dataclass(frozen=True)
 class Scatter:
-    """Scatter of k answers over the random designs that have them.
+    """Scatter of k results over the random designs that have them.
 
     Parameters
     ----------
     mean, mean_error : ndarray, shape (k,)
-        Mean [units of the answers], nan where no design has an answer; and its standard error, inf where
-        fewer than 8 of the 16 blocks of samples hold answers.
+        Mean [units of the results], nan if no design has a result; and its standard error, inf if fewer than
+        8 of the 16 blocks of samples contain results.
     deviation, deviation_error : ndarray, shape (k,)
         Standard deviation and its standard error, nan and inf as for the mean [same units].
     percentile : ndarray, shape (5, k)
-        Answers below which `PERCENTS` of all lie [same units].
+        Percentiles: results below which the percentages `PERCENTS` of all results lie [same units].
     percentile_error : ndarray, shape (5, k)
-        Their standard errors [same units]; inf as those of the mean.
+        Standard errors of the percentiles [same units]; inf as for the mean.
     no_answer : ndarray, shape (k,)
-        Share of designs without an answer.
+        Fraction of designs without a result.
     no_answer_error : ndarray, shape (k,)
-        Standard error of that share.
+        Standard error of this fraction.
 
     Examples
     --------
@@ -205,26 +205,26 @@ class Scatter:
 
 
 def scatter_of(random: np.ndarray) -> Scatter:
-    """Compute the scatter of answers over random designs.
+    """Compute the scatter of results over random designs.
 
     Parameters
     ----------
     random : ndarray, shape (2, n, k)
-        Answers of the samples A and B; not finite where there is none.
+        Results of the samples A and B; not finite where there is none.
     """
     blocks = _in_blocks(random)
     return Scatter(*(np.stack(each, axis=-1) for each in zip(*map(_scatter_of_one, blocks), strict=True)))
 
 
 def _in_blocks(random: np.ndarray) -> np.ndarray:
-    """Arrange answers by block, shape (k, BLOCKS, 2 n / BLOCKS)."""
+    """Arrange results by block, shape (k, BLOCKS, 2 n / BLOCKS)."""
     two, n, k = random.shape
     blocks = random.reshape(two, BLOCKS, n // BLOCKS, k)
     return np.moveaxis(blocks, -1, 0).transpose(0, 2, 1, 3).reshape(k, BLOCKS, -1)
 
 
 def _scatter_of_one(values: np.ndarray) -> tuple[np.ndarray | float, ...]:
-    """Compute the fields of `Scatter` for one answer, from values (BLOCKS, m)."""
+    """Compute the fields of `Scatter` for one result, from its values (BLOCKS, m)."""
     known = np.isfinite(values)
     none, none_error = mean_of_blocks(~known, np.ones(values.shape))
     if not known.any():
@@ -250,10 +250,10 @@ def mean_of_blocks(values: np.ndarray, weights: np.ndarray) -> tuple[float, floa
 
 
 def _percentile(values: np.ndarray, known: np.ndarray, share: float) -> tuple[float, float]:
-    """Compute the answer below which a share of all answers lies, and its standard error.
+    """Compute a percentile (the result below which a given fraction lies), and its standard error.
 
-    From block to block the share below this answer scatters: the error spans the answers at shares that
-    differ by this scatter, and by half a sample.
+    The fraction of results below the percentile varies from block to block.  The error is the difference of
+    the results at fractions that differ by this variation, and by half a sample.
     """
     ordered = values[known]
     found = float(np.quantile(ordered, share))
@@ -263,18 +263,18 @@ def _percentile(values: np.ndarray, known: np.ndarray, share: float) -> tuple[fl
     return found, float(np.abs(near - found).max())
 
 
-# Indices of Sobol' --------------------------------------------------------------------------------
+# Sobol' indices -----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class SobolIndices:
-    """Shares of the variance of k answers that come from d inputs.
+    """Fractions of the variance of k results that are due to each of d inputs.
 
     Parameters
     ----------
     first, total : ndarray, shape (d, k)
-        Indices of the first order, by the input alone, and total ones, also by what it does together with
-        others; nan where a design has no answer, or the answer scatters by no more than its numerical error.
+        First-order indices (effect of the input alone) and total indices (including interactions with other
+        inputs); nan if a design lacks the result, or the result varies by no more than its numerical error.
     first_error, total_error : ndarray, shape (d, k)
         Standard errors of the indices.
 
@@ -303,9 +303,9 @@ def indices_of(random: np.ndarray, error: np.ndarray | float = 0.0) -> SobolIndi
     Parameters
     ----------
     random : ndarray, shape (2 + d, n, k)
-        Answers of A, of B, and of A with each input of B.
+        Results of the samples A, B, and A with each input in turn from B.
     error : ndarray, shape (k,)
-        Largest absolute error of each answer.
+        Largest absolute error of each result.
     """
     d, k = len(random) - 2, random.shape[2]
     found = np.full((2, d, k), np.nan)
@@ -324,12 +324,12 @@ def indices_of(random: np.ndarray, error: np.ndarray | float = 0.0) -> SobolIndi
 
 
 def _indices(random: np.ndarray) -> np.ndarray:
-    """Compute indices of first order and total indices, shape (2, d, k)."""
-    from scipy.stats import sobol_indices  # imported here, because it takes long to load
+    """Compute first-order and total Sobol' indices, shape (2, d, k)."""
+    from scipy.stats import sobol_indices  # imported here, because the import takes long
 
     d, n, k = len(random) - 2, random.shape[1], random.shape[2]
     if d == 1:
-        return np.ones((2, 1, k))  # a single input has all of the variance
+        return np.ones((2, 1, k))  # a single input causes the whole variance
     a, b, *mixed = np.moveaxis(random, -1, 1)
     found = sobol_indices(func={"f_A": a, "f_B": b, "f_AB": np.array(mixed)}, n=n)
     shapes = (np.reshape(order, (k, d)).T for order in (found.first_order, found.total_order))
@@ -337,10 +337,10 @@ def _indices(random: np.ndarray) -> np.ndarray:
 
 
 def _errors_of_indices(random: np.ndarray, indices: np.ndarray) -> np.ndarray:
-    """Compute standard errors (2, d, k) of indices, as quotients of two means whose linear part scatters.
+    """Compute standard errors (2, d, k) of Sobol' indices, which are ratios of two means, by linearization.
 
-    The means are those of `scipy.stats.sobol_indices`, of answers about their mean: f_B (f_AB - f_A) and
-    (f_A - f_AB)^2 / 2, over the variance.
+    As in `scipy.stats.sobol_indices`, the numerators are the means of f_B (f_AB - f_A) and (f_A - f_AB)^2 /
+    2, where f is a result minus its mean; the denominator is the variance.
     """
     if len(random) == 3:
         return np.zeros(indices.shape)

@@ -22,20 +22,20 @@ _FORMS = 'give "+-2%", "+1% -2%", "0.9 to 1.1" with a unit, or "sd 1%"'
 
 _PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # factors of unit prefixes
 
-# A function from a number and a unit, as written, to SI; it raises `InvalidValue` for a wrong unit.
+# A function that converts a number and a unit, as written, to SI; `InvalidValue` for a wrong unit.
 Convert: TypeAlias = "Callable[[str, str], float]"
 
 
 @dataclass(frozen=True)
 class Uniform:
-    """A number that lies anywhere between two ends, each value as likely as another.
+    """A uniform distribution: all values between two ends are equally likely.
 
     Parameters
     ----------
     low, high : float
-        Its ends [SI unit of the input].
+        Smallest and largest value [SI unit of the input].
     text : str
-        How it was given, for tables.
+        The tolerance as the user wrote it, for tables.
 
     Examples
     --------
@@ -56,38 +56,39 @@ class Uniform:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Smallest and largest value of a worst case."""
+        """Return the smallest and the largest value in a worst case."""
         return self.low, self.high
 
     reach = ends  # smallest and largest value of a sample
 
     @property
     def mean(self) -> float:
-        """Mean value."""
+        """Return the mean value."""
         return (self.low + self.high) / 2
 
     @property
     def deviation(self) -> float:
-        """Standard deviation."""
+        """Return the standard deviation."""
         return (self.high - self.low) / math.sqrt(12)
 
     def at(self, share: np.ndarray) -> np.ndarray:
-        """Return the values below which shares of all values lie, in the shape of the shares."""
+        """Return the quantiles at given fractions: the values below which these fractions lie."""
         return self.low + (self.high - self.low) * share
 
 
 @dataclass(frozen=True)
 class Normal:
-    """A number that is normally distributed; values beyond five standard deviations are left out.
+    """A normal distribution; values beyond five standard deviations are not used.
 
-    These are 6 in ten million. A worst case has its ends at three standard deviations.
+    Only 6 in ten million values are beyond five standard deviations.  Worst cases use the range of three
+    standard deviations on either side.
 
     Parameters
     ----------
     mean, deviation : float
         Mean value and standard deviation [SI unit of the input].
     text : str
-        How it was given, for tables.
+        The tolerance as the user wrote it, for tables.
 
     Examples
     --------
@@ -109,19 +110,19 @@ class Normal:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Smallest and largest value of a worst case: three standard deviations either way."""
+        """Return the smallest and the largest value in a worst case: three standard deviations either way."""
         return self._about(self._ENDS)
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Smallest and largest value of a sample: five standard deviations either way."""
+        """Return the smallest and the largest value of a sample: five standard deviations either way."""
         return self._about(self._REACH)
 
     def _about(self, times: float) -> tuple[float, float]:
         return self.mean - times * self.deviation, self.mean + times * self.deviation
 
     def at(self, share: np.ndarray) -> np.ndarray:
-        """Return the values below which shares of all values lie, in the shape of the shares."""
+        """Return the quantiles at given fractions: the values below which these fractions lie."""
         from scipy.special import ndtr, ndtri
 
         beyond = ndtr(-self._REACH)
@@ -133,18 +134,18 @@ Distribution: TypeAlias = "Uniform | Normal"
 
 @dataclass(frozen=True)
 class SpreadInput:
-    """An input with its tolerance.
+    """An input and its tolerance.
 
     Parameters
     ----------
     name : str
-        Its path in files, such as "beam.thickness".
+        Path of the input in files, such as "beam.thickness".
     unit : str
-        Its SI unit.
+        SI unit of the input.
     nominal : float
-        Its value in the scene or design [unit].
+        Nominal value of the input [unit].
     distribution : Uniform or Normal
-        Which values it takes [unit].
+        Probability distribution of the input [unit].
 
     Examples
     --------
@@ -161,7 +162,7 @@ class SpreadInput:
 
     @property
     def text(self) -> str:
-        """The tolerance, as it was given."""
+        """Return the tolerance as the user wrote it."""
         return self.distribution.text or _as_text(self.distribution, self.unit)
 
 
@@ -173,19 +174,20 @@ def parse_tolerance(name: str, text: str, nominal: float, unit: str, convert: Co
     name : str
         Name of the input.
     nominal : float
-        Its value [unit].
+        Nominal value of the input [unit].
     unit : str
-        Its SI unit.
+        SI unit of the input.
     text : str
-        "+-2%", of the nominal value, or "+-0.01 mm": any value within it is as likely; "+1% -2%" or "+1%"
-        alone; "0.19 mm to 0.21 mm"; "sd 1%": normally distributed, with this standard deviation.
+        The tolerance: "+-2%" of the nominal value, "+-0.01 mm", "+1% -2%", "+1%" or "0.19 mm to 0.21 mm" for
+        a uniform distribution; "sd 1%" for a normal distribution with this standard deviation.
     convert : callable
-        Converts a number and a unit, as written, to SI.
+        Function that converts a number and a unit, as written, to SI.
 
     Raises
     ------
     InvalidValue
-        If the text has no such form, a percentage is of 0, or the nominal value is not within.
+        If the text has none of these forms, a percentage refers to a nominal value of 0, or the nominal value
+        is outside the tolerance.
     """
     given = " ".join(text.split())
 
@@ -227,7 +229,7 @@ def _wide(name: str, text: str, width: float) -> float:
 def _sided(
     name: str, text: str, nominal: float, found: re.Match[str], size: Callable[[str, str], float]
 ) -> tuple[float, float]:
-    """Return the ends of a text such as "+1% -2%"; a missing unit is that of the other end."""
+    """Return both ends for a text such as "+1% -2%"; a missing unit is that of the other end."""
     first, one, unit, second, other, last = found.groups()
     if first == second:
         raise InvalidValue(name, text, f"both sides have the sign {first}", 'give one of each: "+1% -2%"')
@@ -238,7 +240,7 @@ def _sided(
 def _ends(
     name: str, text: str, nominal: float, unit: str, found: re.Match[str], convert: Convert
 ) -> tuple[float, float]:
-    """Return the ends of a text such as "0.19 mm to 0.21 mm"; a missing unit is that of the other end."""
+    """Return both ends for a text such as "0.19 mm to 0.21 mm"; a missing unit is that of the other end."""
     sign, one, first, last_sign, other, last = found.groups()
     if "%" in (first, last):
         raise InvalidValue(name, text, "the ends must be values, not %", 'give percentages as "+1% -2%"')
@@ -256,7 +258,7 @@ def _ends(
 
 
 def check_holds(given: SpreadInput) -> None:
-    """Refuse a distribution whose ends do not enclose the nominal value."""
+    """Raise an error if the nominal value is outside the tolerance."""
     low, high = given.distribution.ends
     if not low <= given.nominal <= high:
         bound = "it does not hold the value itself, {limit}"
@@ -271,7 +273,7 @@ def _as_text(given: Distribution, unit: str) -> str:
 
 
 def without_unit(text: str, written: str, unit: str) -> str:
-    """Write the remedy for a tolerance with a unit other than the input's: the text converted to that."""
+    """Return the advice for a tolerance in a wrong unit: the text converted to the unit of the input."""
     factor = _PREFIXES.get(written.removesuffix(unit)) if unit and written.endswith(unit) else None
     if factor is None:
         return f"give numbers alone{f', in {unit}' if unit else ''}"

@@ -1,10 +1,11 @@
-"""Worst cases: the smallest and the largest answer of all designs within the ends of the tolerances.
+"""Worst cases: the smallest and the largest result of all designs within the tolerances.
 
-Where an answer rises or falls with each input throughout, both are at corners.  Where random designs show
-that it does not, corners, and the best of the random designs, are where a search begins: it tries steps along
-each input, either way, takes the best, and halves the steps where none is better (Kolda, Lewis and Torczon,
-SIAM Review 45 (2003) 385).  It ends at a design that no step betters, which need not be the worst of all.
-That an answer rises throughout is what pairs of random designs show: it is no proof.
+If a result rises or falls monotonically with each input, both worst cases are at corners of the tolerance
+region (each input at an end of its tolerance).  If random designs show that it does not, a search starts at
+corners and at the most extreme random designs: it tries steps of each input in both directions, takes the
+best one, and halves the steps if none is better (Kolda, Lewis and Torczon, SIAM Review 45 (2003) 385).  It
+ends at a design that no step improves, which may be only a local extreme.  Monotonicity is inferred from
+pairs of random designs; this is no proof.
 """
 
 from __future__ import annotations
@@ -19,31 +20,31 @@ import numpy as np
 from beamdyn.common.spreading.tolerances import SpreadInput
 
 RISES, FALLS, BOTH, NEITHER, UNKNOWN = "rises", "falls", "rises and falls", "does not change", "no answer"
-_MOST_TURNING = 6  # largest number of inputs of which all combinations of ends are tried
-_FIRST_STEP, _LAST_STEP = 0.25, 2.0**-11  # first and last step of a search, over the width of a tolerance
-ROUNDING = 1e-12  # relative change of an answer below which it counts as unchanged
+_MOST_TURNING = 6  # largest number of inputs for which all combinations of ends are tried
+_FIRST_STEP, _LAST_STEP = 0.25, 2.0**-11  # first and last step of a search, in widths of the tolerance
+ROUNDING = 1e-12  # relative change of a result below which it counts as unchanged
 
-# A function from designs (N, d) to answers (N, k), not finite where there is none, and their absolute errors
-# (N, k), nan where none is known.
+# A function that returns the results (N, k) of designs (N, d), not finite where there is none, and their
+# absolute errors (N, k), nan if unknown.
 Answer = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 def trends_of(random: np.ndarray, error: np.ndarray, first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Decide how answers change with each input, from pairs of random designs that differ in it alone.
+    """Determine how results change with each input, from pairs of random designs that differ only in it.
 
     Parameters
     ----------
     random : ndarray, shape (2 + d, n, k)
-        Answers of A, of B, and of A with each input of B.
+        Results of the samples A, B, and A with each input in turn from B.
     error : ndarray, shape (2 + d, n, k)
-        Their absolute errors.
+        Absolute errors of these results.
     first, second : ndarray, shape (n, d)
-        The designs A and B.
+        The designs of the samples A and B.
 
     Returns
     -------
     ndarray of str, shape (d, k)
-        "rises", "falls", "rises and falls" or "does not change"; "no answer" where no pair has one.
+        "rises", "falls", "rises and falls" or "does not change"; "no answer" if no pair has two results.
     """
     with np.errstate(invalid="ignore"):
         change = random[2:] - random[0]
@@ -57,23 +58,24 @@ def trends_of(random: np.ndarray, error: np.ndarray, first: np.ndarray, second: 
 
 @dataclass(frozen=True)
 class WorstCases:
-    """Smallest and largest of k answers.
+    """Smallest and largest values of k results.
 
     Parameters
     ----------
     smallest, largest : ndarray, shape (k,)
-        The answers [their units]; nan where none was found.
+        Smallest and largest value of each result [unit of the result]; nan where none was found.
     smallest_error, largest_error : ndarray, shape (k,)
-        Their absolute errors: of the answers of these designs, and by how much any random design lies beyond
-        them; nan where none is known.
+        Absolute errors: numerical error of the result, plus the amount by which any random design exceeds the
+        value; nan if unknown.
     smallest_at, largest_at : ndarray, shape (k, d)
-        Inputs of their designs [SI units of the inputs].
+        Inputs of the designs with these values [SI units of the inputs].
     searched : ndarray of bool, shape (k,)
-        Whether they come from a search, so that there may be worse; others are at corners.
+        Whether the values come from a search, so that worse designs may exist; others are at corners of the
+        tolerance region.
     cut_short : ndarray of bool, shape (k,)
-        Whether the search ended, as it took too many designs, before no step was better.
+        Whether the search was stopped at the largest number of designs, before it had converged.
     designs : int
-        Number of designs at corners and of the search.
+        Number of designs computed at corners and in searches.
 
     References
     ----------
@@ -99,7 +101,7 @@ class WorstCases:
 
 
 class _Case(NamedTuple):
-    """A design (d,), its answer, and the answer's absolute error; or S of them."""
+    """A design (d,), its result, and the absolute error of the result; or S such cases."""
 
     at: np.ndarray
     value: float | np.ndarray
@@ -114,20 +116,21 @@ def worst_cases(
     error: np.ndarray,
     answer: Answer,
 ) -> WorstCases:
-    """Find the worst cases; a search takes at most as many designs as have been answered.
+    """Find the worst cases; a search computes at most as many designs as are known already.
 
     Parameters
     ----------
     inputs : sequence of SpreadInput
         The d inputs.
     trends : ndarray of str, shape (d, k)
-        As `trends_of` returns them.
+        Trends of the results, as returned by `trends_of`.
     designs, answers : ndarray, shapes (N, d) and (N, k)
-        Designs that have been answered; those beyond the ends are not looked at.
+        Designs with known results; designs outside the tolerances are ignored.
     error : ndarray, shape (N, k)
-        Absolute errors of the answers, by which one must be better than another; nan where none is known.
+        Absolute errors of the results, nan if unknown; a result counts as better only if the difference
+        exceeds the errors.
     answer : callable
-        Returns the answers of further designs, and their absolute errors.
+        Function that computes the results of further designs, and their absolute errors.
     """
     low, high = np.array([each.distribution.ends for each in inputs]).T
     nominal, k = np.array([each.nominal for each in inputs]), trends.shape[1]
@@ -160,7 +163,7 @@ def worst_cases(
 def _corners(
     trends: np.ndarray, sense: int, low: np.ndarray, high: np.ndarray, nominal: np.ndarray
 ) -> np.ndarray:
-    """Return corners (c, d) at which an answer may be smallest (sense -1) or largest (sense 1)."""
+    """Return corners (c, d) at which a result may be smallest (sense -1) or largest (sense 1)."""
     rises, falls = trends == RISES, trends == FALLS
     up = rises if sense > 0 else falls
     at = np.where(up, high, np.where(rises | falls, low, nominal))
@@ -173,9 +176,9 @@ def _corners(
 def _ends(
     corners: Sequence[np.ndarray], answer: Answer, known: tuple[np.ndarray, ...]
 ) -> Iterator[tuple[_Case, _Case]]:
-    """Yield, for the smallest and the largest value of each answer, the corner and the design with it.
+    """Yield, for the smallest and the largest value of each result, the best corner and the best design.
 
-    The first is the best of the corners, the second the best of the corners and the known designs.
+    The best design is chosen among the corners and the designs with known results.
     """
     places = np.cumsum([len(part) for part in corners])[:-1]
     values, errors = (np.split(each, places) for each in answer(np.vstack(corners)))
@@ -185,10 +188,10 @@ def _ends(
 
 
 def _best(cases: Iterable[np.ndarray], end: int) -> _Case:
-    """Return the design with the smallest or largest value of an answer, of designs (n, d).
+    """Return the design with the smallest or the largest value of a result, of designs (n, d).
 
-    The number `end` is 2 i for the smallest, and 2 i + 1 for the largest value of answer i. Answers and their
-    errors have the shape (n, k).
+    The number `end` is 2 i for the smallest value of result i, and 2 i + 1 for the largest.  Results and
+    their errors have the shape (n, k).
     """
     at, answers, errors = cases
     value, error = answers[:, end // 2], errors[:, end // 2]
@@ -199,30 +202,30 @@ def _best(cases: Iterable[np.ndarray], end: int) -> _Case:
 
 
 def _is_beaten(corner: _Case, best: _Case) -> bool:
-    """Whether a random design lies beyond the best corner by more than the errors of both."""
+    """Return whether a random design exceeds the best corner by more than the errors of both."""
     near = sum(0.0 if np.isnan(each.error) else each.error for each in (corner, best))
     near = near + ROUNDING * np.abs(best.value)
     return bool(np.isfinite(best.value) and not np.abs(best.value - corner.value) <= near)
 
 
 def _widened(corner: _Case, best: _Case) -> _Case:
-    """Add to the error of the best corner how far random designs lie beyond it."""
+    """Increase the error of the best corner by the amount by which random designs exceed it."""
     return corner._replace(error=corner.error + np.abs(best.value - corner.value))
 
 
 def _search(
     start: _Case, rows: np.ndarray, ends: tuple[np.ndarray, np.ndarray], answer: Answer, most: int
 ) -> tuple[_Case, np.ndarray, int]:
-    """Search S better designs (S, d) at once; row 2 i + 1 is the largest of answer i.
+    """Search S better designs (S, d) at once; row 2 i minimizes result i, row 2 i + 1 maximizes it.
 
     Returns
     -------
     cases : _Case
-        The best designs, their answers (S,) and errors (S,).
+        The best designs, their results (S,) and errors (S,).
     cut : ndarray of bool, shape (S,)
-        Which searches have not ended by themselves.
+        Whether each search was stopped before it converged.
     count : int
-        Number of designs that were answered, at most `most`.
+        Number of computed designs, at most `most`.
     """
     (low, high), d = ends, start.at.shape[1]
     which, sense = rows // 2, np.where(rows % 2, 1.0, -1.0)

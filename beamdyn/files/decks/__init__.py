@@ -1,1 +1,1 @@
-"""Decks, the input files of other programs for blades: read, audited, and written as scenes."""
+"""Decks (other programs' input files on a blade): reading, checking, and conversion to scenes."""

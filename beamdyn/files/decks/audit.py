@@ -1,4 +1,4 @@
-"""Audit of a deck: mass and its moments, steep steps, and its mode shapes beside computed ones."""
+"""Audit of a blade from another program: mass, moments, steep steps, comparison of mode shapes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from beamdyn.scene.scene import Scene
 SHAPE_NAMES: Mapping[str, str] = {"flap 1": "BldFl1Sh", "flap 2": "BldFl2Sh", "edge 1": "BldEdgSh"}
 PLACES = np.linspace(0, 1, 401)  # positions x/L at which shapes are compared and fitted
 _POWERS = np.arange(2, 7)
-_TOLERANCE = 1e-6  # tolerance of the frequencies of computed shapes
+_TOLERANCE = 1e-6  # tolerance for the frequencies of computed shapes
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class ModePolynomial:
     coefficients : tuple of float
         Coefficients of the powers 2 to 6; they add up to 1, the deflection at the tip.
     difference : float
-        Largest difference from the mode shape with the same deflection at the tip, relative to it.
+        Largest difference from the mode shape, relative to the common deflection at the tip.
     frequency : float
         Frequency of the mode [Hz].
 
@@ -54,7 +54,7 @@ class ModePolynomial:
     frequency: float
 
     def lines(self) -> list[str]:
-        """Write the lines that a blade file of ElastoDyn has for this polynomial."""
+        """Return the lines of an ElastoDyn blade file for this polynomial."""
         name, said = (
             SHAPE_NAMES[self.mode],
             f"{self.mode.split()[0].capitalize()} mode {self.mode.split()[1]}",
@@ -66,12 +66,12 @@ class ModePolynomial:
 
 
 def fit_mode_polynomials(scene: Scene, speed: float) -> tuple[ModePolynomial, ...]:
-    """Fit a polynomial to each mode shape that ElastoDyn takes, by least squares over equal steps of x/L.
+    """Fit a polynomial to each mode shape that ElastoDyn uses, by least squares over equal steps of x/L.
 
     Parameters
     ----------
     scene : Scene
-        A blade; without a second bending stiffness its flap modes alone are fitted.
+        A blade; if it has no second bending stiffness, only its flap modes are fitted.
     speed : float
         Speed of rotation [rad/s].
     """
@@ -82,9 +82,9 @@ def fit_mode_polynomials(scene: Scene, speed: float) -> tuple[ModePolynomial, ..
 def _fit(scene: Scene, mode: str, speed: float) -> ModePolynomial:
     shape, frequency = shape_of(scene, mode, speed)
     last = PLACES ** _POWERS[-1]
-    # Each of these functions is 0 at the tip, so that the deflection there stays 1.
+    # Each of these functions is 0 at the tip, so that the deflection at the tip stays 1.
     others = PLACES[:, None] ** _POWERS[:-1] - last[:, None]
-    # As many digits as are written to the file.
+    # Rounded to as many digits as are written to the file.
     first = np.linalg.lstsq(others, shape - last, rcond=None)[0].round(6)
     coefficients = (*map(float, first), round(1 - float(first.sum()), 6))
     difference = float(np.abs(polynomial(coefficients) - shape).max())
@@ -92,12 +92,12 @@ def _fit(scene: Scene, mode: str, speed: float) -> ModePolynomial:
 
 
 def polynomial(coefficients: tuple[float, ...] | np.ndarray) -> np.ndarray:
-    """Evaluate the polynomial with the powers 2 to 6 at `PLACES`."""
+    """Evaluate the polynomial with the powers 2 to 6 of x/L at `PLACES`."""
     return PLACES[:, None] ** _POWERS @ np.asarray(coefficients)
 
 
 def shape_of(scene: Scene, mode: str, speed: float) -> tuple[np.ndarray, float]:
-    """Compute a mode at `PLACES`, 1 at the tip, of one plane without twist, and its frequency [Hz]."""
+    """Compute a mode in one plane without twist: shape at `PLACES`, 1 at the tip, and frequency [Hz]."""
     plane, number = mode.split()
     modes = natural_modes(_one_plane(scene, plane), speed, int(number), tolerance=_TOLERANCE)
     shape = np.real(modes.shape(PLACES * scene.beam.length))[-1]
@@ -105,7 +105,7 @@ def shape_of(scene: Scene, mode: str, speed: float) -> tuple[np.ndarray, float]:
 
 
 def _one_plane(scene: Scene, plane: str) -> Scene:
-    """Return the blade without twist, bending in one plane alone: the model of the deck's program."""
+    """Return the blade without twist, bending in one plane only, as ElastoDyn models it."""
     second = scene.beam.second_bending_stiffness
     stiffness: Profile | None = scene.beam.bending_stiffness if plane == "flap" else second
     assert stiffness is not None
@@ -125,12 +125,12 @@ def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
     return replace(tip, inertia=tip.inertia_about_bending_direction, transverse_inertia=tip.inertia)
 
 
-# What a deck amounts to ---------------------------------------------------------------------------
+# Checks of the data in a deck ---------------------------------------------------------------------
 
 
-STEEP = 3.0  # factor between neighbouring stations from which on a step is reported
+STEEP = 3.0  # smallest factor between neighbouring stations that is reported as a steep step
 _SUM_ERROR = 1e-3  # error of the sum of a mode shape's coefficients that ElastoDyn accepts
-_SHAPE_ERROR = 0.05  # difference of a mode shape, over its tip deflection, above which a warning is given
+_SHAPE_ERROR = 0.05  # difference of a mode shape, relative to its tip deflection, that causes a warning
 _STEPPED = ("mass_per_length", "bending_stiffness", "second_bending_stiffness")
 _STEPPED_NAMES = {"mass_per_length": "mass", "bending_stiffness": "flap stiffness"}
 _STEPPED_NAMES |= {"second_bending_stiffness": "edge stiffness"}
@@ -143,11 +143,11 @@ class PropertyStep:
     Parameters
     ----------
     name : str
-        The property.
+        Name of the property.
     start, end : float
-        The stations x/L; they are the same at a jump.
+        Positions x/L of the two stations; they are equal at a jump.
     factor : float
-        Value at the end over that at the start.
+        Value at the end divided by the value at the start.
 
     Examples
     --------
@@ -174,16 +174,16 @@ class PropertyStep:
 
 @dataclass(frozen=True)
 class ShapeCheck:
-    """A mode shape that a deck states, beside the one computed from its stations.
+    """A mode shape stated in a deck, compared with the mode shape computed from the blade's properties.
 
     Parameters
     ----------
     mode : str
         Name of the mode, such as "flap 1".
     coefficient_sum : float
-        Sum of its nondimensional coefficients: its deflection at the tip, which should be 1.
+        Sum of the nondimensional coefficients: the deflection at the tip, which should be 1.
     difference : float
-        Largest difference of the two shapes, relative to the tip deflection, which is the same.
+        Largest difference of the two shapes, relative to the tip deflection, which both have.
     place : float
         Position x/L of the largest difference.
     frequency : float
@@ -207,31 +207,31 @@ class ShapeCheck:
 
 @dataclass(frozen=True)
 class DeckAudit(Result):
-    """Audit of a deck: mass, moments, steep steps, and mode shapes.
+    """Audit of a blade from another program: mass, moments, steep steps, and mode shapes.
 
-    Properties are linear between stations.  Mass and moments are those of the blade with
-    point masses along it, without its tip body.
+    Properties vary linearly between stations.  Mass and moments include point masses along the blade, but not
+    the body at the tip.
 
     Parameters
     ----------
     stations : int
         Number of stations.
     mass : float
-        Mass [kg].
+        Mass of the blade [kg].
     first_moment, second_moment : float
-        Moments of the mass about the root [kg m, kg m2].
+        First and second moment of the mass about the root [kg m, kg m2].
     hub_second_moment : float
         Second moment of the mass about the axis of rotation [kg m2], without cone.
     centre : float
         Distance of the centre of mass from the root [m].
     stiffness_ratios : tuple of float
-        Smallest over largest stiffness, for flap and, where there is one, edge.
+        Smallest divided by largest stiffness, for flapwise bending and, if given, edgewise bending.
     steps : tuple of PropertyStep
         Steep steps, from root to tip.
     shapes : tuple of ShapeCheck
-        The deck's mode shapes; empty if it states none.
+        Mode shapes stated in the deck, compared with computed ones; empty if there are none.
     shape_speed : float
-        Speed at which shapes are compared [rad/s].
+        Rotational speed at which shapes are compared [rad/s].
     warnings : tuple of str
         Signs of mistakes in the deck.
 
@@ -263,7 +263,7 @@ class DeckAudit(Result):
     warnings: tuple[str, ...]
 
     def headline(self) -> Iterator[str]:
-        """Yield stations, mass, centre and steep steps of the blade, parts of a one-line summary.
+        """Yield stations, mass, centre of mass and steep steps of the blade, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -274,7 +274,7 @@ class DeckAudit(Result):
 
 
 def audit(blade: Blade, scene: Scene) -> DeckAudit:
-    """Audit a blade, with the beam of its scene."""
+    """Audit a blade, using the beam of its scene."""
     beam, hub = scene.beam, scene.mount.radius
     mass, first, second = moments_about_root(beam)
     speed = blade.speed * math.pi / 30
@@ -299,7 +299,7 @@ def audit(blade: Blade, scene: Scene) -> DeckAudit:
 
 
 def find_steps(blade: Blade) -> tuple[PropertyStep, ...]:
-    """Find the properties that change by a factor of `STEEP` or more between neighbouring stations."""
+    """Find properties that change by a factor of `STEEP` or more between neighbouring stations."""
     x = blade.stations
     found: list[PropertyStep] = []
     for name in _STEPPED:
@@ -317,7 +317,7 @@ def find_steps(blade: Blade) -> tuple[PropertyStep, ...]:
 
 
 def _check_shape(scene: Scene, mode: str, coefficients: np.ndarray, speed: float) -> ShapeCheck:
-    """Compare a polynomial with the mode of the same plane, without twist, at the speed of the deck."""
+    """Compare a polynomial with the computed mode in one plane without twist, at the speed of the deck."""
     total = float(coefficients.sum())
     shape, frequency = shape_of(scene, mode, speed)
     apart = np.abs(polynomial(coefficients) / total - shape) if total else np.full(len(shape), math.inf)

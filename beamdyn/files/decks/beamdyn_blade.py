@@ -1,9 +1,10 @@
-"""Blades of BeamDyn: its primary file with the blade file that it names, or the blade file alone.
+"""Blades of the program BeamDyn: its primary file with the blade file named there, or only the blade file.
 
-The blade's axes are x downwind, y to the trailing edge, z from root to tip.  The reference line goes through
-key points by cubic splines, natural at the ends of each member.  A section's axes are z along the line, x
-without a component along y of the root, both turned about -z by the twist.  Here they are 1 = z, 2 = -x and
-3 = -y, so that forces and moments (Fx, Fy, Fz, Mx, My, Mz) are (-F2, -F3, F1, -M2, -M3, M1).
+BeamDyn's blade axes are x downwind, y to the trailing edge, z from root to tip.  The reference line through
+the key points is a cubic spline in each member, with natural end conditions.  The axes of a cross-section are
+z along this line, and x without a component along y of the root; x and y are then turned about -z by the
+twist.  This package has the axes 1 = z, 2 = -x and 3 = -y, so that forces and moments (Fx, Fy, Fz, Mx, My,
+Mz) are (-F2, -F3, F1, -M2, -M3, M1).
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ from beamdyn.scene.section_matrices import (
 )
 
 _ROWS, _SIGNS = [2, 0, 1, 5, 3, 4], np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
-_ANGLE = 0.05  # angle [deg] by which angles that are linear between stations may differ from the splines
-_SAMPLES = 8  # number of samples of each part of a spline, between two key points
+_ANGLE = 0.05  # allowed difference [deg] of linearly interpolated angles from the splines
+_SAMPLES = 8  # number of samples of a spline between two key points
 _MOST_STATIONS = 100
 _MAIN_NAMES = {plain_name(name): name for name in ("member_total", "kp_total", "BldFile")}
 _BLADE_NAMES = {plain_name(name): name for name in ("station_total", "damp_type")}
@@ -47,12 +48,12 @@ _DAMPED = "natural frequencies are undamped; stiffness_factor in [damping] damps
 
 
 def read_main_file(text: DataText, hub_radius: float) -> Blade:
-    """Read the primary file, with the key points, and the blade file that it names.
+    """Read the primary file with the key points, and the blade file named there.
 
     Raises
     ------
     ConfigError
-        If something is missing or not as expected, or the reference line turns back on itself.
+        If data are missing or invalid, or the reference line turns back on itself.
     """
     found = named_values(text, _MAIN_NAMES.keys())
     check_all_there(text, found, _MAIN_NAMES)
@@ -80,19 +81,19 @@ def read_main_file(text: DataText, hub_radius: float) -> Blade:
 
 
 def _read_key_points(text: DataText, found: dict[str, NamedValue]) -> tuple[np.ndarray, list[int]]:
-    """Read coordinates [m] and twist [deg] of the key points (k, 4), and their lines."""
+    """Read coordinates [m] and twist [deg] of the key points, shape (k, 4), and their line numbers."""
     count = named_count(text, found["kptotal"], least=3)
     heads = ("kpxr", "kpyr", "kpzr", "initialtwist")
     at = [n for n in range(1, len(text.lines) + 1) if [*map(plain_name, text.words(n)[:4])] == [*heads]]
     if not at:
-        raise text.lacking("expected the heads kp_xr kp_yr kp_zr initial_twist above the key points")
+        raise text.lacking("expected the headings kp_xr kp_yr kp_zr initial_twist above the key points")
     first = at[0] + 2
     lines = [*range(first, first + count)]
     return np.array([_numbers(text, line, 4, "the coordinates of a key point") for line in lines]), lines
 
 
 def _read_members(text: DataText, found: dict[str, NamedValue], points: int) -> list[slice]:
-    """Read the key points of each member; the first of a member is the last of the one before."""
+    """Read the key points of each member; its first point is the last point of the previous member."""
     count, line = named_count(text, found["membertotal"], least=1), found["kptotal"].line
     members, start = [], 0
     for k in range(1, count + 1):
@@ -104,12 +105,12 @@ def _read_members(text: DataText, found: dict[str, NamedValue], points: int) -> 
         start += number - 1
     if start + 1 != points:
         said = f"the members have {start + 1} key points, kp_total in line {line} says {points}"
-        raise text.refusal(line + count, f"{said}; neighbours share one")
+        raise text.refusal(line + count, f"{said}; neighbouring members share one")
     return members
 
 
 def _numbers(text: DataText, line: int, count: int, name: str) -> list[float]:
-    """Read the first numbers of a line, which must have at least as many."""
+    """Read the first `count` numbers of a line; raise an error if there are fewer."""
     words = text.words(line)[:count] if line <= len(text.lines) else []
     if len(words) < count:
         raise text.refusal(min(line, len(text.lines)), f"expected {count} numbers, {name}")
@@ -117,7 +118,7 @@ def _numbers(text: DataText, line: int, count: int, name: str) -> list[float]:
 
 
 def _check_line(text: DataText, points: np.ndarray, lines: Sequence[int]) -> None:
-    """Refuse a reference line that does not begin at the root, or turns back on itself."""
+    """Raise an error if the reference line does not start at the root, or turns back on itself."""
     if points[0, :3].any():
         raise text.refusal(lines[0], "expected the first key point at 0 0 0, the root")
     chords = np.diff(points[:, :3], axis=0)
@@ -132,7 +133,7 @@ def _check_line(text: DataText, points: np.ndarray, lines: Sequence[int]) -> Non
 
 
 def _angles_of_line(points: np.ndarray, members: Sequence[slice]) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Compute lengths along the line [m] (n,), and twist, sweep and prebend there [deg], at many places."""
+    """Compute arc length [m] (n,), twist, sweep and prebend [deg] at many points of the reference line."""
     lengths, found = [np.zeros(1)], []
     for member in members:
         own = points[member]
@@ -148,7 +149,7 @@ def _angles_of_line(points: np.ndarray, members: Sequence[slice]) -> tuple[np.nd
 
 
 def _arcs(spline: CubicSpline, at: np.ndarray) -> np.ndarray:
-    """Compute the lengths of a curve between neighbouring places."""
+    """Compute the arc lengths of a curve between neighbouring points."""
     t, w = gauss_rule(4)
     middle, half = (at[1:] + at[:-1]) / 2, np.diff(at) / 2
     speed = np.linalg.norm(spline(middle[:, None] + half[:, None] * t, 1)[..., :3], axis=2)
@@ -156,14 +157,14 @@ def _arcs(spline: CubicSpline, at: np.ndarray) -> np.ndarray:
 
 
 def _places(x: np.ndarray, angles: Sequence[np.ndarray], stations: np.ndarray) -> np.ndarray:
-    """Choose stations x/L between which the angles are linear enough; a kink between members counts twice."""
+    """Choose stations x/L between which the angles are nearly linear; a kink between members counts twice."""
     jumps = [np.abs(a[1:] - a[:-1]) > _ANGLE for a in angles]
     kinks = x[1:][(x[1:] == x[:-1]) & np.any(jumps, axis=0)]
     kept = np.sort(np.concatenate([np.union1d(stations, kinks), kinks]))
     while len(kept) < _MOST_STATIONS:
         along = [_interpolated(x, kept, _interpolated(kept, x, a)) for a in angles]
         apart = np.abs(np.subtract(angles, along)).max(axis=0)
-        apart[np.isin(x, kept)] = 0.0  # stations that are kept already need not be added
+        apart[np.isin(x, kept)] = 0.0  # stations that were chosen already are not added again
         if apart.max() <= _ANGLE:
             break
         kept = np.sort(np.append(kept, x[apart.argmax()]))
@@ -171,7 +172,7 @@ def _places(x: np.ndarray, angles: Sequence[np.ndarray], stations: np.ndarray) -
 
 
 def _interpolated(at: np.ndarray, x: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Interpolate at ascending places; a place that occurs twice gets the values on both sides of a jump."""
+    """Interpolate at ascending positions; a repeated position gets the values on both sides of a jump."""
     left, right = np.interp(-at, -x[::-1], values[::-1]), np.interp(at, x, values)
     return np.where(np.append(at[1:] == at[:-1], False), left, right)
 
@@ -180,19 +181,19 @@ def _interpolated(at: np.ndarray, x: np.ndarray, values: np.ndarray) -> np.ndarr
 
 
 def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
-    """Read a blade file alone: matrices of the sections of a straight blade without twist.
+    """Read a blade file without primary file: cross-section matrices of a straight, untwisted blade.
 
     Parameters
     ----------
     text : DataText
-        The file.
+        Text of the file.
     length, hub_radius : float
         Length of the blade and radius of the hub [m].
 
     Raises
     ------
     ConfigError
-        If something is missing or not as expected, or a matrix is not positive definite.
+        If data are missing or invalid, or a matrix is not positive definite.
     """
     found = named_values(text, _BLADE_NAMES.keys())
     check_all_there(text, found, _BLADE_NAMES)
@@ -214,12 +215,12 @@ def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
 
 
 def _to_ours(matrices: np.ndarray) -> np.ndarray:
-    """Convert matrices (n, 6, 6) to the order and axes of this package."""
+    """Convert matrices (n, 6, 6) from the order and axes of BeamDyn to those of this package."""
     return _SIGNS[:, None] * matrices[:, _ROWS][:, :, _ROWS] * _SIGNS
 
 
 def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], list[np.ndarray]]:
-    """Read stations (n,), their lines, and the two matrices (n, 6, 6) of each, in the file's order."""
+    """Read stations (n,), their line numbers, and two matrices (n, 6, 6), in the order of the file."""
     heads = [n for n, line in enumerate(text.lines, 1) if "distributedproperties" in plain_name(line)]
     if not heads:
         raise text.lacking("expected a line DISTRIBUTED PROPERTIES above the stations")
@@ -238,7 +239,7 @@ def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], l
 def _check_matrices(
     text: DataText, name: str, stations: np.ndarray, lines: Sequence[int], matrices: np.ndarray
 ) -> None:
-    """Refuse matrices that are not symmetric and positive definite, and mass matrices of no rigid section."""
+    """Raise an error unless matrices are symmetric and positive definite, and masses possible."""
     ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
     checks = [
         (asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"),
@@ -256,11 +257,11 @@ def _check_matrices(
 
 
 def _damping(text: DataText, kind: NamedValue) -> tuple[IgnoredProperty, ...]:
-    """Record the damping, which the scene does not have, if there is any."""
+    """Record the damping in the file, if there is any, as a property that the scene cannot hold."""
     if kind.word == "0":
         return ()
     heads = [n for n in range(kind.line, len(text.lines) + 1) if text.words(n)[:1] == ["mu1"]]
     if not heads:
-        raise text.lacking("expected the heads mu1 to mu6 above the damping coefficients")
+        raise text.lacking("expected the headings mu1 to mu6 above the damping coefficients")
     values = _numbers(text, heads[0] + 2, 6, "the damping coefficients")
     return ignore("mu1 to mu6", values, "s", _DAMPED)

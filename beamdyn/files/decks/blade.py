@@ -1,4 +1,4 @@
-"""Descriptions of blades that all decks share, in the terms of this package, whatever program wrote them."""
+"""Descriptions of blades in the terms of this package, whatever program wrote the input file (deck)."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ _UNIT = re.compile(r"\(([^()]*)\)")
 
 @dataclass(frozen=True)
 class DeckColumn:
-    """A column that a program knows.
+    """A column that a program's input files may have.
 
     Parameters
     ----------
     name : str
-        Its head, as the program's manual writes it.
+        Heading of the column in the program's manual.
     unit : str
-        Unit that the program takes; "" for a plain number.
+        Unit that the program assumes; "" for a plain number.
     required : bool
-        Whether the program needs it.
+        Whether the program requires the column.
     positive : bool
-        Whether its values are above zero.
+        Whether the values must be greater than zero.
     """
 
     name: str
@@ -47,12 +47,12 @@ class DeckColumn:
 
 @dataclass(frozen=True)
 class Stations:
-    """The table of stations in a deck.
+    """The table of stations (cross-sections along the blade) in a deck.
 
     Parameters
     ----------
     columns : dict of ndarray, shape (n,)
-        Values by the program's name of the column, in its unit.
+        Values by name of the column, in the unit of the program.
     units : dict of str
         Unit of each column.
     lines : tuple of int, shape (n,)
@@ -65,21 +65,21 @@ class Stations:
 
 
 def read_stations(text: DataText, known: Sequence[DeckColumn], count: NamedValue) -> Stations:
-    """Read the table of stations of a file.
+    """Read the table of stations (cross-sections along the blade) in a file.
 
     Parameters
     ----------
     text : DataText
-        The file.
+        Text of the file.
     known : sequence of DeckColumn
-        Columns of the program; the first is the position, from 0 at the root to 1 at the tip.
+        Columns that the program knows; the first one is the position, from 0 at the root to 1 at the tip.
     count : NamedValue
-        Number of rows that the file states.
+        Number of rows according to the file.
 
     Raises
     ------
     ConfigError
-        If heads, units, rows or their number are not as expected.
+        If headings, units, rows or the number of rows are invalid.
     """
     head_line = _find_heads(text, known, count)
     by_name = {plain_name(column.name): column for column in known}
@@ -94,13 +94,13 @@ def read_stations(text: DataText, known: Sequence[DeckColumn], count: NamedValue
 
 
 def _find_heads(text: DataText, known: Sequence[DeckColumn], count: NamedValue) -> int:
-    """Find the line of the heads: the first whose first word is the head of the position."""
+    """Find the line of the column headings: its first word is the heading of the position."""
     first = plain_name(known[0].name)
     for line in range(count.line + 1, len(text.lines) + 1):
         if [plain_name(word) for word in text.words(line)[:1]] == [first]:
             return line
     wanted = " ".join(column.name for column in known if column.required)
-    raise text.lacking(f"expected a line of heads below line {count.line}, such as '{wanted}'")
+    raise text.lacking(f"expected a line of headings below line {count.line}, such as '{wanted}'")
 
 
 def _read_heads(text: DataText, line: int, known: Mapping[str, DeckColumn]) -> list[DeckColumn]:
@@ -108,10 +108,10 @@ def _read_heads(text: DataText, line: int, known: Mapping[str, DeckColumn]) -> l
     heads = [known.get(plain_name(word), DeckColumn(word, "?")) for word in words]
     names = [column.name for column in heads]
     if twice := next((name for name in names if names.count(name) > 1), ""):
-        raise text.refusal(line, f"{twice} stands twice; expected each head once")
+        raise text.refusal(line, f"{twice} stands twice; expected each heading once")
     if missing := [c.name for c in known.values() if c.required and c.name not in names]:
         raise text.refusal(
-            line, f"expected a column {missing[0]}; the heads are {', '.join(names)}{_rest(missing)}"
+            line, f"expected a column {missing[0]}; the headings are {', '.join(names)}{_rest(missing)}"
         )
     return heads
 
@@ -121,9 +121,9 @@ def _rest(missing: Sequence[str]) -> str:
 
 
 def _check_units(text: DataText, line: int, heads: Sequence[DeckColumn]) -> None:
-    """Refuse a line below the heads that does not have their units.
+    """Raise an error if the line below the headings does not contain their units.
 
-    The programs skip it unread, and take the numbers in their own units whatever stands there.
+    The programs ignore this line, and always assume their own units.
     """
     content = text.lines[line - 1] if line <= len(text.lines) else ""
     units = _UNIT.findall(content)
@@ -131,7 +131,7 @@ def _check_units(text: DataText, line: int, heads: Sequence[DeckColumn]) -> None
         said = "expected the units of the columns in brackets, such as '(-) (deg) (kg/m)'"
         raise text.refusal(min(line, len(text.lines)), f"{said}; the program skips this line unread")
     if len(units) != len(heads):
-        raise text.refusal(line, f"expected {len(heads)} units for the heads above, found {len(units)}")
+        raise text.refusal(line, f"expected {len(heads)} units for the headings above, found {len(units)}")
     for column, unit in zip(heads, units, strict=True):
         if column.unit != "?" and _plain_unit(unit) != _plain_unit(column.unit):
             said = f"expected ({column.unit or '-'}) for {column.name}, found ({unit})"
@@ -139,14 +139,14 @@ def _check_units(text: DataText, line: int, heads: Sequence[DeckColumn]) -> None
 
 
 def _plain_unit(unit: str) -> str:
-    """Return a unit without differences in notation: N-m^2 is Nm2."""
+    """Return a unit in a uniform notation: N-m^2 becomes Nm2."""
     return re.sub(r"[\s^*·.-]", "", unit).lower().replace("²", "2")
 
 
 def _read_rows(
     text: DataText, first: int, heads: Sequence[DeckColumn], count: NamedValue
 ) -> tuple[np.ndarray, tuple[int, ...]]:
-    """Read the numbers, shape (rows, columns), and the line of each row."""
+    """Read the numbers of the table, shape (rows, columns), and the line number of each row."""
     wanted = named_count(text, count)
     said = f"{count.name} = {wanted} in line {count.line}"
     rows: list[list[float]] = []
@@ -175,12 +175,12 @@ def _read_row(text: DataText, line: int, words: Sequence[str], heads: Sequence[D
     if len(words) < len(heads) or numbers:
         comma = "; write decimal points: a comma separates numbers" if "," in text.lines[line - 1] else ""
         found = numbers or len(words)
-        raise text.refusal(line, f"expected {len(heads)} numbers under the heads, found {found}{comma}")
+        raise text.refusal(line, f"expected {len(heads)} numbers under the headings, found {found}{comma}")
     return [number_at(text, line, word, column.name) for word, column in zip(words, heads, strict=False)]
 
 
 def check_order(text: DataText, lines: Sequence[int], name: str, stations: np.ndarray) -> None:
-    """Refuse stations that do not ascend from 0 at the root to 1 at the tip, each once."""
+    """Raise an error unless the stations ascend from 0 at the root to 1 at the tip without repetition."""
     for k in range(1, len(stations)):
         here, before = stations[k], stations[k - 1]
         if here <= before:
@@ -204,18 +204,18 @@ def _check_positive(text: DataText, lines: Sequence[int], column: DeckColumn, va
 
 @dataclass(frozen=True)
 class IgnoredProperty:
-    """A property of a deck that the scene does not have.
+    """A property in a deck that the scene cannot hold.
 
     Parameters
     ----------
     name : str
-        Its name in the deck.
+        Name of the property in the deck.
     low, high : float
-        Its smallest and largest value [unit].
+        Smallest and largest value [unit].
     unit : str
-        Unit, as the deck has it.
+        Unit, as written in the deck.
     reason : str
-        Why it is left out, or how to have it all the same.
+        Why the property is ignored, or how it can be included.
 
     Examples
     --------
@@ -232,7 +232,7 @@ class IgnoredProperty:
 
     @property
     def values(self) -> str:
-        """The value or the range of values, with the unit."""
+        """Return the value or the range of values, with the unit."""
         ends = dict.fromkeys(f"{value:.6g}" for value in (self.low, self.high))
         return f"{' to '.join(ends)} {self.unit}".rstrip()
 
@@ -243,14 +243,14 @@ class IgnoredProperty:
 
 @dataclass(frozen=True)
 class BladeMatrices:
-    """6 x 6 matrices of a blade's sections, in the order and axes of `SectionMatrices`.
+    """Stiffness and mass matrices (6 x 6) of a blade's cross-sections, ordered as in `SectionMatrices`.
 
     Parameters
     ----------
     stations : ndarray, shape (n,)
         Positions x/L.
     stiffness, mass : ndarray, shape (n, 6, 6)
-        The matrices, SI.
+        Stiffness and mass matrices, in SI units.
     """
 
     stations: np.ndarray
@@ -260,40 +260,41 @@ class BladeMatrices:
 
 @dataclass(frozen=True)
 class Blade:
-    """A blade as its deck describes it.
+    """A blade as described in a deck (input file of another program).
 
     Parameters
     ----------
     kind : str
         Kind of deck.
     title : str
-        Title that the deck has; it may be empty.
+        Title in the deck; may be empty.
     sources : tuple of Path
-        The files that were read, the one that was asked for first.
+        The files that were read, the main file first.
     length, hub_radius : float
         Length of the blade and distance of its root from the axis of rotation [m].
     stations : ndarray, shape (n,)
         Positions x/L.
     columns : dict of ndarray, shape (n,)
-        Properties by the name that `Beam.from_stiffness` has for them, in SI units, but angles in degrees.
+        Properties, by name of the argument of `Beam.from_stiffness`, in SI units, but angles in degrees.
     tip : dict of float
-        Arguments of `TipMass`.
+        Arguments of `TipMass`, for a body at the tip.
     pitch : float
-        Angle by which the whole blade is turned towards feather [deg].
+        Pitch angle of the whole blade, positive towards feather [deg].
     precone : float
-        Angle by which the blade leaves the plane of rotation, positive downwind [deg].
+        Angle between the blade and the plane of rotation, positive downwind [deg].
     speed : float
-        Speed of rotation that the deck states [rpm]; 0 for none.
+        Rotational speed in the deck [rpm]; 0 if none is given.
     damping : float
-        Damping ratio that all modes of the deck have; 0 for none or several.
+        Damping ratio of all modes; 0 if the deck gives none, or different ones.
     polynomials : dict of ndarray, shape (5,)
-        Coefficients of x/L to the powers 2 to 6 of the deck's mode shapes, by mode, such as "flap 1".
+        Coefficients of x/L to the powers 2 to 6 of the mode shapes in the deck, by name of the mode, such as
+        "flap 1".
     ignored : tuple of IgnoredProperty
-        Properties of the deck that are not in this blade.
+        Properties in the deck that this object cannot hold.
     doubts : tuple of str
-        What the deck's own program would read otherwise.
+        Sentences on data that the program for which the deck was written would read differently.
     matrices : BladeMatrices, optional
-        Matrices of the sections, in place of properties.
+        Matrices of the cross-sections, which replace the properties.
     """
 
     kind: str
@@ -315,7 +316,7 @@ class Blade:
 
 
 def ignore(name: str, values: float | Sequence[float] | np.ndarray, unit: str, reason: str) -> tuple:
-    """Record a property that is left out, with its range; empty where all its values are zero."""
+    """Record an ignored property with its range; return an empty tuple if all its values are zero."""
     array = np.atleast_1d(np.asarray(values, dtype=float))
     if not array.any():
         return ()
@@ -325,7 +326,7 @@ def ignore(name: str, values: float | Sequence[float] | np.ndarray, unit: str, r
 def ignore_columns(
     table: Stations, used: Sequence[str], reasons: Mapping[str, str]
 ) -> tuple[IgnoredProperty, ...]:
-    """Record the columns of a table that the scene does not have; `used` are the others."""
+    """Record the columns of a table that the scene cannot hold: all except those in `used`."""
     return tuple(
         entry
         for name, values in table.columns.items()

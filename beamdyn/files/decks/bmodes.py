@@ -1,14 +1,14 @@
-"""Blades of BModes: its main file (.bmi) with the section properties, or these alone.
+"""Blades of the program BModes: its main file (.bmi) with the section properties, or only the properties.
 
-Positive twist and pitch turn the section about -z (z from root to tip), x being downwind and y to the
-trailing edge, as in ElastoDyn: BModes turns the angles and the offsets along y round when it passes to the
-axes of a helicopter blade (y to the leading edge, nose-up positive), which it computes in.  An offset along y
-is thus minus the offset in this package's direction across.
+As in ElastoDyn, z points from root to tip, x downwind and y to the trailing edge; positive twist and pitch
+turn the cross-section about -z.  BModes itself changes the signs of angles and of offsets along y, because it
+computes in the axes of a helicopter blade (y to the leading edge, nose-up positive).  An offset along y is
+therefore minus the offset in the edgewise direction of this package.
 
-Offsets in its files are from the reference axis; moments of inertia are about the centre of mass, as the
-programs that make such files write them.  Here the axis of a blade is the line of shear centres, to which
-offsets are converted.  BModes takes bending stiffnesses about the shear centre: where the centre of tension
-is at a distance e from it, they exceed those about the centre of tension by E A e^2.
+Offsets in BModes files are measured from the reference axis; moments of inertia are about the centre of mass.
+In this package the axis of a blade is the line of shear centres, and offsets are converted accordingly.
+BModes uses bending stiffnesses about the shear centre; they exceed the stiffnesses about the tension centre
+by E A e^2, where e is the distance of the two centres.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _NO_TORSION = "they act in torsion, which needs tor_stff, flp_iner and edge_iner
 _REASONS: dict[str, str] = dict.fromkeys(_OFFSETS, _NO_TORSION)
 _USED = ("sec_loc", "str_tw", "tw_iner", "mass_den", "flp_iner", "edge_iner", "flp_stff", "edge_stff")
 _USED = (*_USED, "tor_stff", "axial_stff", "span_loc")
-# Column and multiplier of each property, by the name that Beam.from_stiffness has.
+# Column and multiplier in the file for each argument of Beam.from_stiffness.
 _PROPERTIES = {
     "mass_per_length": ("mass_den", "sec_mass_mult"),
     "bending_stiffness": ("flp_stff", "flp_stff_mult"),
@@ -64,19 +64,19 @@ _NEEDED = ("beam_type", "radius", "hub_rad", "precone", "bl_thp", "hub_conn", *_
 _NEEDED = (*_NEEDED, *(multiplier for _, multiplier in _PROPERTIES.values()))
 _MAIN_NAMES = {data_text.plain_name(name): name for name in _NEEDED}
 _OF_OFFSETS = tuple(data_text.plain_name(f"{name}_mult") for name in _OFFSETS)
-# Version 3 has the axial offset, and other names than version 1 for the speed.
+# Version 3 also has the axial offset, and another name for the speed than version 1.
 _MAIN_MORE = ("cmaxial", "rotrpm", "rpmmult", "romg", "romgmult", *_OF_OFFSETS)
 
 
 def read_main_file(text: data_text.DataText) -> Blade:
-    """Read the main file and the section properties that it names."""
+    """Read the main file and the file of section properties named there."""
     found = data_text.named_values(text, {*_MAIN_NAMES, *_MAIN_MORE})
     data_text.check_all_there(text, found, _MAIN_NAMES)
     values = {
         name: data_text.named_number(text, named) for name, named in found.items() if name != "secpropsfile"
     }
 
-    # Refuse values of anything but a cantilevered blade.
+    # Raise an error for anything but a cantilevered blade.
     def check(key: str, good: bool, wanted: str) -> None:
         data_text.check_named(text, found[key], good, wanted)
 
@@ -97,7 +97,7 @@ def read_main_file(text: data_text.DataText) -> Blade:
     hub_radius = values["hubrad"]
     blade, axis = _read_sections(sections, values["radius"] - hub_radius, hub_radius, multipliers)
     tip, left_out = _tip_body(values, axis)
-    # Speed of rotation [rpm].
+    # Rotational speed [rpm].
     speed = values.get("rotrpm", values.get("romg", 0.0))
     return replace(
         blade,
@@ -115,14 +115,14 @@ def read_main_file(text: data_text.DataText) -> Blade:
 def _tip_body(
     values: dict[str, float], axis: float | None
 ) -> tuple[dict[str, float], tuple[IgnoredProperty, ...]]:
-    """Return arguments of `TipMass`, and a record of what they leave out.
+    """Return arguments of `TipMass`, and a record of the data that they cannot hold.
 
-    BModes takes the moments of inertia about the centre of gravity, x for lag, y for flap, z for torsion.
+    In BModes, moments of inertia are about the centre of gravity: x for lag, y for flap, z for torsion.
     """
     flap, lag, torsion = (values[f"i{2 * axis}tip"] for axis in "yxz")
     tip = {"mass": values["tipmass"], "offset": values.get("cmaxial", 0.0)}
     left_out: tuple[IgnoredProperty, ...] = ()
-    if axis is not None:  # offset from the shear centre at the tip along y, where torsion is known
+    if axis is not None:  # offset along y from the shear centre at the tip, if torsion is modelled
         tip["offset_across"] = axis - values["cmloc"] if tip["mass"] else 0.0
     else:
         left_out += ignore("cm_loc", values["cmloc"], "m", _NO_TORSION)
@@ -146,16 +146,16 @@ def read_section_file(
     Parameters
     ----------
     text : DataText
-        The file.
+        Text of the file.
     length, hub_radius : float
         Length of the blade and radius of the hub [m].
     multipliers : dict of float, optional
-        Multipliers of the main file, by name; 1 for those not given.
+        Multipliers in the main file, by name; 1 if not given.
 
     Raises
     ------
     ConfigError
-        If something is missing or not as expected.
+        If data are missing or invalid.
     """
     return _read_sections(text, length, hub_radius, multipliers or {})[0]
 
@@ -163,7 +163,7 @@ def read_section_file(
 def _read_sections(
     text: data_text.DataText, length: float, hub_radius: float, multipliers: dict[str, float]
 ) -> tuple[Blade, float | None]:
-    """Read the blade, and the shear centre at its tip along y [m]; None without torsion."""
+    """Read the blade, and the position of the shear centre at the tip along y [m]; None without torsion."""
     found = data_text.named_values(text, {"nsecs"})
     data_text.check_all_there(text, found, {"nsecs": "n_secs"})
     table = read_stations(text, _columns(text), found["nsecs"])
@@ -188,7 +188,7 @@ def _read_sections(
 def _from_shear_centre(
     text: data_text.DataText, table: Stations, columns: dict[str, np.ndarray], *offsets: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Return the columns that `convert_offsets` computes; refuse stiffnesses that are then not above 0."""
+    """Return the columns that `convert_offsets` computes; raise an error if a stiffness becomes 0 or less."""
     edge = columns["second_bending_stiffness"]
     axial = columns.get("axial_stiffness", np.zeros_like(edge))
     converted = convert_offsets(edge, axial, *offsets)
@@ -202,16 +202,16 @@ def _from_shear_centre(
 def convert_offsets(
     edge: np.ndarray, axial: np.ndarray, mass: np.ndarray, shear: np.ndarray, tension: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Convert centres of the sections to offsets from the shear centre, by names of properties of `Beam`.
+    """Convert positions of cross-section centres to offsets from the shear centre, by name in `Beam`.
 
-    The edgewise stiffness is converted too: from the shear centre to the centre of tension.
+    The edgewise bending stiffness is converted from the shear centre to the tension centre.
 
     Parameters
     ----------
     edge, axial : ndarray, shape (n,)
-        Stiffness against bending edgewise, about the shear centre [N m2], and along the beam [N].
+        Edgewise bending stiffness about the shear centre [N m2], and axial stiffness [N].
     mass, shear, tension : ndarray, shape (n,)
-        Centres of mass, shear and tension from the reference axis, along y [m].
+        Positions of the mass, shear and tension centre along y, from the reference axis [m].
     """
     return {
         "second_bending_stiffness": edge - axial * (tension - shear) ** 2,
@@ -221,7 +221,7 @@ def convert_offsets(
 
 
 def _columns(text: data_text.DataText) -> tuple[DeckColumn, ...]:
-    """Return the columns of the program; the first is sec_loc, or span_loc in older files."""
+    """Return the columns of BModes files; the first one is sec_loc, or span_loc in older files."""
     firsts = {
         data_text.plain_name(word) for line in range(1, len(text.lines) + 1) for word in text.words(line)[:1]
     }
@@ -231,7 +231,7 @@ def _columns(text: data_text.DataText) -> tuple[DeckColumn, ...]:
 def _properties(
     table: Stations, multipliers: dict[str, float]
 ) -> tuple[dict[str, np.ndarray], tuple[IgnoredProperty, ...]]:
-    """Return the properties of the beam, and a record of what they leave out."""
+    """Return the properties of the beam, and a record of the data that they cannot hold."""
     given = {
         name: multipliers.get(multiplier, 1.0) * table.columns[column]
         for name, (column, multiplier) in _PROPERTIES.items()

@@ -1,4 +1,4 @@
-"""Reading of blades from CSV files with units in their heads."""
+"""Reading of blades from CSV files with units in the column headings."""
 
 from __future__ import annotations
 
@@ -11,42 +11,42 @@ from beamdyn.common.edge.inputs import Quantity
 from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.scenes import RADIUS, read_station_file
 
-_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # heads of twist in other programs, which has the opposite sense
+_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # column headings of twist with opposite sign
 _MORE = {RADIUS: Quantity("m"), **dict.fromkeys(_STRUCTURAL_TWIST, Quantity("rad"))}
 _NEEDED = ("mass_per_length", "bending_stiffness")
 _SECTION = ("width", "thickness")
 
 
 def is_csv(text: DataText) -> bool:
-    """Whether a text is a table with units in brackets in its first line that is no comment."""
+    """Return whether the first non-comment line of a text contains units in brackets."""
     first = next((line for n, line in enumerate(text.lines, 1) if not text.is_comment(n)), "")
     return text.path.suffix.lower() in (".csv", ".tsv") or ("[" in first and any(c in first for c in ",;\t"))
 
 
 def needs_length(text: DataText) -> bool:
-    """Whether the positions are fractions of a length that must be given."""
+    """Return whether positions are fractions of the length, so that the length must be given."""
     return "x/L" in read_station_file(text, _MORE).named()
 
 
 def needs_hub_radius(text: DataText) -> bool:
-    """Whether the positions are not distances from the axis, so that the hub radius must be given."""
+    """Return whether positions are not measured from the axis, so that the hub radius is needed."""
     return RADIUS not in read_station_file(text, _MORE).named()
 
 
 def read_csv_blade(text: DataText, length: float, hub_radius: float) -> Blade:
-    """Read a blade from a table.
+    """Read a blade from a CSV table.
 
     Parameters
     ----------
     text : DataText
-        The file.
+        Text of the file.
     length, hub_radius : float
-        Length of the blade and radius of the hub [m], where the table does not say them.
+        Length of the blade and radius of the hub [m], if they do not follow from the table.
 
     Raises
     ------
     ConfigError
-        If something is missing or not as expected.
+        If data are missing or invalid.
     """
     table = read_station_file(text, _MORE)
     stations, length, hub_radius = _positions(table, length, hub_radius)
@@ -86,7 +86,7 @@ def _positions(table: CsvTable, length: float, hub_radius: float) -> tuple[np.nd
 
 
 def _fractions(x: np.ndarray, length: float) -> np.ndarray:
-    """Compute fractions of the length, rounded like those of scene files."""
+    """Compute positions as fractions of the length, rounded like those in scene files."""
     return np.array([round(float(each) / length, 14) for each in x])
 
 
@@ -100,7 +100,7 @@ def _properties(table: CsvTable) -> dict[str, np.ndarray]:
     if missing := [name for name in _NEEDED if name not in named]:
         words = {"mass_per_length": "mass [kg/m]", "bending_stiffness": "EI flap [N m2]"}
         found = ", ".join(column.head for column in table.columns)
-        raise text.refusal(table.head_line, f"expected a column {words[missing[0]]}; the heads are {found}")
+        raise text.refusal(table.head_line, f"expected a column {words[missing[0]]}; headings: {found}")
     columns = {name: np.array(column.values, dtype=float) for name, column in named.items()}
     for name in (RADIUS, "x", "x/L"):
         columns.pop(name, None)
@@ -108,7 +108,7 @@ def _properties(table: CsvTable) -> dict[str, np.ndarray]:
 
 
 def _with_twist(table: CsvTable, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the columns with the twist in degrees, in this package's sense."""
+    """Return the columns with the twist in degrees, with the sign convention of this package."""
     senses = {"twist": 1.0, **dict.fromkeys(_STRUCTURAL_TWIST, -1.0)}
     given = [name for name in senses if name in columns]
     if len(given) > 1:

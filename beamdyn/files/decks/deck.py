@@ -1,4 +1,4 @@
-"""Decks: blades of other programs, read as scenes."""
+"""Decks: input files of other programs that describe a blade, read as scenes."""
 
 from __future__ import annotations
 
@@ -25,26 +25,26 @@ from beamdyn.scene.scene import Scene
 
 _KINDS = (
     "a blade file or the main file of ElastoDyn, FAST 7, OpenFAST or BeamDyn, a .bmi or section properties "
-    "of BModes, or a CSV table with units in its heads"
+    "of BModes, or a CSV table with units in its headings"
 )
 
 
 @dataclass(frozen=True)
 class Deck(Result):
-    """A blade that was read from another program's files.
+    """A blade that was read from the input files (deck) of another program.
 
     Parameters
     ----------
     kind : str
-        Kind of files.
+        Kind of the files, such as "ElastoDyn blade file".
     title : str
-        Title that the files have.
+        Title in the files.
     sources : tuple of str
         The files that were read.
     scene : Scene
-        The blade on its hub: it points outward, flap out of the plane of rotation, edge in it.
+        The blade on its hub, pointing outward; flap is out of the plane of rotation, edge is in the plane.
     ignored : tuple of IgnoredProperty
-        Properties of the files that the scene does not have.
+        Properties in the files that the scene cannot hold.
 
     Examples
     --------
@@ -62,7 +62,7 @@ class Deck(Result):
     blade: Blade = field(repr=False)
 
     def headline(self) -> Iterator[str]:
-        """Yield kind and title of the deck, and length of its blade, parts of a one-line summary.
+        """Yield kind and title of the deck, and length of its blade, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -73,23 +73,24 @@ class Deck(Result):
 
     @cached_property
     def audit(self) -> DeckAudit:
-        """Mass and moments, steep steps, and the files' mode shapes beside computed ones."""
+        """Return mass, moments, steep steps, and the mode shapes in the files compared with computed ones."""
         return audit(self.blade, self.scene)
 
     def fit_mode_polynomials(self, speed: float | None = None) -> tuple[ModePolynomial, ...]:
         """Fit polynomials to the mode shapes that a blade file of ElastoDyn states: flap 1, flap 2, edge 1.
 
-        Each is a mode of one plane without twist, as that program takes them.
+        Each is a mode in one plane without twist, as ElastoDyn assumes.
 
         Parameters
         ----------
         speed : float, optional
-            Speed of rotation [rad/s]; that of the deck if not given, which may be 0.
+            Rotational speed [rad/s]; by default the speed in the deck, or 0.
 
         Returns
         -------
         tuple of ModePolynomial
-            Each with its coefficients, its largest difference from the mode shape, and the frequency.
+            Polynomials, each with its coefficients, its largest difference from the mode shape, and the
+            frequency.
 
         Raises
         ------
@@ -102,7 +103,7 @@ class Deck(Result):
         )
 
     def scene_text(self) -> str:
-        """Write the scene as TOML text, with a table of stations, and ignored properties as comments."""
+        """Return the scene as TOML text, with a table of stations, and ignored properties as comments."""
         names = ", ".join(Path(source).name for source in self.sources)
         head = [f"{self.title or 'A blade'}", f"Read from {names} ({self.kind})."]
         if self.ignored:
@@ -126,7 +127,7 @@ class Deck(Result):
         return text_of(self.tables, comments)
 
     def write_scene(self, path: str | PathLike[str], force: bool = False) -> None:
-        """Write the scene as a TOML file, which `beamdyn.load_scene` and the commands read.
+        """Write the scene as a TOML file, which `beamdyn.load_scene` and the commands can read.
 
         Parameters
         ----------
@@ -140,7 +141,7 @@ class Deck(Result):
         FileExistsError
             If the file exists and `force` is not set.
         OSError
-            If it cannot be written.
+            If the file cannot be written.
         """
         write_text(check_writable(Path(path), force=force), self.scene_text())
 
@@ -148,17 +149,17 @@ class Deck(Result):
 def read_deck(
     path: str | PathLike[str], length: float | None = None, hub_radius: float | None = None
 ) -> Deck:
-    """Read a blade of ElastoDyn, FAST 7, BeamDyn or BModes, or from a CSV table with units in its heads.
+    """Read a blade of ElastoDyn, FAST 7, BeamDyn or BModes, or from a CSV table with units in its headings.
 
     Parameters
     ----------
     path : str or path-like
-        The file: what it is follows from its content.  Files that it names are read, too.
+        The file; its kind is recognized by its content.  Files that it names are read, too.
     length : float, optional
-        Length of the blade [m], where the file does not say it: a blade file alone, section properties
-        alone, a table of fractions.
+        Length of the blade [m], if the file lacks it: a blade file without main file, section properties
+        only, or a table with positions as fractions.
     hub_radius : float, optional
-        Distance of the root from the axis of rotation [m], likewise.
+        Distance of the root from the axis of rotation [m], if the file lacks it.
 
     Returns
     -------
@@ -167,9 +168,9 @@ def read_deck(
     Raises
     ------
     ConfigError
-        If a file cannot be read: names the file, the line, and what was expected.
+        If a file cannot be read; the message names the file, the line, and what was expected.
     ValueError
-        If `length` or `hub_radius` is wrong, or given though the files say it.
+        If `length` or `hub_radius` is invalid, or given although the files contain it.
 
     Examples
     --------
@@ -181,7 +182,7 @@ def read_deck(
 
 
 def read_deck_text(text: DataText, length: float | None = None, hub_radius: float | None = None) -> Deck:
-    """Read a blade from the text of a file; arguments as for `read_deck`."""
+    """Read a blade from the text of a file; length and hub radius [m] are as for `read_deck`."""
     given = {
         "length": None if length is None else size("length", length, "m"),
         "hub_radius": None if hub_radius is None else not_negative("hub_radius", hub_radius, "m"),
@@ -194,13 +195,13 @@ def read_deck_text(text: DataText, length: float | None = None, hub_radius: floa
 
 
 def is_deck(text: DataText) -> bool:
-    """Whether a text is one of the files that can be read."""
+    """Return whether a text is a blade file of a known kind."""
     known = any(len(named_values(text, names)) == len(names) for _, names, _, _ in _READERS)
     return known or csv_table.is_csv(text)
 
 
 def _read(text: DataText, given: dict[str, float | None]) -> Blade:
-    """Read the blade of a file, whatever program wrote it."""
+    """Read the blade from a file of any known program."""
     for read, names, remedy, wanted in _READERS:
         if len(named_values(text, names)) == len(names):
             needed = _needed(text, given, remedy, **{name: name in wanted for name in given})
@@ -214,7 +215,8 @@ def _read(text: DataText, given: dict[str, float | None]) -> Blade:
 
 
 _BOTH = ("length", "hub_radius")
-# Readers, with the names that identify their files, where to find what the files lack, and what they lack.
+# Functions that read files; for each, the names that identify the files, where to find missing data, and what
+# data the files lack.
 _READERS: tuple[tuple[Callable[..., Blade], set[str], str, tuple[str, ...]], ...] = (
     (elastodyn.read_blade_file, {"nblinpst"}, "the main file has TipRad and HubRad", _BOTH),
     (elastodyn.read_main_file, {"tiprad", "bldfile1"}, "", ()),
@@ -234,7 +236,7 @@ _READERS: tuple[tuple[Callable[..., Blade], set[str], str, tuple[str, ...]], ...
 def _needed(
     text: DataText, given: dict[str, float | None], remedy: str, length: bool, hub_radius: bool
 ) -> dict[str, float]:
-    """Return length and hub radius where the file lacks them; refuse one that is missing or not needed."""
+    """Return length and hub radius if the file lacks them; raise an error if one is missing or not needed."""
     needed = {"length": length, "hub_radius": hub_radius}
     for name, value in given.items():
         if value is not None and not needed[name]:

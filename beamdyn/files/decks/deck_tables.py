@@ -1,4 +1,4 @@
-"""Tables of a blade read from another program's file (deck), and of the checks of its data (audit)."""
+"""Tables of a blade read from another program's file (deck), and of the audit of its data."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def deck_tables(deck: Deck) -> list[RenderableType]:
-    """Make the tables of a deck: title and size with the audit, and ignored properties."""
+    """Make the tables of a deck: title, size and audit of the blade, and ignored properties."""
     scene = deck.scene
     size = f"{scene.beam.length:.6g} m on a hub of {scene.mount.radius:.6g} m"
     parts = audit_tables(deck.audit, f"{deck.title or 'Blade'} ({deck.kind}), {size}")
@@ -27,7 +27,7 @@ def deck_tables(deck: Deck) -> list[RenderableType]:
 
 
 def audit_tables(audit: DeckAudit, title: str = "Audit of a blade") -> list[RenderableType]:
-    """Make tables of mass and moments, of steep steps, and of a deck's mode shapes beside computed ones."""
+    """Make tables of mass and moments, of steep steps, and of mode shapes compared with computed ones."""
     parts: list[RenderableType] = [table(title, ("", "", ""), audit_rows(audit), (0, 2))]
     if audit.steps:
         heads = ("steep steps between stations", "x/L", "to x/L", "factor")

@@ -1,11 +1,11 @@
-"""Blade files of ElastoDyn and FAST, and the main files that name them.
+"""Blade files of the programs ElastoDyn and FAST, and the main files that name them.
 
 The blade's axes are x downwind, y to the trailing edge, z from root to tip; the rotor turns about +x.
-Positive structural twist and pitch turn the section about -z, to feather: the flap direction is
+Positive structural twist and pitch turn the cross-section about -z, towards feather: the flap direction is
 cos(twist) x - sin(twist) y.  In the axes of this package (docs/conventions.md) b1 = z, b2 = y, b3 = -x, and
-the carrier turns about -n3.  The flap direction is the line cos(psi) b2 + sin(psi) b3 with
-psi = 90 deg - twist - pitch; psi is the bending angle plus the twist of this package, which thus is minus
-the deck's.
+the rotor turns about -n3.  The flap direction is the line cos(psi) b2 + sin(psi) b3 with psi = 90 deg - twist
+- pitch.  The angle psi is the sum of bending angle and twist in this package; therefore this twist is minus
+the twist in the file.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ _MAIN_MORE = {data_text.plain_name(name): name for name in ("BlPitch(1)", "RotSp
 
 
 def read_main_file(text: data_text.DataText) -> Blade:
-    """Read the first blade of a rotor: the main file, and the blade file that it names."""
+    """Read the first blade of a rotor from the main file, and from the blade file named there."""
     found = data_text.named_values(text, _MAIN_NAMES.keys() | _MAIN_MORE.keys())
     data_text.check_all_there(text, found, _MAIN_NAMES)
     values = {key: data_text.named_number(text, named) for key, named in found.items() if key != "bldfile1"}
@@ -109,7 +109,7 @@ def read_main_file(text: data_text.DataText) -> Blade:
 
 
 def named_file(text: data_text.DataText, named: data_text.NamedValue) -> Path:
-    """Return the path of a file that a file names, relative to that file's folder; it must exist."""
+    """Return the path of a file named in another file, relative to that file's folder; it must exist."""
     path = text.path.parent / named.word.replace("\\", "/")
     if not path.is_file():
         raise text.refusal(named.line, f"expected the file {named.name}, but there is none at {path}")
@@ -122,14 +122,14 @@ def read_blade_file(text: data_text.DataText, length: float, hub_radius: float) 
     Parameters
     ----------
     text : DataText
-        The file.
+        Text of the file.
     length, hub_radius : float
         Length of the blade, TipRad - HubRad, and radius of the hub, HubRad [m].
 
     Raises
     ------
     ConfigError
-        If something is missing or not as expected.
+        If data are missing or invalid.
     """
     found = data_text.named_values(text, _BLADE_NAMES.keys())
     data_text.check_all_there(text, found, {"nblinpst": "NBlInpSt"})
@@ -140,9 +140,9 @@ def read_blade_file(text: data_text.DataText, length: float, hub_radius: float) 
         return np.array([data_text.named_number(text, found[data_text.plain_name(name)]) for name in names])
 
     damping = numbers(*_DAMPING) / 100
-    # Description of the file: its second line, or in FAST 7 the one below two lines of dashes.
+    # Description of the file: its second line; in FAST 7, the line below two lines of dashes.
     plain = (line.strip() for line in text.lines[:4] if not line.startswith("--"))
-    # Factor of each column, which must be positive.
+    # Factor for each column, which must be positive.
     factors = {}
     for name, column in _FACTORS.items():
         named = found[data_text.plain_name(name)]
@@ -164,18 +164,19 @@ def read_blade_file(text: data_text.DataText, length: float, hub_radius: float) 
 
 
 def _doubt_order(heads: Sequence[str]) -> Iterator[str]:
-    """Yield a warning if heads stand in another order than that in which ElastoDyn reads the numbers.
+    """Yield a warning if column headings are in another order than the columns that ElastoDyn reads.
 
-    Its second column, which it does not use, was AeroCent, then PitchAxis, and is gone in newer versions.
+    The second column, which ElastoDyn does not use, was first AeroCent, later PitchAxis, and does not exist
+    in newer versions.
     """
     second = [name for name in heads[1:2] if name in _UNUSED_SECOND]
     wanted = [_USED[0], *second, *_USED[1:]]
     if heads[: len(wanted)] != wanted:
         here = next(i for i, name in enumerate(wanted) if heads[i : i + 1] != [name])
         said = (
-            f"ElastoDyn skips the heads and reads by position, for {wanted[here]} what is under {heads[here]}"
+            f"ElastoDyn skips headings and reads by position, for {wanted[here]} what is under {heads[here]}"
         )
-        yield f"the heads are {', '.join(heads)}: {said}; expected {', '.join(wanted)}, then any others"
+        yield f"the headings are {', '.join(heads)}: {said}; expected {', '.join(wanted)}, then any others"
 
 
 def _properties(table: Stations, factors: Mapping[str, float]) -> dict[str, np.ndarray]:
@@ -189,7 +190,7 @@ def _properties(table: Stations, factors: Mapping[str, float]) -> dict[str, np.n
 
 
 def _ignored_settings(damping: np.ndarray, tuners: np.ndarray) -> tuple[IgnoredProperty, ...]:
-    """Record damping, and tuners that are not 1."""
+    """Record damping, and stiffness tuners that are not 1, as ignored properties."""
     if np.ptp(damping) == 0:
         reason = f"natural frequencies are undamped; damping_ratio = {damping[0]:.9g} in [model] has it"
     else:

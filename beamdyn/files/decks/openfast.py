@@ -1,4 +1,4 @@
-"""Turbines of OpenFAST: the main file, and the files of ElastoDyn and BeamDyn that it names."""
+"""Turbines of the program OpenFAST: main file, and the files of ElastoDyn and BeamDyn named there."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from beamdyn.files.decks import beamdyn_blade, elastodyn
 from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.decks.elastodyn import named_file
 
-_ELASTODYN, _BEAMDYN = 1, 2  # values of CompElast; 3 is a simplified ElastoDyn
+_ELASTODYN, _BEAMDYN = 1, 2  # values of the setting CompElast; 3 is a simplified ElastoDyn
 _NO_TIP_MASS = "OpenFAST leaves it out where BeamDyn computes the blades; tip in [beam] has a body there"
 
 
 def read_openfast_file(text: DataText) -> Blade:
-    """Read the first blade of the turbine: that of BeamDyn if BeamDyn computes it, else that of ElastoDyn."""
+    """Read the first blade of the turbine: from BeamDyn's file if BeamDyn computes it, else ElastoDyn's."""
     found = named_values(text, {"edfile", "compelast", "bdbldfile1"})
     model = named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
     rotor = elastodyn.read_main_file(read_data(named_file(text, found["edfile"])))
@@ -22,7 +22,7 @@ def read_openfast_file(text: DataText) -> Blade:
         main = read_data(named_file(text, found["bdbldfile1"]))
         blade = beamdyn_blade.read_main_file(main, rotor.hub_radius)
         kept = {name: getattr(rotor, name) for name in ("pitch", "precone", "speed")}
-        mass = rotor.tip.get("mass", 0.0)  # ElastoDyn sets it to 0 where BeamDyn computes the blades
+        mass = rotor.tip.get("mass", 0.0)  # ElastoDyn sets it to 0 if BeamDyn computes the blades
         ignored = (*blade.ignored, *ignore("TipMass(1)", mass, "kg", _NO_TIP_MASS))
         return replace(blade, sources=(text.path, rotor.sources[0], *blade.sources), ignored=ignored, **kept)
     reason = "the turbine computes its blades by another module; this is the blade in ElastoDyn's files"

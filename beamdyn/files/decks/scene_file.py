@@ -1,4 +1,4 @@
-"""Writing of a blade as a scene file: its tables, and its text with a table of stations with units."""
+"""Writing of a blade as a scene file: TOML tables, and text with a table of stations with units."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from beamdyn.scene.section_matrices import UPPER, entry_name, entry_units
 
 _UNITS = dict.fromkeys(ANGLE_UNITS, "deg") | PROPERTY_UNITS
 _TIP_UNITS = {name: each.unit for name, each in descriptions(TipMass).items()}
-_DIGITS = 15  # digits of numbers in the file, as many as a float keeps
+_DIGITS = 15  # digits of numbers in the file: the precision of a float
 
 
 def tables_of(blade: Blade) -> dict[str, Any]:
-    """Return the tables of the scene of a blade, as tomllib reads them.
+    """Return the TOML tables of a scene with the blade, as tomllib would return them.
 
-    The blade points outward; its flap, in which `bending_stiffness` counts, bends out of the plane of
-    rotation where twist and pitch are 0.
+    The blade points outward.  If twist and pitch are 0, flapwise bending (with `bending_stiffness`) is out of
+    the plane of rotation.
     """
     tables: dict[str, Any] = {
         "beam": {"length": f"{_number(blade.length)} m"} | _tables_of_stations(blade),
@@ -30,7 +30,7 @@ def tables_of(blade: Blade) -> dict[str, Any]:
             "bending_angle": f"{_number(90 - blade.pitch)} deg",
         },
     }
-    if blade.precone:  # downwind is the direction -b3
+    if blade.precone:  # downwind is the direction -b3 of the rotor
         tables["mount"]["precone"] = f"{_number(-blade.precone)} deg"
     if blade.tip:
         units = {key: unit for key, unit in _TIP_UNITS.items() if key == "mass" or blade.tip.get(key)}
@@ -51,7 +51,7 @@ def tables_of(blade: Blade) -> dict[str, Any]:
 
 
 def _tables_of_stations(blade: Blade) -> dict[str, Any]:
-    """Return tables of properties along the blade, and of its sections' matrices if it has any."""
+    """Return TOML tables of properties along the blade, and of its cross-section matrices if it has any."""
     if blade.matrices is None:
         return {"stations": _rows(blade)}
     given = {"stations": _rows(blade)} if _names(blade, _UNITS) else {}
@@ -59,7 +59,7 @@ def _tables_of_stations(blade: Blade) -> dict[str, Any]:
 
 
 def _matrix_rows(matrices: BladeMatrices) -> list[list[Any]]:
-    """Return heads and rows of the matrices' entries that are not 0 throughout."""
+    """Return headings and rows for the matrix entries that are not 0 at all stations."""
     both = {"K": matrices.stiffness, "M": matrices.mass}
     entries = {
         f"{entry_name(letter, i, j)}": values[:, i, j] for letter, values in both.items() for i, j in UPPER
@@ -71,13 +71,13 @@ def _matrix_rows(matrices: BladeMatrices) -> list[list[Any]]:
 
 
 def _names(blade: Blade, among: Iterable[str]) -> list[str]:
-    """Select the properties that the blade has; an offset or a twist only if it is not zero throughout."""
+    """Select the properties that the blade has; offsets and twist only if not zero at all stations."""
     given = (name for name in among if name in blade.columns)
     return [name for name in given if name not in OF_ANY_SIGN or blade.columns[name].any()]
 
 
 def _rows(blade: Blade) -> list[list[Any]]:
-    """Return heads and rows of the stations."""
+    """Return headings and rows of the table of stations."""
     names = _names(blade, _UNITS)
     heads = ["x/L", *(f"{name} [{_UNITS[name]}]" for name in names)]
     columns = [blade.stations, *(blade.columns[name] for name in names)]
@@ -85,11 +85,11 @@ def _rows(blade: Blade) -> list[list[Any]]:
 
 
 def _number(value: float) -> str:
-    """Format a number with as many digits as a float keeps, and zero without a sign."""
+    """Format a number with the precision of a float, and zero without a sign."""
     return f"{value + 0.0:.{_DIGITS}g}"
 
 
-# Text ---------------------------------------------------------------------------------------------
+# Text of the file ---------------------------------------------------------------------------------
 
 
 def text_of(tables: Mapping[str, Any], comments: Mapping[str, Iterable[str]]) -> str:
@@ -98,9 +98,9 @@ def text_of(tables: Mapping[str, Any], comments: Mapping[str, Iterable[str]]) ->
     Parameters
     ----------
     tables : mapping
-        Tables of the scene file, as `tables_of` makes them.
+        Tables of the scene file, as returned by `tables_of`.
     comments : mapping
-        Sentences by the table that they stand above, "" for the head of the file.
+        Sentences to write as comments above a table, by name of the table; "" for the start of the file.
     """
     lines = [*_commented(comments.get("", ()))]
     for name, table in tables.items():
@@ -116,7 +116,7 @@ def text_of(tables: Mapping[str, Any], comments: Mapping[str, Iterable[str]]) ->
 
 
 def _commented(sentences: Iterable[str]) -> Iterator[str]:
-    """Yield comment lines; characters that would end a comment are shown as blanks."""
+    """Yield comment lines; characters that would end a comment are replaced by blanks."""
     for sentence in sentences:
         yield f"# {''.join(c if c.isprintable() else ' ' for c in sentence)}".rstrip()
 
@@ -124,7 +124,7 @@ def _commented(sentences: Iterable[str]) -> Iterator[str]:
 def _assignment(key: str, value: Any) -> Iterator[str]:
     if isinstance(value, list):
         yield f"{key} = ["
-        # The rows have aligned columns.
+        # The numbers in the rows are aligned in columns.
         heads, *numbers = value
         cells = [[f'"{head}"' for head in heads], *([_cell(value) for value in row] for row in numbers)]
         widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
@@ -138,7 +138,7 @@ def _assignment(key: str, value: Any) -> Iterator[str]:
 
 
 def _cell(value: float) -> str:
-    """Format a number as TOML does, large ones with an exponent."""
+    """Format a number in TOML notation, large numbers with an exponent."""
     text = _number(value)
     if "e" not in text and abs(value) >= 1e6:
         mantissa, _, exponent = f"{value:.{_DIGITS - 1}e}".partition("e")
