@@ -1,38 +1,37 @@
-"""Time from an event in the browser to the new picture, on every screen of `beamdyn app`.
+"""Time from an event in the browser to the new picture, on every screen of the interactive programs.
 
-Run: python -m benchmarks.event_times [--screen NAME]
+Run: python -m benchmarks.event_times [--program brakes|beamdyn] [--screen NAME]
 
-A slider of the form is dragged by some pixels, a text is typed into a field, and the slider above a drawing
-is moved by a key, on each screen that has these.  The time is measured in the page: from the event until the
-browser paints the frame after the first change of the pictures, which may be preliminary.  The result is the
-median of several events without the first one, on a machine that does nothing else.
+A slider of the form or a point of the drawing is dragged by some pixels, a field is written and left, and the
+slider above a drawing is moved by a key, each where the screen has it. The time runs in the page itself: from
+the event, as the page hears it, until the browser paints the frame after the first change of the pictures,
+which may be preliminary. It is the median of several events, the first of which does not count, on a machine
+that does nothing else.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from statistics import median
 from typing import Any
 
 from beamdyn.app.program import BEAMDYN
+from beamdyn.common.screens.screens import Document, Program, Screen
 from benchmarks.rows import Row
 from benchmarks.served import PATIENCE, browser, free_port, go, open_page, start, stop
+from brakes.app.program import BRAKES
 
 SIZE = {"width": 1440, "height": 900}
 RUNS = 9
-BOUNDS = {"slider": 150, "field": 250, "player": 50}  # [ms]
-# The input that is changed on a screen; if not listed, the radius.
-CHANGED = {"Design": "beam.thickness", "Deck": "deck.length"}
-_OTHERS = "mount.radius"
-# Texts that are typed into the field: first value, step, unit.
-FIELDS = {
-    "mount.radius": (215.0, 0.5, "mm"),
-    "beam.thickness": (0.2, 0.002, "mm"),
-    "deck.length": (40.0, 0.2, "m"),
-}
-STEP, LONGEST = 4, 20_000  # pixels of a mouse move; longest wait for a picture [ms]
-_SETTLES = 400  # wait after a picture, until further updates have arrived [ms]
+BOUNDS = {"slider": 150, "handle": 150, "field": 250, "player": 50}  # [ms]
+PROGRAMS = {program.name: program for program in (BRAKES, BEAMDYN)}
+# The input that is changed on a screen, if not the usual one: the answer of Design does not depend on that.
+CHANGED = {"Design": "beam.thickness"}
+_USUAL = "mount.radius"
+_SHARE = 0.0025  # part of its number by which a field is changed
+STEP, LONGEST = 4, 20_000  # pixels of a move; patience with a picture [ms]
+_SETTLES = 400  # until what follows a picture has come as well [ms]
 _WATCH = """(event) => {
   const shown = [...document.querySelectorAll(".shown")].find((e) => e.offsetParent);
   window.took = window.begun = null;
@@ -66,16 +65,30 @@ def _slider(page: Any, path: str) -> Any:
     return page.get_by_role("slider", name=path.partition(".")[2]).locator("visible=true")
 
 
-def _time_slider(page: Any, path: str) -> float:
-    made = _slider(page, path).first
+def _handle(page: Any, _: str) -> Any:
+    """The points of the drawing that can be dragged."""
+    return page.locator(".handle").locator("visible=true")
+
+
+def _drag(made: Any, across: float) -> float:
+    """Drag an element from a part of its width, by some pixels at each event."""
+    page = made.page
     made.scroll_into_view_if_needed()
     box = made.bounding_box()
-    x, y = box["x"] + 0.3 * box["width"], box["y"] + box["height"] / 2
+    x, y = box["x"] + across * box["width"], box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
     took = _measure(page, "mousemove", lambda i: page.mouse.move(x + STEP * (i + 1), y))
     page.mouse.up()
     return took
+
+
+def _time_slider(page: Any, path: str) -> float:
+    return _drag(_slider(page, path).first, 0.3)
+
+
+def _time_handle(page: Any, path: str) -> float:
+    return _drag(_handle(page, path).first, 0.5)
 
 
 def _field(page: Any, path: str) -> Any:
@@ -84,10 +97,11 @@ def _field(page: Any, path: str) -> Any:
 
 
 def _time_field(page: Any, path: str) -> float:
-    made, (start, step, unit) = _field(page, path).first, FIELDS[path]
+    made = _field(page, path).first
+    number, _, unit = made.input_value().partition(" ")
 
     def write(i: int) -> None:
-        made.fill(f"{start + step * (i + 1):.3f} {unit}")
+        made.fill(f"{float(number) * (1 + _SHARE * (i + 1)):.6g} {unit}")
         made.press("Tab")
 
     return _measure(page, "input", write)  # the page reacts before the field is left, if that takes long
@@ -98,32 +112,45 @@ def _time_player(page: Any, path: str) -> float:
 
 
 def _player(page: Any, _: str) -> Any:
-    """Return the visible slider above a drawing, if any."""
-    return page.get_by_role("slider", name="time").locator("visible=true")
+    """Return the slider above a drawing, where there is one."""
+    return page.locator(".stroke").get_by_role("slider").locator("visible=true")
 
 
-def time_events(names: tuple[str, ...]) -> Iterator[Row]:
-    """Measure the times of events on some screens, each on a separate page."""
-    process = start(port := free_port(), BEAMDYN.name)
+def changed_input(document: Document, screen: Screen) -> str:
+    """Return the path of the input that is changed: a number, with its unit where it has one."""
+    given = {path: text.partition(" ")[0] for path, text in document.base_entries.items()}
+    numbers = [
+        path
+        for path, text in given.items()
+        if path.partition(".")[0] in screen.sections and text.replace(".", "").isdigit() and text.strip("0.")
+    ]
+    preferred = CHANGED.get(screen.name, _USUAL)
+    return preferred if preferred in numbers else numbers[0]
+
+
+def time_events(program: Program, names: Collection[str] = ()) -> Iterator[Row]:
+    """Time the events on some screens of a program, or on all, each on a separate page."""
+    process = start(port := free_port(), program.name)
     try:
         with browser() as made:
-            for name in names:
-                page = open_page(made.new_context(viewport=SIZE), port)
-                yield from _time_screen(page, name)
-                page.context.close()
+            for document, screen in ((d, s) for d in program.documents for s in d.screens):
+                if screen.name in names or not names:
+                    page = open_page(made.new_context(viewport=SIZE), port)
+                    yield from _time_screen(page, screen.name, changed_input(document, screen))
+                    page.context.close()
     finally:
         stop(process)
 
 
-def _time_screen(page: Any, name: str) -> Iterator[Row]:
+def _time_screen(page: Any, name: str, path: str) -> Iterator[Row]:
     from playwright.sync_api import Error
 
     ways = {
         "slider": (_slider, _time_slider),
+        "handle": (_handle, _time_handle),
         "field": (_field, _time_field),
         "player": (_player, _time_player),
     }
-    path = CHANGED.get(name, _OTHERS)
     for kind, (there, measure) in ways.items():
         try:
             page.set_default_timeout(1e3 * PATIENCE)  # for complete answers, before measurements begin
@@ -139,11 +166,13 @@ def _time_screen(page: Any, name: str) -> Iterator[Row]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0] if __doc__ else "")
-    names = [screen.name for document in BEAMDYN.documents for screen in document.screens]
-    parser.add_argument("--screen", choices=names, action="append", help="may be repeated; all if not given")
-    given = tuple(parser.parse_args().screen or names)
-    for row in time_events(given):
-        print("; bound ".join((": ".join(row[:2]), row[2])), flush=True)
+    parser.add_argument("--program", choices=PROGRAMS)
+    parser.add_argument("--screen", action="append", help="may be repeated; all if not given")
+    given = parser.parse_args()
+    for name, program in PROGRAMS.items():
+        if given.program in (None, name):
+            for row in time_events(program, given.screen or ()):
+                print("; bound ".join((": ".join(row[:2]), row[2])), flush=True)
 
 
 if __name__ == "__main__":

@@ -2,10 +2,10 @@
 
 Run: python -m benchmarks.screenshots [--folder DIR] [--program brakes|beamdyn] [--width 390]
 
-Each screen is examined at five widths, light and dark.  Faults are serious findings of axe-core (if
-axe-playwright-python is installed), horizontal scrolling, controls that neither keyboard nor finger can
-reach, tables that are cut off, halves of a page that are empty over more than a third of its height, and code
-in texts.
+Each screen at five widths, light and dark: serious findings of axe-core (where axe-playwright-python is
+there), horizontal scrolling, controls that neither keyboard nor finger can reach, tables that are cut,
+sentences over two columns, halves of a page that are empty for more than a third of its height, and code in
+texts.
 """
 
 from __future__ import annotations
@@ -61,8 +61,11 @@ _CUT = """() => [...document.querySelectorAll("table")]
   .filter((e) => e.checkVisibility({visibilityProperty: true}))
   .filter((e) => [...e.getClientRects()].some((part) => part.width > e.parentElement.clientWidth + 1))
   .map((e) => `${Math.round(e.getBoundingClientRect().width)} px: ${e.innerText.slice(0, 60)}`)"""
-# Script: halves of the area beside the form that are empty over more than a third of the page's height; the
-# form scrolls with the window, and needs no further space.
+# First words of sentences that begin in one column and end in another.
+_SPLIT = """() => [...document.querySelectorAll(".tables p")]
+  .filter((e) => e.getClientRects().length > 1).map((e) => e.innerText.slice(0, 60))"""
+# Of the part beside the form, each half in which there is nothing over more than a third of the page's
+# height; the form stays in sight, and needs no room of its own.
 _EMPTY = """() => {
   const page = document.documentElement.scrollHeight;
   const right = [...document.querySelectorAll(".right")].find((e) => e.checkVisibility());
@@ -133,6 +136,7 @@ def faults(page: Any, width: int) -> dict[str, list[str]]:
         "not by keyboard": not_by_keyboard(page),
         "not by touch": page.evaluate(_NOT_BY_TOUCH),
         "cut": page.evaluate(_CUT),
+        "split": page.evaluate(_SPLIT),
         "empty": page.evaluate(_EMPTY),
         "code": page.evaluate(_CODE),
     }

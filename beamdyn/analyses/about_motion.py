@@ -23,6 +23,7 @@ from beamdyn.common.plots.export import animate
 from beamdyn.common.results.columns import evenly_spread
 from beamdyn.common.words import at_any
 from beamdyn.steady.best_resistance import ROUGH, sought
+from beamdyn.steady.harvest import harvested
 
 if TYPE_CHECKING:
     from beamdyn.common.results.result import Result
@@ -90,11 +91,13 @@ _HARVESTER = "The scene, with a table [harvester]; gravity and its motion excite
 _FEW_SPEEDS, _ROUGH = 11, 1e-2  # number of speeds, and tolerance, of a preliminary result
 
 
-def _harvest_sooner(scene: bd.Scene, **options: Any) -> Result | Answer:
-    """Compute the harvested energy at a few of the speeds, as a preliminary result."""
-    speeds = options["speeds"]
+def _harvest_sooner(
+    scene: bd.Scene, speeds: np.ndarray, road: str | None = None, highest: str | None = None, **options: Any
+) -> Result:
+    """Compute what is harvested at few of the speeds, without its error, as a preliminary answer."""
+    given = {"modes": "auto", "discretization": "ritz", **options, "tolerance": _ROUGH}
     few = speeds[evenly_spread(len(speeds), _FEW_SPEEDS)]
-    return harvest.function(scene, **options | {"speeds": few, "tolerance": _ROUGH})
+    return harvested(scene, speeds=few, road=_roughness(road, highest), compared=False, **given)
 
 
 @analysis(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -257,13 +258,20 @@ def root_mean_squares(
             bound = "with white noise its mean square is not finite, or needs all modes"
             raise InvalidValue("output", seen.label, bound, "give a PowerSpectrum, or a deflection")
     top = _TURN * spectra.highest_frequency(spectrum) + abs(speed)
-
-    def of_all(model: ModelAtSpeed) -> np.ndarray:
-        squares = (_mean_square(_expand(model, drive, seen), spectrum, speed) for seen in outputs)
-        return np.sqrt([*squares])
-
+    of_all = partial(rms_by, drive=drive, spectrum=spectrum, outputs=outputs)
     loaded = with_forces(scene, [drive])
     return evaluate_accurately(loaded, speed, top, modes, tolerance, discretization, of_all, _DIRECT)
+
+
+def rms_by(
+    model: ModelAtSpeed,
+    drive: inputs_outputs.Excitation,
+    spectrum: spectra.PowerSpectrum | float,
+    outputs: Sequence[inputs_outputs.Observation],
+) -> np.ndarray:
+    """Compute root mean squares (k,) by one model; arguments as for `root_mean_squares`."""
+    squares = (_mean_square(_expand(model, drive, seen), spectrum, model.speed) for seen in outputs)
+    return np.sqrt([*squares])
 
 
 def _frequencies(

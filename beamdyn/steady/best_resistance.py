@@ -21,7 +21,7 @@ from beamdyn.common.words import supported
 from beamdyn.linear.spectra import RoadRoughness
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.steady.harvest import ElectricLines, Harvest, electrodes_of, harvest
+from beamdyn.steady.harvest import ElectricLines, Harvest, electrodes_of, harvested
 from beamdyn.steady.response import steady_response
 from beamdyn.steady.road_harvest import check_road, harvest_on_road
 
@@ -41,14 +41,17 @@ class ResistanceSearch:
     tried : int
         Number of resistances that are tried before the refinement.
     tolerance : float
-        Relative accuracy to which the best resistance is refined.
+        Relative accuracy to which the best one is refined.
+    compared : bool
+        Whether what it harvests is compared with other models, for its error.
     """
 
     tried: int = 33
     tolerance: float = 1e-6
+    compared: bool = True
 
 
-FULL, ROUGH = ResistanceSearch(), ResistanceSearch(9, 1e-2)  # for a final and a preliminary answer
+FULL, ROUGH = ResistanceSearch(), ResistanceSearch(9, 1e-2, False)  # of an answer, and of a preliminary one
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +96,9 @@ class BestResistance(Harvest):
         return (_LIKE_POWER * float(self.total_error[0]) + FULL.tolerance) * self.resistance
 
     def say_resistance(self) -> str:
-        """Return the best resistance as text, without digits that are uncertain due to its error."""
+        """Return the best resistance as text, with the digits that its error leaves, where that is known."""
+        if math.isnan(self.resistance_error):
+            return number(self.resistance, "ohm")
         return f"{supported(self.resistance, self.resistance_error, _DIGITS)} ohm"
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -189,7 +194,8 @@ def sought(
         tried[resistance] = float(ElectricLines.of(other).power[0])
         if road is not None:
             asked = other.scene, electrodes_of(other.scene), other.speeds, response.stable, road
-            on_road, _ = harvest_on_road(*asked, request.basis.modes, discretization, response.amplitude)
+            given = request.basis.modes, discretization, response.amplitude
+            on_road, _ = harvest_on_road(*asked, *given, compared=False)
             tried[resistance] += float(on_road.power[0])
         return -tried[resistance]
 
@@ -204,7 +210,7 @@ def sought(
     bounds = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
     best = minimize_scalar(lost, bounds=bounds, method="bounded", options={"xatol": search.tolerance / 3})
     chosen = with_resistance(scene, 10.0 ** float(best.x))
-    found = harvest(chosen, [speed], modes, tolerance, discretization, road)
+    found = harvested(chosen, [speed], modes, tolerance, discretization, road, search.compared)
     resistances, power = np.array(sorted(tried.items())).T
     values: dict[str, Any] = {each.name: getattr(found, each.name) for each in fields(found)}
     values["provenance"] = Provenance.since(start, found.provenance.method, found.provenance.compared_with)

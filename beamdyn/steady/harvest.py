@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -160,6 +161,11 @@ class Harvest(JudgedByRepeating):
         return np.array(found.best[1])
 
     @property
+    def as_far_as_judged(self) -> Mapping[str, Any]:
+        """Arguments that limit a repeated analysis to the power, without its error."""
+        return {"compared": False}
+
+    @property
     def bending_speed(self) -> float:
         """Largest speed [rad/s], at which the change by large deflection is estimated."""
         return float(np.abs(self.speeds).max())
@@ -205,7 +211,6 @@ class Harvest(JudgedByRepeating):
 
 
 @announced
-@one_blas_thread()  # more threads do not speed up small matrices
 def harvest(
     scene: Scene,
     speeds: np.ndarray | Sequence[float],
@@ -249,8 +254,22 @@ def harvest(
     >>> bool(found.power[0] > 0)
     True
     """
+    return harvested(scene, speeds, modes, tolerance, discretization, road)
+
+
+@one_blas_thread()  # the matrices are small: more threads only wait for each other
+def harvested(
+    scene: Scene,
+    speeds: np.ndarray | Sequence[float],
+    modes: int | str,
+    tolerance: float,
+    discretization: DiscretizationChoice,
+    road: RoadRoughness | None,
+    compared: bool = True,
+) -> Harvest:
+    """Compute the result of `harvest`; its errors are nan unless it is `compared` with other models."""
     start = perf_counter()
-    powers = _powers(scene, speeds, modes, tolerance, discretization, road)
+    powers = _powers(scene, speeds, modes, tolerance, discretization, road, compared)
     resonances = _resonances(powers.scene, powers.speeds)
     provenance = Provenance.since(start, powers.provenance.method, _COMPARED)  # time of resonances included
     found = replace(powers, resonances=resonances, provenance=provenance)
@@ -266,8 +285,9 @@ def _powers(
     tolerance: float,
     discretization: DiscretizationChoice,
     road: RoadRoughness | None,
+    compared: bool,
 ) -> Harvest:
-    """Compute the result of `harvest` without resonances, which the model error does not need."""
+    """Compute the result of `harvested` without resonances, which its model error need not solve again."""
     start = perf_counter()
     check_scene(scene)
     electrodes = electrodes_of(scene)
@@ -275,8 +295,9 @@ def _powers(
         check_road(scene, road)
     response = steady_response(scene, speeds, modes, None, tolerance, discretization)
     own = HarvestedPowers.of(response.request)
-    larger = [HarvestedPowers.of(request) for request in _refinements(response.request)]
-    relative, of_strain = np.full((2, len(response.speeds)), np.inf)
+    refined = _refinements(response.request) if compared else ()
+    larger = [HarvestedPowers.of(request) for request in refined]
+    relative, of_strain = np.full((2, len(response.speeds)), np.inf if compared else np.nan)
     if larger:
         relative = _DISTANCE * np.max([own.apart(each) for each in larger], axis=0)
         of_strain = _DISTANCE * np.max([np.abs(each.strain - own.strain) for each in larger], axis=0)
@@ -285,7 +306,7 @@ def _powers(
     if road is not None:
         on_road, said = harvest_on_road(
             response.scene, electrodes, response.speeds, response.stable, road,
-            response.request.basis.modes, discretization, response.amplitude,
+            response.request.basis.modes, discretization, response.amplitude, compared,
         )  # fmt: skip
         warnings, most = [*warnings, *said], most + SEVERAL * on_road.strain
     how = "" if road is None else f", with {SEVERAL:g} standard deviations on the road,"

@@ -10,9 +10,10 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import kind
 from beamdyn.common.results.statements import LIMITS, Statement
+from beamdyn.linear.convergence import model_at_speed, with_forces
 from beamdyn.linear.inputs_outputs import DeflectionAt, HarvestedCurrent, HarvestedVoltage, LayerStrain
 from beamdyn.linear.mean_square import check_damped, parametric_term
-from beamdyn.linear.random_response import root_mean_squares
+from beamdyn.linear.random_response import rms_by, root_mean_squares
 from beamdyn.linear.spectra import RoadRoughness, random_input, warn_of_band
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.harvester import Electrodes
@@ -83,8 +84,11 @@ def harvest_on_road(
     modes: int | None,
     discretization: DiscretizationChoice,
     amplitude: np.ndarray,
+    compared: bool = True,
 ) -> tuple[RoadHarvest, list[str]]:
     """Compute the harvest on a random road at speeds (S,) with stable motion, and warnings.
+
+    Unless it is `compared` with other models, its errors are nan, and there are no warnings of the road's.
 
     Raises
     ------
@@ -99,6 +103,10 @@ def harvest_on_road(
     for k in np.flatnonzero(stable & (speeds != 0)).tolist():
         speed = float(speeds[k])
         drive, density = random_input(scene, speed, roughness, None)
+        if not compared and modes is not None:
+            model = model_at_speed(with_forces(scene, [drive]), speed, modes, discretization)
+            rms[:, k], error[:, k] = rms_by(model, drive, density, outputs), np.nan
+            continue
         found = root_mean_squares(
             scene, speed, drive, density, outputs, modes or "auto", _TOLERANCE, discretization
         )

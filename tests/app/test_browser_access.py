@@ -60,6 +60,12 @@ def test_nothing_keeps_people_out(pages, width, program, name):
         ("it => { it.innerText = 'frequency_1'; }", "code"),
         ("() => document.querySelectorAll('table').forEach((e) => { e.style.width = '3000px'; })", "cut"),
         (
+            "() => document.querySelectorAll('.tables p').forEach((e) => "
+            "{ e.closest('.tables').style.columns = '2 10px'; e.parentElement.style.breakInside = "
+            "e.style.breakInside = 'auto'; e.innerText = 'word '.repeat(3000); })",
+            "split",
+        ),
+        (
             "() => document.querySelectorAll('.numbers').forEach((e) => { e.style.marginTop = '4e3px'; })",
             "empty",
         ),

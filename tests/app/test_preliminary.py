@@ -1,6 +1,6 @@
 """What a screen shows first, while the whole answer is on its way: a picture, few digits, nothing fitted."""
 
-from types import SimpleNamespace
+import math
 
 import numpy as np
 import pytest
@@ -9,11 +9,14 @@ pytest.importorskip("nicegui")
 
 from beamdyn.analyses.about_motion import harvest
 from beamdyn.app.program import BEAMDYN
-from beamdyn.common.edge.rendering import in_haste
+from beamdyn.app.scene_screen import bar
+from beamdyn.common.edge.console import table
+from beamdyn.common.edge.rendering import html, in_haste, picture, svg
 from beamdyn.common.results.columns import ShownUnit
 from beamdyn.common.results.one_line import few_digits, number
 from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.screens import page_tasks
+from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.open_document import ShownAnswer
 from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
 from beamdyn.studies.beside_data.identification import Identification
@@ -66,7 +69,7 @@ def test_a_preliminary_harvest_is_at_few_of_the_speeds_and_at_the_ends():
 
     assert harvest.sooner is not None
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("beamdyn.analyses.about_motion.harvest", SimpleNamespace(function=at))
+        patch.setattr("beamdyn.analyses.about_motion.harvested", at)
         harvest.sooner(None, speeds=asked, modes=3, tolerance=1e-5)
     assert len(few[0]) == 11 and few[0][0] == 10.0 and few[0][-1] == 20.0 and np.isin(few[0], asked).all()
 
@@ -88,6 +91,20 @@ def test_a_picture_in_haste_has_the_layout_of_the_last_one():
     assert with_label.x0 > second.axes[0].get_position().x0
 
 
+def test_a_broad_picture_takes_the_whole_width_of_a_page():
+    def made(width):
+        return picture(svg(new_figure(width, 3.0)), "")
+
+    assert made(4.0).startswith('<img class="drawing" ') and made(9.0).startswith(
+        '<img class="drawing broad"'
+    )
+
+
+def test_a_bar_in_a_table_is_styled_as_one_on_a_phone():
+    made = html([table("", ("left out", "size"), [("shear", bar(0.1))], (0, 1))])
+    assert '<td class="words">shear</td><td class="words bar">' in made
+
+
 def test_a_picture_that_another_process_makes_comes_first_in_haste():
     found = first_of("Loads")
     assert found.picture.startswith('<img class="drawing"') and not found.is_whole
@@ -101,3 +118,17 @@ def test_a_preliminary_best_resistance_is_sought_less_finely():
     found, best = first.answer.result, whole.answer.result
     assert found.resistance == pytest.approx(best.resistance, rel=0.03)  # 1e-2 of a decade is 2.3 %
     assert len(found.resistances) < len(best.resistances) / 2
+    assert math.isnan(found.total_error[0]) and best.total_error[0] < 1e-2
+    assert "unresolved" not in first.headline[0].value
+
+
+def test_a_preliminary_harvest_has_no_error_and_the_power_of_the_whole_one(monkeypatch):
+    monkeypatch.setattr("beamdyn.steady.road_harvest.root_mean_squares", None)  # compares, which takes long
+    document, screen = SCREENS["Harvest"]
+    found = first_of("Harvest").answer.result
+    monkeypatch.undo()
+    tables = tables_of(document.base_entries, document.inputs(document.base_entries))
+    whole = screen.solve(tables).result
+    assert np.isnan(found.total_error).all() and np.isfinite(whole.total_error).all()
+    at = np.searchsorted(whole.speeds, found.speeds)
+    np.testing.assert_allclose(found.total_power, whole.total_power[at], rtol=1e-2)

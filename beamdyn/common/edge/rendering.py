@@ -22,8 +22,10 @@ _RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u20
 _SENTENCE = 36  # number of characters above which the text of a table cell is styled as a sentence
 # Characters in a row above which a table takes the full width of a page, and of a wide screen.
 _WIDE, _WIDEST = 75, 112
-_LONG = 12  # number of rows above which a table continues in a second column if the screen has room
-_BETWEEN = 1.5  # width of the gap between two columns, in characters
+_LONG = 12  # number of rows from which a table continues in a second column where there is room
+_BROAD = 2.0  # ratio of width to height of a picture above which it takes the whole width of a page
+_BAR = "\u2588"  # letter of which a bar in a cell consists
+_BETWEEN = 1.5  # width of the gap between two columns, in letters
 
 _FEW_DECADES = 1e2  # ratio of the limits of a logarithmic axis above which minor ticks can be omitted
 _MOST_PLACES = 50  # largest number of pictures whose axes' positions are stored
@@ -129,7 +131,9 @@ def picture(text: str, words: str) -> str:
     """
     if not text.startswith("<?xml"):
         return f"<p>{escape(text)}</p>"
-    return f'<img class="drawing" alt="{escape(words)}" src="{data_url(text)}">'
+    size = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', text)
+    broad = " broad" if size and float(size[1]) > _BROAD * float(size[2]) else ""
+    return f'<img class="drawing{broad}" alt="{escape(words)}" src="{data_url(text)}">'
 
 
 def data_url(text: str) -> str:
@@ -209,11 +213,12 @@ def _cell(cell: object) -> str:
 
 
 def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
-    """Return a table row as HTML; cells with long texts may be wrapped."""
-    kinds = (
-        ("words sentence" if len(cell) > _SENTENCE else "words") if w else "number"
-        for cell, w in zip(cells, words, strict=True)
-    )
+    """Write a row in HTML; cells with long words may wrap."""
+
+    def kind(cell: str) -> str:
+        return "words sentence" if len(cell) > _SENTENCE else "words bar" if cell[:1] == _BAR else "words"
+
+    kinds = (kind(cell) if w else "number" for cell, w in zip(cells, words, strict=True))
     made = (f'<{tag} class="{kind}">{cell}</{tag}>' for cell, kind in zip(cells, kinds, strict=True))
     return f"<tr>{''.join(made)}</tr>"
 
