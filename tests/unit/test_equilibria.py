@@ -79,6 +79,20 @@ def test_a_turning_point_is_as_stable_as_what_it_ends() -> None:
     assert bent.turning_speeds.size and bent.stable.all()
 
 
+def test_a_near_speed_is_met_in_one_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as changed:
+        changed.setattr(continuation, "_LONGEST", 0.0)
+        followed = bd.equilibrium(harvester(45.0), 60.0).tip
+    monkeypatch.setattr(continuation, "follow", None)
+    np.testing.assert_allclose(bd.equilibrium(harvester(45.0), 60.0).tip, followed, rtol=0, atol=1e-14)
+
+
+def test_no_step_leads_past_where_a_nearly_straight_beam_begins_to_bend() -> None:
+    found = bd.equilibrium(harvester(1e-6), 162.0)  # a straight beam buckles at 159.8 rad/s
+    assert found.stable
+    assert abs(found.tip[1]) > 0.2 * found.scene.beam.length
+
+
 def test_the_straight_branch_is_stable_up_to_the_critical_speed() -> None:
     found = bd.equilibrium_branches(harvester(0.0), 200.0)
     straight = found.branches[0]

@@ -401,8 +401,9 @@ class DeflectedFunctions(FieldsOnly):
         return self.place.stop - self.place.start
 
     def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at the tip."""
-        return self.evaluate(np.ones(1), order)[:, 0]
+        """Evaluate the functions or their slopes at the tip; see `evaluate`."""
+        at_tip = self.bent.tip_motions[self.place, 1 + self.direction]
+        return self.evaluate(np.ones(1), order)[:, 0] if order else at_tip
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
         """Evaluate the functions (order 0) or their derivatives by x/L (order 1) at xi (k,): shape (n, k)."""

@@ -131,15 +131,18 @@ class Point:
     p_rate: float
 
 
-def solve_at(load: Loading, q: np.ndarray, p: float) -> np.ndarray:
+def solve_at(load: Loading, q: np.ndarray, p: float, most: float = np.inf) -> np.ndarray:
     """Solve r(q, p) = 0 for q by Newton's method.
 
     Raises
     ------
     NotConverged
-        If the iteration does not converge.
+        If it does not converge, or changes a slope angle by more than `most` [rad].
     """
-    return _newton(load, q, p, None)[0]
+    found = _newton(load, q, p, None)[0]
+    if np.abs((found - q) @ load.angles).max() > most:
+        raise NotConverged
+    return found
 
 
 def start_curve(load: Loading, q: np.ndarray, p: float, towards: float) -> Point:
@@ -181,14 +184,12 @@ def follow(load: Loading, start: Point, longest: float = _LONGEST, easy: int = _
                 raise
             continue
         if following.p_rate * point.p_rate < 0:
-            yield find_turning_point(load, point, following)
+            yield replace(_find_between(load, point, following, lambda found: found.p_rate), p_rate=0.0)
         point, before = following, stability
         yield point
-        # The longest step changes slope angles by `longest` [rad], or the parameter by that fraction of its
-        # value.
-        by_angles, by_parameter = _metric(load, point.q_rate, 0.0), 1 / (1 + abs(point.p) / load.scale)
-        most = longest * (1 / max(by_angles, by_parameter))
-        step = min(most, 1.5 * step) if iterations <= easy else max(step / 2, _SHORTEST)
+        # The slope angles change by 1, or the parameter by its size, at least by the smaller of arc lengths.
+        size = max(_metric(load, point.q_rate, 0.0), 1 / (1 + abs(point.p) / load.scale))
+        step = min(longest / size, 1.5 * step) if iterations <= easy else max(step / 2, _SHORTEST)
 
 
 def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
@@ -201,6 +202,14 @@ def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
         there.
     """
     found, before, towards, why = [], start, np.sign(start.p_rate), "could not be followed beyond"
+    step = (goals[-1] - start.p) / (start.p_rate * load.scale)
+    with suppress(NotConverged):
+        if len(goals) == 1 and step < _LONGEST:  # one step may do, if the curve hardly turns
+            q = solve_at(load, start.q + step * start.q_rate, goals[0], _STRAYED * step)
+            turned = (start_curve(load, q, goals[0], towards).q_rate - start.q_rate) @ load.angles
+            change = count_negative(load, q, goals[0]) - count_negative(load, start.q, start.p)
+            if not change and np.abs(turned).max() < _STRAYED:
+                return q[None]
     with suppress(NotConverged):
         for after in follow(load, start):
             while len(found) < len(goals) and towards * (after.p - goals[len(found)]) >= 0:
@@ -245,14 +254,8 @@ def advance(load: Loading, point: Point, step: float, strayed: float = _STRAYED)
     correction = np.abs((corrected - q) @ load.angles).max() + abs(p_corrected - p) / load.scale
     if correction > strayed * abs(step):
         raise NotConverged
-    across = np.append(np.zeros(len(q)), 1.0)
-    tangent = np.linalg.solve(_bordered(load, corrected, p_corrected, point), across)
+    tangent = np.linalg.solve(_bordered(load, corrected, p_corrected, point), np.eye(len(q) + 1)[-1])
     return _normalized(load, corrected, p_corrected, tangent[:-1], tangent[-1]), iterations
-
-
-def find_turning_point(load: Loading, before: Point, after: Point) -> Point:
-    """Find the point between two successive points of a curve at which the parameter has an extremum."""
-    return replace(_find_between(load, before, after, lambda point: point.p_rate), p_rate=0.0)
 
 
 def find_loss_between(load: Loading, before: Point, after: Point) -> float:
@@ -273,13 +276,9 @@ def find_at(load: Loading, before: Point, after: Point, p: float) -> np.ndarray:
     """Find the coordinates at a parameter between two successive points of a curve."""
     if p in (before.p, after.p):
         return before.q if p == before.p else after.q
-    share = (p - before.p) / (after.p - before.p)
-    between = before.q + share * (after.q - before.q)
-    size = _metric(load, after.q - before.q, 0.0)
+    between = before.q + (p - before.p) / (after.p - before.p) * (after.q - before.q)
     with suppress(NotConverged):
-        q = solve_at(load, between, p)
-        if _metric(load, q - between, 0.0) < size / 2:
-            return q
+        return solve_at(load, between, p, np.abs((after.q - before.q) @ load.angles).max() / 2)
     point = _find_between(load, before, after, lambda point: (point.p - p) / load.scale)
     return solve_at(load, point.q, p)
 
@@ -300,8 +299,8 @@ def _find_between(load: Loading, before: Point, after: Point, function: Callable
 
 
 def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tuple[np.ndarray, float, int]:
-    """Iterate to a solution, at fixed p, or in the plane normal to a curve's direction at `point`."""
-    last = np.inf
+    """Iterate to a solution, at fixed p or in the plane across a curve's direction at `point`."""
+    last = np.nan  # no change is known yet, and comparisons with it are false
     for iteration in range(1, _ITERATIONS + 1):
         r, A = load.at(q, p)
         if point is None:
@@ -311,8 +310,10 @@ def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tupl
             change, p = full[:-1], p + full[-1] * load.scale
         q = q + change
         size = float(np.abs(change @ load.angles).max())
-        if size < _CONVERGED or (size < _STALLED and size > last / 4):
-            return q, p, iteration
+        # Convergence is at least linear: the next change is at most size**2 / last.
+        ends = size < _CONVERGED or (size < _STALLED and size > last / 4)
+        if ends or size**2 < _CONVERGED * last:
+            return q, p, iteration + (not ends)  # an iteration that is not needed counts
         last = size
     raise NotConverged
 

@@ -300,11 +300,11 @@ class Solver(Eigensolver):
             R = condense(mass, K) if self._has_massless else np.eye(n)
             inverse, y = solve_first_order(*(R.T @ A @ R for A in (mass / time**2, damping / time, K)))
             y = R @ y[: R.shape[1]]
+        elif pencil.C.any() or stiffness.min() <= 0:
+            inverse, y = solve_general(mass / time**2, damping / time, stiffness)
         else:
-            gyroscopic = not pencil.C.any() and stiffness.min() > 0
-            solve = solve_gyroscopic if gyroscopic else solve_general
-            inverse, y = solve(mass / time**2, damping / time, stiffness)
-        turns = np.empty((n, 0))  # rotations about hinges without stiffness and damping
+            inverse, y = solve_gyroscopic(mass / time**2, damping / time, stiffness, count)
+        turns = np.empty((n, 0))  # rotations about hinges on which neither stiffness nor damping acts
         if pencil.shift:
             undamped = self._solve_diagonal(np.array([speed]), min(pencil.planes, n))
             turns = springs.find_free_turns(pencil, undamped.eigenvalue[0], undamped.vector[0])
@@ -325,7 +325,7 @@ class Solver(Eigensolver):
         """Compute gyroscopic modes of a beam on root springs, in coordinates with unit stiffness matrix."""
         M, C = (basis.T @ A @ basis for A in (self.pencil.M, speed * self.pencil.G))
         time = np.sqrt(np.trace(M) / len(M))
-        inverse, y = solve_gyroscopic(M / time**2, C / time, np.ones(len(M)))
+        inverse, y = solve_gyroscopic(M / time**2, C / time, np.ones(len(M)), count)
         s, z = select_lowest(inverse * time, y[: len(M)], count)
         norm = np.sqrt(np.einsum("nk,nm,mk->k", z.conj(), M, z).real)
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)

@@ -203,8 +203,7 @@ class DeflectedSolver(Solver):
         """
         missing = np.array([v for v in np.unique(speeds) if (v, count) not in self._solved])
         for v, q in zip(missing.tolist(), self.equilibria(missing), strict=True):
-            pencil = self.elastica.at(q).steady()
-            solver = Solver(pencil) if self.elastica.load is None else LoadedSolver(pencil)
+            solver = (LoadedSolver if self.elastica.load else Solver)(self.elastica.at(q).steady())
             self._solved[v, count] = solver.solve(np.array([v]), count)
         return Eigen.joined(self._solved[v, count] for v in speeds.tolist())
 
@@ -222,27 +221,23 @@ class DeflectedSolver(Solver):
         """Compute the equilibrium coordinates (S, n) at each speed; results are cached."""
         missing = np.array([v for v in np.unique(np.abs(speeds)) if v not in self._found])
         if self.guide is not None and len(missing):
-            self._found |= self._find_near(self.guide, missing)
+            self._find_near(self.guide, missing)
             missing = np.array([v for v in missing if v not in self._found])
         if len(missing):
             if not self._found and self.branch == "straight":
                 self._found[0.0] = self.load.at_rest
             elif not self._found:
                 self._found[float(missing[-1])] = find_bent(self.load, float(missing[-1]))
-            known = np.array(list(self._found))
-            start = float(known[np.abs(known - missing[0]).argmin()])
+            start = min(self._found, key=lambda v: abs(v - missing[0]))
             followed = follow_to(self.load, missing, self._found[start], start)
             self._found.update(zip(missing.tolist(), followed, strict=True))
         return np.array([self._found[abs(v)] for v in speeds])
 
-    def _find_near(self, guide: DeflectedSolver, speeds: np.ndarray) -> dict[float, np.ndarray]:
-        """Find equilibria near those of another discretization, of the same stability, where they exist."""
-        found: dict[float, np.ndarray] = {}
+    def _find_near(self, guide: DeflectedSolver, speeds: np.ndarray) -> None:
+        """Find equilibria near another discretization's, of the same stability, at speeds that have them."""
         for v, of_guide in zip(speeds.tolist(), guide.equilibria(speeds), strict=True):
             near = self.elastica.nearest(guide.elastica, of_guide)
             with suppress(NotConverged):
-                q = continuation.solve_at(self.load, near, v**2)
-                stable = (count_negative(s.load, x, v**2) for s, x in ((self, q), (guide, of_guide)))
-                if np.abs((q - near) @ self.load.angles).max() < _NEAR and len({*stable}) == 1:
-                    found[v] = q
-        return found
+                q = continuation.solve_at(self.load, near, v**2, _NEAR)
+                if count_negative(self.load, q, v**2) == count_negative(guide.load, of_guide, v**2):
+                    self._found[v] = q

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.linalg
+from scipy.linalg.lapack import zheevr
 
 _EPS = np.finfo(float).eps
 # Relative growth rate below which a mode counts as stable, as rounding of a double root causes it.
@@ -11,16 +12,21 @@ _REAL = 1e-8
 _MASSLESS = 16 * _EPS  # relative eigenvalue of a mass matrix, below which it is a rounding error of 0
 
 
-def solve_gyroscopic(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + diag(d) q = 0 for skew-symmetric C and positive d; results as `solve_general`."""
-    n, scale = len(d), 1 / np.sqrt(d)
+def solve_gyroscopic(
+    M: np.ndarray, C: np.ndarray, d: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Solve M q'' + C q' + diag(d) q = 0 for skew-symmetric C and positive d: see `solve_general`.
+
+    Of each conjugate pair there is one, and there are the `count` lowest modes.
+    """
+    n, scale, count = len(d), 1 / np.sqrt(d), min(count, len(d))
     mu, U = np.linalg.eigh(scale[:, None] * M * scale)
-    root = np.sqrt(np.maximum(mu, 0))
-    half = U * root
-    W = np.zeros((2 * n, 2 * n), dtype=complex)
-    W[:n, :n], W[:n, n:], W[n:, :n] = -1j * (scale[:, None] * C * scale), -1j * half, 1j * half.T
-    theta, y = np.linalg.eigh(W)
-    return theta / 1j, y * np.concatenate([scale, np.ones(n)])[:, None]
+    W = np.zeros((2 * n, 2 * n), dtype=complex, order="F")  # Hermitian, by its upper half
+    W[:n, :n], W[:n, n:] = -1j * (scale[:, None] * C * scale), -1j * (U * np.sqrt(np.maximum(mu, 0)))
+    theta, y, _, _, failed = zheevr(W, range="I", il=2 * n - count + 1, iu=2 * n, overwrite_a=1)
+    if failed:
+        raise np.linalg.LinAlgError
+    return theta[:count] / 1j, y * np.concatenate([scale, np.ones(n)])[:, None]
 
 
 def solve_general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
