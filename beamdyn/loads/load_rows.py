@@ -123,7 +123,9 @@ class LoadRows:
 
 
 def per_force(mass: np.ndarray, by_acceleration: np.ndarray) -> np.ndarray:
-    """Convert rows (S, K, n) per unit acceleration to rows per unit force on each coordinate.
+    """Convert rows per unit acceleration of n coordinates to rows per unit force on each coordinate.
+
+    The rows (S, K, n) give K loads at S stations.
 
     The charge of a circuit has no mass, and its rows are 0.
     """

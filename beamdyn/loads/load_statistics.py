@@ -308,7 +308,7 @@ class InputAndOutputs:
         return LinearLoads(model, self.stations, self.outputs).fractions(self.drive)
 
     def statistics(self, model: ModelAtSpeed) -> np.ndarray:
-        """Compute the fields of `RandomStatistics`, in their order: shape (5, S, K)."""
+        """Compute the five fields of `RandomStatistics` for K outputs at S stations: shape (5, S, K)."""
         check_stable(model)
         fractions, spectrum = self.fractions(model), self.spectrum
         mean, gravity = LinearLoads(model, self.stations, self.outputs).steady()
@@ -346,7 +346,7 @@ class InputAndOutputs:
 def _rounding(
     fractions: Sequence[LoadFractions], found: RandomStatistics, spectrum: PowerSpectrum
 ) -> np.ndarray:
-    """Estimate the rounding errors of the fields of `RandomStatistics`: shape (5, S, K)."""
+    """Estimate the rounding errors of the five fields of `RandomStatistics`: (5, S stations, K outputs)."""
     value, rate = (sum(each.rounding(spectrum, order) for each in fractions) for order in (0, 2))
     pairs = (found.rms, value), (found.rms_in_turn, 2 * value), (found.rate_rms, rate)
     none = np.zeros_like(found.mean)

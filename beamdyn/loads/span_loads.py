@@ -201,7 +201,7 @@ class SpanLoads(JudgedByRepeating):
         return np.atleast_1d(getattr(self, self.case.field))
 
     def values(self, quantity: str) -> np.ndarray:
-        """Return the values of a quantity by its name: shape (C, S, k)."""
+        """Return the values of a quantity of k components by its name: shape (C, S, k)."""
         one_of("quantity", quantity, (*UNITS,))
         return getattr(self, quantity)
 
@@ -276,7 +276,7 @@ class SpanLoads(JudgedByRepeating):
         return self.draw(ax, quantity, self.values, with_unit(quantity))
 
     def draw(self, ax: Axes | None, quantity: str, values: Callable[[str], np.ndarray], label: str) -> Axes:
-        """Plot values (C, S, k) of a quantity along the span, if the result has the quantity."""
+        """Plot values (C, S, k) of the k components of a quantity along the span, if the result has it."""
         self.check_known(quantity)
         named = self.components(quantity)
         scale, _ = SHOWN[quantity]

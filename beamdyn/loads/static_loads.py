@@ -212,7 +212,10 @@ def _solve(
 
 
 def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarray:
-    """Solve equilibrium coordinates (C, n); refuse stiffnesses (C, n, n) that are not positive definite."""
+    """Solve K q = load for equilibrium coordinates (C, n) at C speeds.
+
+    A stiffness matrix, of K (C, n, n), that is not positive definite is refused.
+    """
     size = np.sqrt(np.einsum("cii->ci", np.abs(K)))
     size[size == 0] = 1.0  # trial functions without stiffness are not scaled
     scaled = K / (size[:, :, None] * size[:, None, :])

@@ -232,7 +232,10 @@ def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
 
 
 def _curvature(beam: Beam, xi: np.ndarray, planes: int) -> np.ndarray:
-    """Compute the curvature in each direction of the section per unit load: shape (S, d, 1 + 2 d)."""
+    """Compute the curvature in each direction of the section per unit load: shape (S, d, 1 + 2 d).
+
+    The loads at S stations are the axial force, then d transverse forces, then d moments.
+    """
     turned = np.zeros(len(xi)) if beam.twist is None else beam.twist(xi)
     cos, sin = np.cos(turned), np.sin(turned)
     matrix = np.zeros((len(xi), planes, 1 + 2 * planes))
@@ -319,7 +322,7 @@ def mode_error(
 
 
 def through(outputs: StationOutputs, errors: np.ndarray) -> np.ndarray:
-    """Convert errors of loads (..., S, 1 + 2 d) to errors of outputs (..., S, K); errors add up."""
+    """Convert errors of 1 + 2 d loads at S stations to errors of K outputs, (..., S, K); errors add up."""
     weights = np.abs(outputs.matrix)
     with np.errstate(invalid="ignore"):  # an infinite error times 0 counts as 0
         return np.where(weights != 0, weights * errors[..., None, :], 0.0).sum(axis=-1)

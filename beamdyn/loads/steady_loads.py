@@ -1,4 +1,4 @@
-"""Loads along the span in steady response, over the two phases of the excitation."""
+"""Loads along the span in steady response, over the phases of rotation and road."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _NEGLIGIBLE = 1e-12  # amplitude of a line of the tip, over the sum of all, belo
 
 @dataclass(frozen=True)
 class SteadyLoads(span_loads.SpanLoads):
-    """Loads along the span in steady response at C speeds: largest magnitudes over both phases.
+    """Loads along the span in steady response at C speeds: largest magnitudes over all phases.
 
     The fields are those of `SpanLoads`, and the following; values are nan where there is no steady
     response.
@@ -99,7 +99,7 @@ class SteadyLoads(span_loads.SpanLoads):
 
     @cached_property
     def _amplitudes(self) -> np.ndarray:
-        """Amplitudes (C, S, K, l) of the lines of all outputs."""
+        """Amplitudes (C, S, K, l) of the l spectral lines of K outputs at S stations and C speeds."""
         stations = SpanStations(self.x / self.scene.beam.length, self.inboard)
         return lines_of_response(self.response, stations, self.outputs).amplitude
 
@@ -192,7 +192,7 @@ class LoadLines:
 
     @cached_property
     def largest(self) -> np.ndarray:
-        """Compute the largest magnitudes over both phases: shape (C, S, K)."""
+        """Compute the largest magnitudes over all phases: shape (C, S, K)."""
         flat = self.amplitude.reshape(-1, 1, len(self.harmonics))
         found, known = np.full(len(flat), np.nan), np.flatnonzero(np.isfinite(flat).all(axis=(1, 2)))
         for some in np.array_split(known, 1 + len(known) // _BATCH):
@@ -219,7 +219,7 @@ class LoadLines:
 def lines_of_response(
     response: SteadyResponse, stations: SpanStations, outputs: StationOutputs | None = None
 ) -> LoadLines:
-    """Compute the lines of loads in a steady response.
+    """Compute the spectral lines (complex amplitudes) of loads in a steady response.
 
     Parameters
     ----------
@@ -295,7 +295,7 @@ def _expand(
     rates: np.ndarray,
     q: np.ndarray,
 ) -> np.ndarray:
-    """Compute complex amplitudes (C, S, K, U) of the outputs at U harmonics."""
+    """Compute complex amplitudes (C, S, K, U) of K outputs at C speeds and S stations, at U harmonics."""
     everywhere = np.zeros((len(rates), len(union), q.shape[-1]), dtype=complex)
     everywhere[:, [union.index(h) for h in pairs]] = q
     velocity = 1j * (rates @ np.array(union).T)[..., None] * everywhere

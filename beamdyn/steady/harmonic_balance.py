@@ -1,4 +1,4 @@
-"""Harmonic balance of linear equations whose coefficients are periodic in two phases.
+"""Harmonic balance of equations with coefficients periodic in two phases: of rotation and of the road.
 
 The response q = sum_h q_h exp(i (j theta + k chi)), h = (j, k), is a function of the two phases of a
 `PeriodicSystem`; d/dt becomes i Omega_h with Omega_h = j nu_1 + k nu_2.  Whether nu_1 / nu_2 is rational does
@@ -186,7 +186,7 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
 
 
 def _size(y: np.ndarray) -> np.ndarray:
-    """Compute the magnitudes (S,) of responses (H, n, S)."""
+    """Compute the magnitudes (S,) of responses (H, n, S) of n modes in H harmonics."""
     return (np.abs(np.real(y)) + np.abs(np.imag(y))).sum(axis=(0, 1))
 
 

@@ -1,4 +1,4 @@
-"""Largest value over two phases of a sum of lines (harmonics of the phases).
+"""Largest value, over the phases of rotation and road, of a sum of spectral lines (harmonics of both).
 
 The sum is sampled at as many phases as its strong lines need; the largest maxima of the samples are refined
 by Newton's method with all lines.
@@ -80,7 +80,10 @@ def _find_largest(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarr
 
 
 def _sample(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) -> np.ndarray:
-    """Sample the magnitude of sums of lines over both phases (S, N, N), harmonics up to a degree (2,)."""
+    """Sample the magnitude of S sums of lines on a grid of N phases of each kind: (S, N, N).
+
+    Only harmonics up to a degree (2,) are included.
+    """
     S, d, _ = amplitude.shape
     kept, grid = np.flatnonzero((np.abs(harmonics) <= degree).all(axis=1)), _grid(degree)
     theta, chi = (2 * np.pi / N * (np.arange(N) + offset) for N, offset in zip(grid, _OFFSET, strict=True))
@@ -92,7 +95,7 @@ def _sample(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) ->
 
 
 def _find_maxima(sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Find the largest local maxima of samples (S, N, N): rows (R,) of each, and its indices (R, 2)."""
+    """Find the R largest local maxima of S sampled sums (S, N, N): indices of sum (R,) and sample (R, 2)."""
     highest = sampled
     for axis in (1, 2):  # the samples are periodic
         beside = np.roll(highest, 1, axis), np.roll(highest, -1, axis)
@@ -121,7 +124,7 @@ def _evaluate_size(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Evaluate the magnitude (R,) of sums of lines, with the first component's sign, and derivatives.
 
-    The derivatives are the gradient and the second derivatives by the two phases.
+    The derivatives are the gradient and the second derivatives with respect to the two phases.
     """
     u, slope, curvature = _evaluate(a, h, phases)
     if u.shape[1] == 1:
@@ -138,9 +141,9 @@ def _evaluate_size(
 
 
 def _evaluate(a: np.ndarray, h: np.ndarray, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate sums of lines of amplitudes a (R, d, H) at phases (R, 2), and their derivatives.
+    """Evaluate R sums of H lines, with amplitudes a (R, d, H), at phases (R, 2), and their derivatives.
 
-    The derivatives are the gradient and the second derivatives by the two phases.
+    The derivatives are the gradient and the second derivatives with respect to the two phases.
     """
     first = h.astype(float)
     second = np.concatenate(

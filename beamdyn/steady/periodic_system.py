@@ -132,7 +132,7 @@ class MeanModes:
 
 
 def _fourier_coefficients(samples: np.ndarray) -> np.ndarray:
-    """Compute the harmonics of samples (S, N, N) on a grid of the phases; rounding errors are set to 0."""
+    """Compute the harmonics of samples (S, N, N) on an N x N grid of phases; rounding errors are set to 0."""
     if (samples == samples[:, :1, :1]).all():
         constant = np.zeros(samples.shape, dtype=complex)
         constant[:, 0, 0] = samples[:, 0, 0]

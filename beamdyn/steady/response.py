@@ -1,4 +1,4 @@
-"""Steady response over speed, by harmonic balance in the two phases of the excitation."""
+"""Steady response over speed, by harmonic balance in the phases of rotation and road."""
 
 from __future__ import annotations
 
@@ -389,7 +389,10 @@ class ResponseRequest(FieldsOnly):
 
 
 def _largest(line: np.ndarray, harmonics: np.ndarray, stable: np.ndarray) -> np.ndarray:
-    """Compute the largest magnitude over the phases of a sum of lines (S, d, l); nan without a response."""
+    """Compute the largest magnitude over the phases of a sum of l spectral lines; nan without a response.
+
+    The lines (S, d, l) are vectors of d components at S speeds.
+    """
     size = np.full(len(line), np.nan)
     size[stable] = largest_over_phases(line[stable], harmonics)
     return size

@@ -1,4 +1,4 @@
-"""Stability of free motion about the steady response, by Hill's method in two phases.
+"""Stability of free motion about the steady response, by Hill's method for phases of rotation and road.
 
 A free motion is exp(s t) times a function of the phases.  Where the ratio of the rates is irrational there
 is no period and no monodromy matrix, but the exponents s are still eigenvalues of the operator of harmonic
@@ -227,7 +227,7 @@ class _MeanMotion:
         return np.minimum(shift, self.radius)
 
     def _couple(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute the periodic coefficients between modes in given harmonics: shape (S, m, m, H)."""
+        """Compute the periodic coefficients between modes in H harmonics: shape (S, m, m, H)."""
         spectra = (convolution_matrix(f, [(0, 0), *harmonics])[:, 1:, 0] for f, _ in self.V)
         parts = (f[:, None, None] * v[..., None] for f, (_, v) in zip(spectra, self.V, strict=True))
         return reduce(np.add, parts)
@@ -270,7 +270,10 @@ class _MeanMotion:
             yield int(i), found
 
     def _overlap(self, harmonics: list[Pair], radius: np.ndarray) -> np.ndarray:
-        """Return which discs of opposite energy overlap, unless all lie left of the axis: (S, m, m, H)."""
+        """Return which Gershgorin discs of modes of opposite energy overlap at a harmonic: (S, m, m, H).
+
+        If all discs lie left of the imaginary axis, none counts as overlapping.
+        """
         near = np.abs(self.gap(harmonics)) <= (radius[:, :, None] + radius[:, None, :])[..., None]
         opposite = (np.imag(self.sigma) >= 0)[:, :, None] & (np.imag(self.sigma) <= 0)[:, None, :]
         rightmost = (np.real(self.sigma) + radius).max(axis=1) > 0

@@ -221,7 +221,10 @@ def solve_parts(
 def _solve_harmonics(
     system: PeriodicSystem, tips: np.ndarray, interactions: int | None, tolerance: float
 ) -> tuple[list[Pair], np.ndarray, np.ndarray]:
-    """Compute harmonics, tip deflections (S, d, H) and errors (S,), with the harmonics each speed needs."""
+    """Compute the harmonics of d tip deflections at S speeds, with as many as each speed needs.
+
+    Return H harmonics, their amplitudes (S, d, H), and relative errors (S,).
+    """
     S, d = tips.shape[:2]
     if not system.load_harmonics:
         return [], np.zeros((S, d, 0), dtype=complex), np.full(S, _ROUNDING)

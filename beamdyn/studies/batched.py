@@ -260,7 +260,7 @@ def _cautions_of_theory(
 
 
 def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
-    """Build a warning about designs without a result (R, S, k) because of rounding.
+    """Build a warning about designs of which a result is missing, status (R, S, k), because of rounding.
 
     Nothing is yielded if all designs have a result.
     """

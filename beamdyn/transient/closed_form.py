@@ -89,7 +89,10 @@ class _Harmonics:
         return found
 
     def coupling(self, sums: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-        """Build the function from a motion q (..., k, n) to forces (..., k, n) of the varying stiffness."""
+        """Build the function from a motion q at k frequencies to forces of the varying stiffness.
+
+        Motion and forces have the shape (..., k, n).
+        """
         varying = np.abs(self.stiffness).any(axis=(1, 2))
         # Index in `sums` of each sum minus each frequency of the stiffness; k if the difference is not in
         # `sums`.
@@ -171,7 +174,9 @@ def _stiffness(s: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
 def _free(
     harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Compute exponents (n, k) and shapes (n, k, n) of the n free vibrations; None if the iteration fails.
+    """Compute exponents (n, k) and shapes (n, k, n) of n free vibrations; None if the iteration fails.
+
+    Each vibration is a sum of k exponentials.
 
     Newton's method corrects each vibration until it satisfies the equations at all sums of frequencies.  It
     keeps the inverse dynamic stiffness of the constant-coefficient equations; at the vibration's own exponent

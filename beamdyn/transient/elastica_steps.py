@@ -206,7 +206,7 @@ def propagate_elastica(
 
 
 def _at_nodes(stages: int, values: np.ndarray) -> np.ndarray:
-    """Interpolate values (N, s, n) from the nodes of a Gauss rule to those of a rule with `stages` nodes."""
+    """Interpolate values (N, s, n) from s Gauss nodes in each of N steps to a rule with `stages` nodes."""
     given = values.shape[1]
     return legendre.legvander(gauss_rule(stages)[0], given - 1) @ legendre_series(given) @ values
 

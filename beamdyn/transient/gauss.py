@@ -174,7 +174,7 @@ def _maps_to_end(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
 
 
 def increment(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Compute the increment (N, 2 n, m) of (q, v) over steps from accelerations at nodes, a (N, s n, m)."""
+    """Compute the increment (N, 2 n, m) of (q, v) over N steps from accelerations at s nodes (N, s n, m)."""
     N, rows, columns = a.shape
     weights = np.stack([h**2 * table.b2, h * table.b])
     n = rows // len(table.c)

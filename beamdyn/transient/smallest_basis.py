@@ -36,7 +36,7 @@ def run_smallest_basis(request: TransientRequest) -> Transient:
     tolerance = request.tolerance
     run = _search(replace(request, method="auto", t_eval=None))
     if run.mode_error > tolerance and tolerance < _TIGHT:
-        # If a coarser time integration leaves computing work for more modes, the total error may be smaller.
+        # A coarser time integration leaves computing work for more modes, which may reduce the total error.
         coarse = _search(replace(request, method="auto", t_eval=None, tolerance=_TIGHT))
         run = min(run, coarse, key=lambda each: each.time_error + each.mode_error * each.largest)
     missed = tuple(warn_of_missed_modes(run.mode_error, tolerance, str(run.request.basis)))

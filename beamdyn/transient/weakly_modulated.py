@@ -39,7 +39,8 @@ _SAMPLES = 257  # number of samples of e, the variation of the stiffness, among 
 _SLOWEST = 1e-3
 _SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision
 _STEPS = 192  # number of steps evaluated as one batch
-# Number of steps at whose nodes e and g are evaluated in one call: the calls cost more than the values.
+# Number of steps for whose nodes the factors e of the stiffness and g of the loads are evaluated in one call:
+# a call costs more than the values.
 _SAMPLED = 16 * _STEPS
 
 
@@ -158,7 +159,8 @@ class _StepMapSeries:
     def second(self) -> np.ndarray:
         """Compute the terms of second order in e in the maps to the end of a step.
 
-        The shape is (P, m s (m s + 1) / 2, 2 n, :), with a term for each pair of values e_k, e_l with k <= l.
+        The m factors e have m s values at the s nodes of a step.  The shape is
+        (P, m s (m s + 1) / 2, 2 n, :): a term for each pair e_k, e_l with k <= l of these values.
         """
         ends, W = self._parts()
         P, m, s, n, columns = W.shape
@@ -364,7 +366,7 @@ def propagate_modulated(
 def _blocks(
     system: ModulatedSystem, t0: float, h: float, steps: int, table: gauss.Tableau
 ) -> Iterator[tuple[slice, np.ndarray, np.ndarray]]:
-    """Yield blocks of steps, with e (N, s, m) and g (N, s, l) at the nodes of their N steps."""
+    """Yield blocks of N steps, with the factors e (N, s, m) and g (N, s, l) at the s nodes of each step."""
     for first in range(0, steps, _SAMPLED):
         last = min(first + _SAMPLED, steps)
         e, g = system.scalars(t0 + h * (np.arange(first, last)[:, None] + table.c))

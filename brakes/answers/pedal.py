@@ -34,7 +34,7 @@ class FromPedal(Result):
     heat : Heat
         Energy of the stop, and temperature rise of the drums.
     brake_error : ndarray
-        Bound of the relative error of the torque that a brake can give.
+        Upper bound of the relative error of the torque that a brake can give.
     fade : Fade, optional
         Heating in repeated stops, if the file has [heat].
     """
@@ -50,7 +50,7 @@ class FromPedal(Result):
 
     @property
     def error(self) -> Numbers:
-        """Bound of the relative error of torque and deceleration.
+        """Upper bound of the relative error of torque and deceleration.
 
         The torque's error changes the deceleration only where the brake, not the grip, limits it.
         """

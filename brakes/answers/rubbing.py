@@ -50,7 +50,7 @@ class RubbingAnswer(Answer):
 
     @property
     def error(self) -> Any:
-        """Bound of the relative error of torque, forces and C*; nan where the brake locks."""
+        """Upper bound of the relative error of torque, forces and C*; nan where the brake locks."""
         return self.result.error
 
     @property

@@ -26,7 +26,7 @@ SCALES = {
     "kN": 1e3,
     "MPa": 1e6,
     "MW/m2": 1e6,
-}  # values in SI of the displayed units
+}  # size of each displayed unit in SI units
 
 
 def take(name: str, words: str, unit: str = "") -> Output:

@@ -126,7 +126,7 @@ class VehicleAnswer(Answer):
 
     @property
     def error(self) -> Any:
-        """Bound of the relative error of the largest slopes."""
+        """Upper bound of the relative error of the largest slopes on which the vehicle holds."""
         return max(way.holding.error / np.min(way.holding.largest_slope) for way in self.ways.values())
 
     @property

@@ -195,7 +195,7 @@ def _jams_when_disturbed(
 
 
 def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:
-    """Compute the pressing force at each friction, relative to the largest force of all, shape (S, F)."""
+    """Compute the pressing force at F joints with friction, relative to the largest force of all: (S, F)."""
     force = np.zeros((len(multiplier), len(system.pressing)))
     for k, rows in enumerate(system.pressing):
         force[:, k] = np.linalg.norm(multiplier[:, rows], axis=1)
@@ -225,7 +225,7 @@ def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarr
 def _newton(
     system: System, balance: Balance, start: np.ndarray, full: np.ndarray, offset: np.ndarray | float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Solve for the multipliers (S, R) with friction, and mark positions (S,) where the mechanism jams.
+    """Solve for the multipliers (S, R) of R rows with friction; mark positions (S,) where it jams.
 
     Friction is `full` (S, F) times the pressing force; `offset` (S, 3 n) are additional forces on the bodies.
     """

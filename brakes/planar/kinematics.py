@@ -309,7 +309,7 @@ def driver_at_travel(mechanism: Mechanism, driver: str, weights: Mapping[str, fl
     Raises
     ------
     AssemblyError, OutOfReachError
-        If the joints cannot be brought together, or the driver or the sum turns back before.
+        If the joints cannot be brought together, or the driver or the sum turns back before that.
     OppositeTravelError
         If the sum falls while the driver grows.
     ValueError

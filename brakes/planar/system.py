@@ -247,7 +247,7 @@ class OppositeTravelError(ValueError):
 
 
 class OutOfReachError(ValueError):
-    """Raised if a driver does not reach a value because its motion turns back before.
+    """Raised if a driver does not reach a value because its motion turns back before that.
 
     Parameters
     ----------

@@ -69,7 +69,7 @@ class _ProgressLine:
         self._lock, self._timer, self._shown = RLock(), None, None
 
     def begin(self) -> None:
-        """Show the line after one second, unless `hide` is called before."""
+        """Show the line after one second, unless `hide` is called first."""
         self._timer = Timer(SILENCE, self._show)
         self._timer.daemon = True
         self._timer.start()

@@ -50,7 +50,8 @@ class LatestComputation:
         self._show, self._fail, self._tell = settle, fail, tell
         self._wanted: Callable[[], asyncio.Future[Any]] | None = None
         self._future: asyncio.Future[Any] | None = None
-        self._gives_way = self._wanted_gives_way = False  # whether the running and the next one give way
+        # Whether a newer request terminates the running computation, or the next one once it runs.
+        self._gives_way = self._wanted_gives_way = False
         self._task: asyncio.Task[None] | None = None
 
     @property

@@ -208,7 +208,10 @@ def _largest_error(found: SpreadAnswers) -> np.ndarray:
 
 
 def _states(status: np.ndarray) -> tuple[dict[str, float], ...]:
-    """Return the fraction of designs (2, n, k) in each status, for each result; the most frequent first."""
+    """Return the fraction of designs in each status, the most frequent first, for each of k results.
+
+    `status` has the statuses (2, n, k) of two samples of n random designs.
+    """
     made = []
     for column in status.reshape(-1, status.shape[-1]).T:
         words, counts = np.unique(column, return_counts=True)

@@ -217,7 +217,7 @@ def scatter_of(random: np.ndarray) -> Scatter:
 
 
 def _in_blocks(random: np.ndarray) -> np.ndarray:
-    """Arrange results by block, shape (k, BLOCKS, 2 n / BLOCKS)."""
+    """Arrange k results of 2 n random designs in blocks: shape (k, BLOCKS, 2 n / BLOCKS)."""
     two, n, k = random.shape
     blocks = random.reshape(two, BLOCKS, n // BLOCKS, k)
     return np.moveaxis(blocks, -1, 0).transpose(0, 2, 1, 3).reshape(k, BLOCKS, -1)
@@ -324,7 +324,7 @@ def indices_of(random: np.ndarray, error: np.ndarray | float = 0.0) -> SobolIndi
 
 
 def _indices(random: np.ndarray) -> np.ndarray:
-    """Compute first-order and total Sobol' indices, shape (2, d, k)."""
+    """Compute first-order and total Sobol' indices of d inputs for k results, shape (2, d, k)."""
     from scipy.stats import sobol_indices  # imported here, because the import takes long
 
     d, n, k = len(random) - 2, random.shape[1], random.shape[2]

@@ -94,7 +94,9 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
 
 
 def _collocate(rates: np.ndarray, A: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve y = 1 + A (y rates) for quaternions (S, c, p, 4) at points of cells, and (S, c, 4) at their ends.
+    """Solve y = 1 + A (y rates) for quaternions at p points of c cells, and at the ends of the cells.
+
+    For S states of the curve the shapes are (S, c, p, 4) and (S, c, 4).
 
     Picard iteration starts from the rotation about the integral of the rates (S, c, p, 3), which is exact if
     their direction is constant.  After j steps its error is of the order h^j / j!, where h is half the
@@ -129,7 +131,7 @@ def product(y: np.ndarray, z: np.ndarray) -> np.ndarray:
 
 
 def rotation_matrices(y: np.ndarray) -> np.ndarray:
-    """Compute the rotation matrices (S, 3, 3, N) of quaternions (S, N, 4), which are normalized first."""
+    """Compute the rotation matrices (S, 3, 3, N) of S sets of N quaternions (S, N, 4), normalized first."""
     squares = (y[..., None] * y[..., None, :]).reshape(-1, 16)
     matrices = squares @ _TURNING / squares[:, ::5].sum(axis=1, keepdims=True)
     return np.moveaxis(matrices.reshape(*y.shape[:-1], 3, 3), 1, -1)

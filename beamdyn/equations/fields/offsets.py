@@ -247,7 +247,10 @@ class Offsets:
         return float(tip.mass * (length + tip.offset) ** power * (coefficients @ components))
 
     def _of_sections(self, coefficients: np.ndarray, power: int) -> Iterator[tuple[float, Profile]]:
-        """Yield nonzero moments of section masses by component of the offsets, with coefficients (4,)."""
+        """Yield each nonzero coefficient and the mass per length times its offset component times x^power.
+
+        The four coefficients belong to the components of the mass and tension centres.
+        """
         beam = self.scene.modelled_beam
         for component, value in enumerate(coefficients.tolist()):
             if value and (moment := _moment(beam, component, power)) is not None:

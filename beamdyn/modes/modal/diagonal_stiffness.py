@@ -141,7 +141,10 @@ def _find_shift(M: np.ndarray, d: np.ndarray, smallest: np.ndarray) -> np.ndarra
 
 
 def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray:
-    """Return whether diag(d) + shift M, with M (S, n, n), is positive definite beyond rounding errors."""
+    """Return for each of S problems whether diag(d) + shift M is positive definite beyond rounding errors.
+
+    M has the shape (S, n, n).
+    """
     n = d.shape[1]
     K = shift[:, None, None] * M
     K[:, np.arange(n), np.arange(n)] += d

@@ -249,7 +249,7 @@ def _solve_at(
     ratio: np.ndarray | None,
     estimate: Estimate,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute eigenvalues, their errors and rounding errors, (N, S, k) each, at speeds (N, S)."""
+    """Compute eigenvalues, their errors and rounding errors: k modes of N designs at S speeds, (N, S, k)."""
     if ratio is None:
         squared, rounding = fine.solve(speeds, count)
         squared, distance = -squared, coarser.squares(speeds, count) - squared

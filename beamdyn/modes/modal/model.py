@@ -178,14 +178,15 @@ class Model(FieldsOnly):
 
 
 def kinetic_energy(equations: Equations, vectors: np.ndarray) -> np.ndarray:
-    """Compute the fraction of kinetic energy in each coordinate of modes (S, n, k): shape (S, n, k)."""
+    """Compute the fraction of kinetic energy in each of n coordinates, for k modes at S speeds: (S, n, k)."""
     return np.real(vectors.conj() * (equations.matrices[2]["unity"] @ vectors))
 
 
 def plane_share(equations: Equations, vectors: np.ndarray) -> np.ndarray:
-    """Compute the fractions of kinetic energy in two directions of deflection of modes (S, n, k): (S, k, 2).
+    """Compute the fractions of kinetic energy in two directions of deflection, for k modes at S speeds.
 
-    The energy of other fields, such as stretch, is not counted: the sum is 1, or 0 without deflection.
+    The shape is (S, k, 2).  The energy of other fields, such as stretch, is not counted: the sum is 1, or 0
+    without deflection.
     """
     if equations.planes == 1:
         return np.full((*vectors[:, 0].shape, 2), (1.0, 0.0))
@@ -240,7 +241,7 @@ def warn_of_rotation(model: Model, speed: float) -> Iterator[Statement]:
 
 
 def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[Statement]:
-    """Yield a warning at speeds at which the straight beam is unstable: rotation bends it before."""
+    """Yield a warning at speeds at which the straight beam is unstable, as it bends at a lower speed."""
     lost = np.isnan(deflection)
     if lost.any() and bends(model):
         end = f" the straight beam is unstable; the rotation bends it before: the answer is {OUTSIDE}"
@@ -399,7 +400,7 @@ _TIE = 1e-9  # relative difference of kinetic energies below which the first kin
 
 
 def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | None:
-    """Name the kind (S, k) of each mode, for vectors (S, n, k), by the largest part of kinetic energy.
+    """Name the kind (S, k) of each of k modes at S speeds, by the largest part of kinetic energy.
 
     Bending in both directions, torsion and camber are compared, and ties within 1e-9 go to the first; the
     energy of stretch is not compared.  None if a model has neither torsion nor camber.

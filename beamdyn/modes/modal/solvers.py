@@ -256,7 +256,7 @@ def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray, power: i
 
 
 def _align(vector: np.ndarray, mass: np.ndarray) -> np.ndarray:
-    """Give modes (S, n, k) at successive speeds consistent signs, or consistent phases if complex."""
+    """Give k modes (S, n, k) at S successive speeds consistent signs, or consistent phases if complex."""
     if not vector.size:
         return vector
     products = np.einsum("snk,snk->sk", vector[:-1], mass @ vector[1:].conj())

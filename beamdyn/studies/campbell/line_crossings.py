@@ -172,7 +172,10 @@ def _frequencies(locus: Locus, speeds: np.ndarray) -> np.ndarray:
 
 
 def _solve(locus: Locus, speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute angular frequencies (S, k) [rad/s], ascending, and energy fractions of planes (S, k, 2)."""
+    """Compute k angular frequencies [rad/s] at S speeds, ascending, and energy fractions of planes.
+
+    The shapes are (S, k) and (S, k, 2).
+    """
     eigen = locus.model.solver.solve(speeds, locus.ascending.shape[1])
     extrapolated = locus.model.discretization.order is not None
     omega = _frequencies(locus, speeds) if extrapolated else np.abs(np.imag(eigen.eigenvalue))

@@ -121,7 +121,7 @@ class FoundDesign(Result):
         return tuple(
             name
             for name, each in zip(self.names, self.derivative.T, strict=True)
-            if (each == 0).all()  # derivatives within rounding were set to 0 before
+            if (each == 0).all()  # derivatives within rounding were set to 0 earlier
         )
 
     @property

@@ -181,7 +181,7 @@ class Cocycle:
 
 
 def _products(B: np.ndarray) -> np.ndarray:
-    """Compute logarithms (P, m) of the products of the first singular values of matrices (P, m, m)."""
+    """Compute logarithms (P, m) of the products of the first 1 to m singular values of P matrices (m, m)."""
     values = np.linalg.svd(B, compute_uv=False)
     return np.cumsum(np.log(np.maximum(values, np.finfo(float).tiny)), axis=1)
 
@@ -202,7 +202,10 @@ def _over_first(p: np.ndarray) -> np.ndarray:
 
 
 def _turned(B: np.ndarray, angle: float) -> np.ndarray:
-    """Interpolate matrices on a grid of phases (P, m, m) to phases shifted by an angle, by Fourier series."""
+    """Interpolate matrices (P, m, m) at P evenly spaced phases to phases shifted by an angle.
+
+    The method is a Fourier series.
+    """
     orders = np.fft.fftfreq(len(B), 1 / len(B))
     factor = np.exp(1j * orders * angle)[:, None, None]
     return np.fft.ifft(np.fft.fft(B, axis=0) * factor, axis=0).real

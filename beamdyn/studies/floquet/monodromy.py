@@ -96,7 +96,10 @@ def _scale(equations: Equations, period: float) -> np.ndarray:
 
 
 def scaled_states(equations: Equations, period: float, maps: np.ndarray) -> np.ndarray:
-    """Scale maps (P, 2 n, 2 n), and omit the flux of a circuit, which acts only by its rate."""
+    """Convert maps (P, 2 n, 2 n) of states (q, q') to maps of (w q, q') with frequencies w at rest.
+
+    The flux of a circuit (the time integral of its voltage) is omitted, as only its rate acts.
+    """
     scale = _scale(equations, period)
     maps, n = scale[:, None] * maps / scale, equations.size
     states = np.arange(2 * n) != (n - 1 if equations.voltage is not None else -1)

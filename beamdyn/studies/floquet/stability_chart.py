@@ -328,7 +328,7 @@ class _Grid:
         return bool(np.ptp(periods) > 0 and np.ptp(products) <= _ROUNDING * np.abs(products).max())
 
     def _interpolated(self) -> tuple[Monodromy, int]:
-        """Interpolate monodromy matrices (A B, m, m), and count those that were integrated."""
+        """Interpolate the monodromy matrices of all A B points, and count those that were integrated."""
         errors, turns, damped = [0.0], [1], set()
         names = [each.name for each in self.inputs]
 
