@@ -14,7 +14,7 @@ Text = Annotated[str, Parameter(allow_leading_hyphen=True)]
 
 
 def none_given(_: bd.Scene) -> None:
-    """Return None, the value of an optional option that is not given."""
+    """Return None, the value of an option that may be left out."""
 
 
 def final_speed(scene: bd.Scene) -> float:

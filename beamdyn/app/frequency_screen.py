@@ -187,7 +187,7 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
 
 
 def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
-    """Return the highest frequency shown [Hz], which omits modes far above all excitation lines."""
+    """Return the highest frequency shown [Hz]: of modes not far above all lines, or of the lowest mode."""
     known = [float(np.nanmax(f)) for f in frequency.T if np.isfinite(f).any()]
     fastest = max(ends, default=0.0)
     near = [f for f in known if not fastest or f <= _MOST_ABOVE * fastest]

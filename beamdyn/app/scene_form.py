@@ -30,7 +30,7 @@ DRAGS = (
     Drag("mount.radius", 0.0, 500.0, 5.0, "mm"),
     Drag("beam.thickness", 0.1, 1.0, 0.01, "mm"),
 )
-# Young's modulus, density and Poisson's ratio at room temperature; actual values differ by some percent.
+# Young's modulus, density and Poisson's ratio at room temperature; actual values may differ by some percent.
 _MATERIALS = {
     "steel": ("200 GPa", "7850 kg/m3", "0.3"),
     "stainless steel": ("193 GPa", "7900 kg/m3", "0.29"),
@@ -201,5 +201,5 @@ def read_aside(tables: Mapping[str, Any], name: str) -> Any:
 
 
 def first_frequency(scene: Scene) -> float:
-    """Compute the first natural angular frequency at rest [rad/s], with an error of 1 %."""
+    """Compute the first natural angular frequency at rest [rad/s], with an error of at most 1 %."""
     return 2 * math.pi * float(natural_modes(scene, 0.0, 1, tolerance=0.01).frequency[0])

@@ -26,7 +26,7 @@ _PAST_LIMIT = f"past {LARGE_DEFLECTION:g} of the length: not linear"
 
 
 def solve(tables: Mapping[str, Any]) -> SteadyResponse:
-    """Compute the steady-state response over speed, with more speeds near narrow resonances."""
+    """Compute the steady-state response over speed, with more speeds near resonances, which may be narrow."""
     scene, top, modes = read(tables)
     if scene.motion is None:
         raise MissingValue("motion.kind", None, "choose the motion that excites the beam")

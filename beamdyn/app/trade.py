@@ -63,7 +63,7 @@ class Trade:
     numerical : Diagram
         Numerical error over computing time.
     of_physics : Diagram
-        Sum of numerical error and model error over computing time.
+        Error, including the model error, over computing time.
     """
 
     digits: int

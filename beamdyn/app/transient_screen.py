@@ -140,7 +140,7 @@ def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
 
 
 def drawings(answer: Playable, place: float = 1.0) -> Rows:
-    """Draw the beam at a time, in each direction, with its extremes one period before and after."""
+    """Draw the beam at a time, in each direction, with its extremes within a period before and after."""
     run, now = answer.run, answer.time(place)
     unit, words = run.display_units.length_unit(), modelled_directions(run.scene)
     x = np.linspace(0.0, run.scene.beam.length, _PLACES)
@@ -158,7 +158,7 @@ def drawings(answer: Playable, place: float = 1.0) -> Rows:
 
 
 def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
-    """Return times [s] some periods before and after the present time, within the simulation."""
+    """Return times [s] within some periods of the present time, and within the simulation."""
     path, reach = answer.run.path, periods * answer.period
     return np.linspace(max(now - reach, path.start), min(now + reach, path.end), _TIMES)
 

@@ -1,4 +1,4 @@
-"""The commands of ``beamdyn``; each imports only its own module, for a short start-up time."""
+"""The commands of ``beamdyn``; each imports only its own module, and listing them imports none."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ def gauss_weights_on(ends: np.ndarray, points: int) -> np.ndarray:
 
 @cache
 def legendre_values(points: int, degree: int) -> np.ndarray:
-    """Evaluate Legendre polynomials at the Gauss points on [-1, 1]; shape (points, degree + 1)."""
+    """Evaluate Legendre polynomials up to a degree at the Gauss points on [-1, 1]: (points, degree + 1)."""
     return legendre.legvander(gauss_rule(points)[0], degree)
 
 

@@ -365,7 +365,7 @@ VARYING = {
 
 
 def _with_columns(given: Any) -> Any:
-    """Replace `stations` by a key for each of its columns: the table of the property in the column."""
+    """Add a key for each column of `stations`: the table of the property in the column."""
     if not isinstance(given, dict) or given.get("stations") is None:
         return given
     rows = given["stations"]

@@ -118,7 +118,7 @@ class TipMass:
         return self.inertia if self.transverse_inertia is None else self.transverse_inertia
 
     def about(self, across: float) -> TipMass:
-        """Return the body with moments of inertia about a parallel line at a distance across [m]."""
+        """Return the body with inertias about a line parallel to its axis at a distance across [m]."""
         if self.offset_across == across:
             return self
         more = self.mass * (self.offset_across - across) ** 2

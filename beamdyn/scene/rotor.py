@@ -161,7 +161,7 @@ def draw(scene: Scene) -> RotorDrawing:
 
 
 def _paper(rows: list[list[Drawing]]) -> Paper:
-    """Make the figure, in which the section is smaller than the rotor."""
+    """Choose the size of the paper, on which the section is lower than the rotor."""
     made = Paper.of(rows)
     return Paper(made.width, (*made.heights[:-1], _SECTION))
 

@@ -200,7 +200,7 @@ def asymmetry(matrices: np.ndarray) -> np.ndarray:
 
 
 def split_mass(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Split mass matrices (6, 6, N) into mass per length (N,), its centre (3, N), and inertia (3, 3, N)."""
+    """Split mass matrices (6, 6, N) into mass per length (N,), centre (3, N), inertia about it (3, 3, N)."""
     m = matrices[0, 0]
     c2, c3 = -matrices[0, 5] / m, matrices[0, 4] / m
     none = np.zeros_like(m)

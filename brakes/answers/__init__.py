@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from brakes.answers.base import BrakeType
 
-_SHOWN = {  # names in the module of each command that are shown
+_SHOWN = {  # what each command shows, by name of the command
     "drum": "Torque, forces, shoe factors and self-locking of a drum brake with pivoted shoes.",
     "band": "Torque, tensions, pressure and self-locking of a simple or differential band brake.",
     "block": "Torque, forces, pressure and self-locking of a block brake with one or two levers.",

@@ -109,7 +109,7 @@ def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float
 
 
 def _find_contact(motion: ShoeMotion, progress: float, x: float, y: float) -> dict[str, float]:
-    """Find the contact angle of a point drawn at (x, y); for the brake at rest, also the clearance."""
+    """Find the contact angle of a point drawn in the direction of (x, y); at rest, also the clearance."""
 
     def residual(angle: np.ndarray) -> np.ndarray:
         other = _move_changed(motion.geometry, motion, contact_angle=float(angle))

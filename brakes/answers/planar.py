@@ -142,7 +142,7 @@ class MechanismFriction(Result):
         return self.over or self.drawn
 
     def locking(self, answered: bool) -> list[str]:
-        """Return sentences on directions of motion that lock: those with forces, or those without."""
+        """Return sentences on undetermined directions of motion: those with an answer, or those without."""
         return [
             Words(name, ": ", way.message)
             for name, way in self._moving(self.last)

@@ -292,7 +292,7 @@ def remove(entries: Mapping[str, str], item: Item) -> Entries:
     """Remove a body, point, joint or load from the entries, with joints and loads that refer to it.
 
     The stroke is removed with its driver.  Removed names are deleted in [caliper], and the table itself is
-    deleted if cable and pads are missing.
+    deleted if neither cable nor pads are left.
     """
     tables, name = _tables(entries), item.name
     keys: Sequence[str] = ()
@@ -364,7 +364,7 @@ def _structure(tables: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
-    """Return advice that compares mobility with the number of unknown loads, and asks for a driver."""
+    """Yield advice that compares mobility with the number of unknown loads, and asks for a driver."""
     run = _table_at(tables, "run")
     try:
         core = mechanism_from_dict({**tables, "run": _without(run, "driver", "travel")}, "mechanism").core

@@ -219,7 +219,7 @@ class Caliper:
     ) -> PivotFriction:
         """Compute the caliper's efficiency with friction at a travel of the cable [m], by default at contact.
 
-        The coefficient applies to all pivots without a coefficient, but not to slots and contacts.
+        The coefficient applies to all pivots without a coefficient; slots and contacts have their own.
         The forces of the pads are those without friction; friction changes the tension that they need.
         """
         coefficient = not_negative("coefficient", coefficient)

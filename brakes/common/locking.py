@@ -11,7 +11,7 @@ from beamdyn.common.results.result import Result
 
 # Relative distance from self-locking within which a brake without an equilibrium counts as locked
 _NEAR = 1e-9
-LEAST_MARGIN = 5e-13  # relative margin to self-locking that counts as zero
+LEAST_MARGIN = 5e-13  # relative margin, such as that to self-locking, that counts as zero
 
 
 class SlidesOrLocks(Result):

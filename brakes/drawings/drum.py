@@ -118,7 +118,7 @@ def pressures(ax: Axes, result: BrakeResult) -> Axes:
 
 
 def pressure_chart(result: BrakeResult) -> Chart:
-    """Make the chart of the pressure along each lining, vertical lines to zero at its ends; a single case."""
+    """Make the chart of one case's pressure along each lining, with vertical lines to zero at its ends."""
     curves = []
     for i, shoe in enumerate(result.shoes):
         a1, a2 = (float(a) for a in shoe.shoe.lining)

@@ -114,7 +114,7 @@ class Machine(ABC):
 
     @property
     def rubbing_radius(self) -> Numbers:
-        """Radius [m] at which the product of pressure and radius, over the largest pressure, is largest."""
+        """Radius [m] whose product with the largest pressure is the largest of pressure times radius."""
         return self.reference_radius
 
     @abstractmethod

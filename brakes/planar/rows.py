@@ -74,7 +74,7 @@ def suggest(name: object, known: Iterable[str]) -> str:
 # All rows of one kind, evaluated at many positions at once ------------------------------------------------
 
 
-_TINY = 1e-200  # added to a length, so that a direction is finite where two points of a path coincide
+_TINY = 1e-200  # least length, so that a direction is finite where two points of a path coincide
 
 
 class Pose(NamedTuple):

@@ -18,7 +18,7 @@ from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR, States
 
 
 def warnings_of(result: Any, tolerance: float | None = None, without: str = "") -> list[str]:
-    """Return the warnings of a result; also if its model error exceeds a tolerance, or 1 %.
+    """Return a result's warnings, also of a model error above a tolerance or 1 %, in words of files.
 
     Warnings of the kind `without` are omitted.
     """

@@ -159,7 +159,7 @@ def identification_tables(result: bd.Identification) -> Group:
 def _numbers(
     result: bd.Identification | bd.FoundDesign, said: Callable[[float, str], str]
 ) -> list[tuple[str, ...]]:
-    """Make rows of identified parameters: name, value in the scene, value found, and ends of its range."""
+    """Make rows of parameters or design variables: name, value in the scene, value found, its range."""
     each = zip(result.names, result.units, result.given, result.value, result.low, result.high, strict=True)
     return [
         (in_files(InputName(name)), *(said(float(value), unit) for value in values))
@@ -168,7 +168,7 @@ def _numbers(
 
 
 def numbers_csv(result: bd.Identification | bd.FoundDesign) -> Columns:
-    """Make columns with one row per parameter, in SI units."""
+    """Make columns with one row per parameter or design variable, in SI units."""
     names = {"number": "names", "unit": "units"} | {n: n for n in ("given", "value", "low", "high")}
     return Columns(*(Column(head, getattr(result, name)) for head, name in names.items()))
 

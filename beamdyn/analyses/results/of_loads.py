@@ -259,7 +259,7 @@ def _of_components(result: bd.SpanLoads, part: str, values: np.ndarray) -> Itera
 
 
 def random_loads_csv(result: bd.RandomLoads) -> Columns:
-    """Make columns with one row per station: position, and the largest value of each component."""
+    """Make columns with one row per station: position, and each component's largest value with its parts."""
     parts = {
         "largest": lambda name: result.values(name)[0],
         "error_of_largest": lambda name: result.error_of(name)[0],

@@ -24,7 +24,7 @@ from beamdyn.modes.model_error.left_out_effects import where_worst
 if TYPE_CHECKING:
     from beamdyn.common.results.result import Result
 
-Cell: TypeAlias = "str | Text"  # type of a table cell: text or a number
+Cell: TypeAlias = "str | Text"  # type of a table cell: plain or styled text
 # Most evenly spaced rows of a printed table; rows of peaks and changes of status are added.
 _MOST_ROWS = 16
 _ROUNDING = 1e-9  # relative model error below which it counts as a rounding error
@@ -79,7 +79,7 @@ def csv_directions(scene: bd.Scene) -> tuple[str, ...]:
 
 def modes_columns(result: bd.Modes) -> Columns:
     """Make columns of the modes: frequency, errors, growth rate, status, and how each deforms the beam."""
-    # The errors are those of the eigenvalue, not of the frequency.
+    # Absolute errors in the unit of the eigenvalue [rad/s].
     size, rate = np.abs(result.eigenvalue) * result.error, result.growth_rate
     count, effects = len(size), result.left_out_effects
     model_errors = [_say_model_error(float(each), effects.lack_data) for each in effects.total]
@@ -220,7 +220,7 @@ def locus_csv(result: bd.Locus) -> Columns:
 
 
 def critical_answer(result: bd.CriticalPoint) -> Group:
-    """Return a sentence on the critical speed, or on the speed up to which there is none."""
+    """Say the critical speed, or up to which speed there is none, and name neglected effects."""
     unit = result.display_units.speed_unit()
     if math.isinf(result.none_below) and math.isinf(result.speed):
         said = Text(f"no critical speed: {in_files(result.reason)}")

@@ -63,7 +63,7 @@ def transient_table(run: bd.Transient, window: tuple[float, float] | None = None
 def time_of_peak(
     run: bd.Transient, start: float, end: float, direction: int | None = None
 ) -> tuple[float, float]:
-    """Return the time of the largest tip deflection in a window, and the sampling step [s], both as [s].
+    """Return the time [s] of the largest tip deflection in a window, and its error [s], a sampling step.
 
     If the window contains fewer than two samples, return its centre and half its length.
     """

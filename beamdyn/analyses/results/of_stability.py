@@ -85,7 +85,7 @@ def _words(varied: VariedInput) -> str:
 
 
 def _where(status: np.ndarray, values: np.ndarray) -> str:
-    """Format the ranges of values at which the motion is unstable."""
+    """Format the ranges of values at which the motion is unstable or undecided."""
     said = []
     for state, group in groupby(zip(status.tolist(), values.tolist(), strict=True), lambda pair: pair[0]):
         within = [value for _, value in group]

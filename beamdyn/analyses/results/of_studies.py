@@ -160,7 +160,7 @@ _TIES = 3  # largest number of settings that are named as equally fast within th
 
 
 def diagram_table(diagram: Diagram) -> Group:
-    """Make a table of the cheapest setting per correct digit, with Pareto front and reference."""
+    """Tabulate the cheapest setting for each number of correct digits, with Pareto front and reference."""
     rows = [
         (
             f"{d.error:.0e}",

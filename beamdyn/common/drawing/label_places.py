@@ -348,7 +348,7 @@ def keep_places(
         None if a label had no place, or its place is not free any more: call `place_labels` then.
     """
     pairs = zip(before, requests, strict=True)
-    places = []  # each label keeps its offset from its anchor point
+    places = []  # each label keeps its offset, now from the anchor nearest to its earlier one
     for place, request in pairs:
         if place is not None:
             anchor = request.anchors[np.hypot(*(request.anchors - place.anchor).T).argmin()]

@@ -57,7 +57,7 @@ class Files:
         return self.plot is not None or self.report is not None
 
     def check(self, *inputs: str | Path | None, **more: Path | None) -> None:
-        """Raise an error, before anything is computed, if a file cannot be written or would replace an input.
+        """Raise an error, before anything is computed, if a file is unwritable, an input or named twice.
 
         Parameters
         ----------

@@ -309,7 +309,7 @@ def _path(loc: Iterable[int | str], indices: bool = True) -> str:
 def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
     """Describe an unknown key: name its table, the most similar known key, or all known keys."""
     table, key, known = _path(loc[:-1], indices=False), str(loc[-1]), describe(model)
-    prefix = table and f"{table}."  # no table name at the top level of the file
+    prefix = table and f"{table}."  # empty at the top level, so that every path begins with it
     inside = [i.path.removeprefix(prefix).partition(".")[0] for i in known if i.path.startswith(prefix)]
     names = [*dict.fromkeys(inside)] or ["polynomial", "stations", "values"]
     kinds = [show(i.choices[0]) for i in known if i.path == f"{table}.kind" and key in i.section.model_fields]

@@ -39,7 +39,7 @@ _LINE: ContextVar[_ProgressLine | None] = ContextVar("line", default=None)
 
 
 class Pace:
-    """Estimates the remaining time from the steps done in the last half of the elapsed time."""
+    """Estimates the remaining time from steps in the last half of the elapsed time, as steps may speed up."""
 
     def __init__(self) -> None:
         self._times: list[float] = []

@@ -187,7 +187,7 @@ def plain_name(name: str) -> str:
 
 
 def named_values(text: DataText, names: Collection[str]) -> dict[str, NamedValue]:
-    """Read values that are followed by their names, as in ``0.48  BldFlDmp(1) - damping``.
+    """Read values followed by names: ``0.48  BldFlDmp(1) - damping`` or ``1.75 hub_rad: hub radius``.
 
     Parameters
     ----------

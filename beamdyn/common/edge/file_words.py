@@ -30,7 +30,7 @@ _KINDS: dict[Any, str] = {float: "a number", int: "a whole number", bool: "a val
 
 
 def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
-    """Print what is wrong in a command line, and how to get help.
+    """Return what is wrong in a command line, and how to get help.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def check_names(given: Sequence[str]) -> None:
 
 
 def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
-    """Print the words that belong to no option; often a blank separates a unit from its number."""
+    """Return a sentence on words that belong to no option; often a blank separates number and unit."""
     first = next((i for i, word in enumerate(given) if word == words[0]), 0)
     option, value = given[first - 2 : first] if first > 1 else ("", "")
     example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""

@@ -271,7 +271,7 @@ def one_by_one(
     combine: str = "product",
     run: TaskRunner | None = None,
 ) -> InputSweep:
-    """Solve all combinations of the varied inputs, one design after the other.
+    """Solve the designs of varied inputs, one after the other.
 
     Parameters
     ----------

@@ -199,7 +199,7 @@ class Input:
 
     @property
     def help(self) -> str:
-        """Return meaning, unit and bounds of the input in one phrase; angles in degrees, as in files."""
+        """Return meaning, unit, bounds and meaning of inf in one phrase; angles in degrees, as in files."""
         q = self.quantity
         shown = _SHOWN.get(q.unit, q.unit)
         bounds = q.bounds if shown == q.unit else q.bounds_as(lambda bound: q.in_unit(bound, shown))
@@ -311,8 +311,8 @@ def in_range(design: BaseModel) -> Iterator[None]:
     Parameters
     ----------
     design : BaseModel
-        The inputs of the computation. The message names the largest or smallest number, if its exponent is
-        unusual.
+        The inputs of the computation. The message names the number whose size is farthest from 1, if it
+        is far enough.
 
     Raises
     ------

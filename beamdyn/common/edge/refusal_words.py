@@ -29,7 +29,7 @@ _ELSEWHERE = {
     "t_end": "--window",
 }
 _PHYSICS = "physics."
-_USUAL = {"rad": "1 deg"}  # Unit in which messages give a number that was not typed, for each SI unit.
+_USUAL = {"rad": "1 deg"}  # unit in which messages give a number that was not typed, by SI unit
 
 
 def is_no_answer(error: Exception) -> bool:
@@ -38,7 +38,7 @@ def is_no_answer(error: Exception) -> bool:
 
 
 def as_typed(error: Exception) -> str:
-    """Return an error message with the typed options and keys, and numbers in their units.
+    """Return an error message with the typed options and keys, and numbers in the typed units.
 
     "tolerance = 5: give ..." becomes "--tolerance = 5: give ..." if the command has this option.
     """

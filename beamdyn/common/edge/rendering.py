@@ -177,7 +177,7 @@ def _rows(part: object) -> int:
 
 
 def _width(part: object) -> float:
-    """Return the width in characters of a table, or of the widest in a group; 0 for other objects."""
+    """Return the width of a table or the widest in a group, in letters; else 0.  Headings may be broken."""
     if isinstance(part, Group):
         return max(map(_width, part.renderables), default=0.0)
     columns = part.columns if isinstance(part, Table) else ()

@@ -258,7 +258,7 @@ def _mismatch(number: str, kind: Unit, unit: str) -> str:
 
 
 def _no_quantity(given: object, unit: str) -> tuple[str, str]:
-    """Return an error that says why a text is not a number with a unit, and how to write it."""
+    """Return why a value is not a number with a unit, and how to write it."""
     match given:
         case bool():
             return "a truth value", f"give a quantity, e.g. {_example(unit)}"

@@ -140,7 +140,7 @@ OUT_OF_RANGE = (
 
 
 def reason_of(error: Exception) -> str:
-    """Return the message of an error; an overflow in Python or numpy is described in plain words."""
+    """Return the message of an error; an overflow or division by zero is described in plain words."""
     beyond = isinstance(error, ZeroDivisionError | OverflowError | FloatingPointError)
     return OUT_OF_RANGE if beyond else str(error)
 
@@ -243,7 +243,7 @@ def moderate(name: str, value: object, unit: str = "") -> float:
 
 
 def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """Return a number greater than zero; raise an error if powers and products of it may overflow."""
+    """Return a number greater than zero; refuse it if it is so large or small that powers may overflow."""
     number = positive(name, value, unit, remedy)
     refuse(number < 1 / MOST, name, number, unit, "give a size of {limit} or more", remedy, limit=1 / MOST)
     refuse(number > MOST, name, number, unit, "give a size of at most {limit}", remedy, limit=MOST)
@@ -409,5 +409,5 @@ def set_fields(instance: object, **values: object) -> None:
 
 
 def in_unit(unit: str) -> str:
-    """Return " in " and the unit, to end a sentence; empty if the unit is empty."""
+    """Return " in {unit}", a placeholder to end a sentence; empty if the unit is empty."""
     return " in {unit}" if unit else ""

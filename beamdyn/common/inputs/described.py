@@ -349,7 +349,7 @@ def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
 
 
 def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "vary") -> None:
-    """Raise an error for invalid sets of designs: repeated inputs, unequal lengths, or too many designs.
+    """Refuse unknown combinations, repeated inputs, unequal lengths in a zip, and too many designs.
 
     Parameters
     ----------

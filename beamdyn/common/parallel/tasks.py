@@ -42,7 +42,7 @@ class Store:
     Raises
     ------
     ValueError
-        If `path` is a file, contains files of another kind, or cannot be written to.
+        If `path` is a file, contains anything but such a store, or cannot be written to.
     """
 
     def __init__(self, path: str | Path, kind: str) -> None:

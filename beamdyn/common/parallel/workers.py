@@ -18,7 +18,7 @@ from threadpoolctl import ThreadpoolController
 
 ATTEMPTS = 3  # number of processes that a task may kill before it counts as failed
 _SERVE = (
-    "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); "  # ignores Ctrl-C
+    "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); "  # the calling process handles Ctrl-C
     "from beamdyn.common.parallel.workers import serve; serve()"
 )
 _log = logging.getLogger(__name__)

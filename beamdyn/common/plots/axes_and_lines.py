@@ -23,7 +23,7 @@ def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
     ax.set_ylabel(ylabel, fontsize=12)
     ax.tick_params(labelsize=11)
     for axis in ("x", "y"):
-        with suppress(AttributeError):  # axes with fixed tick labels refuse this call
+        with suppress(AttributeError):  # raised if given axes have a scale without offset, such as log
             ax.ticklabel_format(axis=axis, useOffset=False)
     ax.margins(x=0.02)
     ax.grid(color="0.85", linewidth=0.7)

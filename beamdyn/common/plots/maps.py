@@ -127,8 +127,8 @@ _DECADES = 1.5  # range of values in decades, above which contour levels are at 
 _LOGARITHMIC = 10.0
 _DIGITS = 4
 _FEW = 40  # largest number of values of an input for which the points of a curve have markers
-# The hatched region shows where results are missing.  The fraction of missing results is smoothed by a
-# Gaussian of this standard deviation [grid steps]; the region ends where it is 1/2 within this distance.
+# The hatched region without results ends where the smoothed fraction of missing results is 1/2: standard
+# deviation [grid steps] of the smoothing Gaussian; least distance of the fraction from 1/2 at grid points.
 _SMOOTHED, _APART = 1.0, 0.02
 _SAME = 1e-9  # relative difference of values due to rounding: no contour lines are drawn between them
 # Fraction of the smallest, and of the largest, values that do not influence the contour levels.

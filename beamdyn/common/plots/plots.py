@@ -115,7 +115,7 @@ def _plot_over_speed(
     values, speeds = np.asarray(values), units.speed_unit().of(np.asarray(speeds))
     ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), quantity)
     axes_and_lines.draw_lines(ax, speeds, values.T, labels or _number_modes(values.shape[1]))
-    # Limits are set even if all frequencies of all modes are nan.
+    # Limits are set even if all values are nan.
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
     return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed, units=units)
 
@@ -188,7 +188,7 @@ def plot_locus_by_plane(
     speeds, frequency, ax, labels, units
         As for `beamdyn.common.plots.plots.plot_locus`.
     share : ndarray, shape (S, m)
-        Fraction of each mode's energy in the first direction; a curve is solid where it exceeds 1/2.
+        Fraction of each mode's energy in the first direction; a curve is solid where it is 1/2 or more.
     directions : tuple of str
         The two directions in words, for the legend.
 
@@ -363,12 +363,12 @@ def plot_frequency_response(
     labels: Sequence[str],
     ax: Axes | None = None,
 ) -> Axes:
-    """Draw amplitudes over frequency on logarithmic axes.
+    """Draw amplitudes or spectral densities over frequency on logarithmic axes.
 
     Parameters
     ----------
     curves : sequence of (ndarray, ndarray), each of shape (F,)
-        Frequencies [Hz] and amplitudes of each curve; the frequency 0 is not drawn.
+        Frequencies [Hz] and values of each curve; the frequency 0 is not drawn.
     ylabel : str
         Label of the vertical axis.
     labels : sequence of str, one a curve

@@ -44,7 +44,7 @@ def plot_exponent(rate: float, error: float, ax: Axes | None = None) -> Axes:
 def plot_stability_chart(
     inputs: Sequence[VariedInput], rate: np.ndarray, undecided: np.ndarray, ax: Axes | None = None
 ) -> Axes:
-    """Draw growth rates (A, B) over two inputs, with a line between stable and unstable points.
+    """Draw growth rates (A, B) over two inputs, with a line halfway between stable and unstable points.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ def check_writable(
     Parameters
     ----------
     path : str or Path
-        File to write; a link is replaced by the file to which it points.
+        File to write; a link stands for the file to which it points.
     suffixes : sequence of str
         Allowed suffixes in lower case with their dots; "" allows a name without suffix; an empty sequence
         allows all.

@@ -25,7 +25,7 @@ GROWING = "unstable"  # the motion grows: it is unstable
 NO_ANSWER = "no answer"  # some of many cases, or a part of the requested result, have no solution
 INPUT = "input"  # an input has no effect, or is doubtful
 EXCITATION = "excitation"  # no excitation moves the beam, or the excitation is doubtful
-IN_LINE = "in line"  # loads act exactly along the beam's axis, where any offset changes the result
+IN_LINE = "in line"  # loads act exactly in line, where any offset changes the result
 LIMITS = "limits"  # other limits of validity: large strain, few vibrations
 
 

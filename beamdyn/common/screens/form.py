@@ -16,7 +16,8 @@ from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screen_parts import Drag, Preset
 from beamdyn.common.screens.screens import Screen
 
-_FEW = 3  # tables with at most this many fields, all with defaults, are unfolded
+# Least number of fields that are folded; tables with at most so many fields, all with defaults, are unfolded.
+_FEW = 3
 
 
 class Form:

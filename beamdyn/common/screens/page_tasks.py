@@ -34,8 +34,7 @@ Shown = Sequence[tuple[str, str, InputSweep]]
 _FEW = 3
 
 
-# Tasks: functions of a document, a screen, and further arguments, which any process can run
-# ---------------------
+# Tasks: functions of a document, a screen, and further arguments, which any process can run ------------
 
 
 def solve(
@@ -188,8 +187,7 @@ def inputs_html(work: OpenDocument) -> str:
     return html([made])
 
 
-# Causes of missing results
-# ------------------------------------------------------------------------------------
+# Causes of missing results ------------------------------------------------------------------------------
 
 
 def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Screen) -> Outcome:

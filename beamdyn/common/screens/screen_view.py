@@ -314,7 +314,7 @@ class ScreenView:
             return self.solve()
         self.state()
         if not self.dragged:
-            self._writer.synchronize()  # shown here, as otherwise the page would be rendered twice
+            self._writer.synchronize()  # done here, as otherwise the page would be rendered twice
             self._edited()
 
     def _fail(self, error: Exception) -> None:
@@ -361,7 +361,7 @@ class ScreenView:
         with self._said:
             for said, kind in dict.fromkeys(sentences):
                 shown = ui.label(f"Warning: {said}" if kind == "warning" else said).classes(kind)
-                if kind == "warning":  # the focus unfolds a long warning
+                if kind == "warning":  # a long warning unfolds under the pointer or with the focus
                     shown.props("tabindex=0")
 
     # Display of results -------------------------------------------------------------------------------

@@ -88,7 +88,7 @@ def slopes_from(
 
 
 def _slope_weights(steps: np.ndarray) -> np.ndarray:
-    """Compute weights of results at given steps, whose weighted sum is a polynomial's slope at 0."""
+    """Compute weights of changes at given steps, whose weighted sum is a polynomial's slope at 0."""
     size = np.abs(steps).max()
     powers = (steps / size)[None, :] ** np.arange(1, len(steps) + 1)[:, None]
     return np.linalg.solve(powers, np.eye(len(steps))[0]) / size

@@ -156,7 +156,7 @@ class Spread(Result):
 
 
 def _digits_of(low: float, high: float) -> int:
-    """Return the number of digits needed to distinguish both ends of a range."""
+    """Return the number of digits that distinguish both ends of a range, to some percent of the range."""
     with np.errstate(divide="ignore", invalid="ignore"):
         needed = 2 + np.log10(np.divide(max(abs(low), abs(high)), high - low))
     return int(np.clip(needed, _DIGITS, _MOST_DIGITS)) if np.isfinite(needed) else _DIGITS

@@ -239,7 +239,7 @@ def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], l
 def _check_matrices(
     text: DataText, name: str, stations: np.ndarray, lines: Sequence[int], matrices: np.ndarray
 ) -> None:
-    """Raise an error unless matrices are symmetric and positive definite, and masses possible."""
+    """Raise an error unless matrices are symmetric and positive definite, with masses of rigid bodies."""
     ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
     checks = [
         (asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"),

@@ -5,10 +5,10 @@ turn the cross-section about -z.  BModes itself changes the signs of angles and 
 computes in the axes of a helicopter blade (y to the leading edge, nose-up positive).  An offset along y is
 therefore minus the offset in the edgewise direction of this package.
 
-Offsets in BModes files are measured from the reference axis; moments of inertia are about the centre of mass.
-In this package the axis of a blade is the line of shear centres, and offsets are converted accordingly.
-BModes uses bending stiffnesses about the shear centre; they exceed the stiffnesses about the tension centre
-by E A e^2, where e is the distance of the two centres.
+Offsets in BModes files are measured from the reference axis; moments of inertia are about the centre of mass,
+as the programs that make such files write them.  In this package the axis of a blade is the line of shear
+centres, and offsets are converted accordingly.  BModes uses bending stiffnesses about the shear centre; they
+exceed the stiffnesses about the tension centre by E A e^2, where e is the distance of the two centres.
 """
 
 from __future__ import annotations

@@ -11,14 +11,14 @@ from beamdyn.common.edge.inputs import Quantity
 from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.scenes import RADIUS, read_station_file
 
-_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # column headings of twist with opposite sign
+_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # headings of other programs for twist of opposite sign
 _MORE = {RADIUS: Quantity("m"), **dict.fromkeys(_STRUCTURAL_TWIST, Quantity("rad"))}
 _NEEDED = ("mass_per_length", "bending_stiffness")
 _SECTION = ("width", "thickness")
 
 
 def is_csv(text: DataText) -> bool:
-    """Return whether the first non-comment line of a text contains units in brackets."""
+    """Return whether a text is a table, by its suffix or units in brackets in the first non-comment line."""
     first = next((line for n, line in enumerate(text.lines, 1) if not text.is_comment(n)), "")
     return text.path.suffix.lower() in (".csv", ".tsv") or ("[" in first and any(c in first for c in ",;\t"))
 

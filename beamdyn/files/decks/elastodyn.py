@@ -3,9 +3,9 @@
 The blade's axes are x downwind, y to the trailing edge, z from root to tip; the rotor turns about +x.
 Positive structural twist and pitch turn the cross-section about -z, towards feather: the flap direction is
 cos(twist) x - sin(twist) y.  In the axes of this package (docs/conventions.md) b1 = z, b2 = y, b3 = -x, and
-the rotor turns about -n3.  The flap direction is the line cos(psi) b2 + sin(psi) b3 with psi = 90 deg - twist
-- pitch.  The angle psi is the sum of bending angle and twist in this package; therefore this twist is minus
-the twist in the file.
+the rotor turns about -n3.  The flap direction is the line cos(psi) b2 + sin(psi) b3, where
+psi = 90 deg - twist - pitch.  The angle psi is the sum of bending angle and twist in this package; therefore
+this twist is minus the twist in the file.
 """
 
 from __future__ import annotations

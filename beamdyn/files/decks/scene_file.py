@@ -30,7 +30,7 @@ def tables_of(blade: Blade) -> dict[str, Any]:
             "bending_angle": f"{_number(90 - blade.pitch)} deg",
         },
     }
-    if blade.precone:  # downwind is the direction -b3 of the rotor
+    if blade.precone:  # downwind is the direction -b3
         tables["mount"]["precone"] = f"{_number(-blade.precone)} deg"
     if blade.tip:
         units = {key: unit for key, unit in _TIP_UNITS.items() if key == "mass" or blade.tip.get(key)}

@@ -56,7 +56,7 @@ class Rotation(Motion):
 
 @dataclass(frozen=True)
 class TurningMotion(Motion):
-    """Base class of motions with a moving centre; a field has the carrier's `Rotation`.
+    """Base class of motions with a moving centre; a field holds the carrier's `Rotation`.
 
     Examples
     --------
