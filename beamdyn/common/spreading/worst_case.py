@@ -65,8 +65,8 @@ class WorstCases:
     smallest, largest : ndarray, shape (k,)
         Smallest and largest value of each result [unit of the result]; nan where none was found.
     smallest_error, largest_error : ndarray, shape (k,)
-        Absolute errors [unit of the result]: numerical error, plus the distance by which any random design lies
-        beyond the value; nan if unknown.
+        Absolute errors [unit of the result]: numerical error, plus the distance by which any random design
+        lies beyond the value; nan if unknown.
     smallest_at, largest_at : ndarray, shape (k, d)
         Inputs of the designs with these values [SI units of the inputs].
     searched : ndarray of bool, shape (k,)
