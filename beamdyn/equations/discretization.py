@@ -322,8 +322,8 @@ class Discretization(Protocol):
        with results: as dataclasses of numbers and arrays, which compute derived quantities at first use
        (`FieldsOnly`).
     3. All physics is in the displacement fields (`beamdyn.equations.fields`); a function space only
-    integrates and evaluates. 4. `coarser` and `finer` make a sequence.  The truncation error of a result is
-    estimated by its distance
+       integrates and evaluates.
+    4. `coarser` and `finer` make a sequence.  The truncation error of a result is estimated by its distance
        from that of `coarser`; a tolerance is met by repeating `finer`.  Where functions of a space span those
        of the coarser one, its `coarse` names them, and the coarser equations are a part of these.
     5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size;

@@ -1,4 +1,4 @@
-"""Physical effects beyond the plain (Euler-Bernoulli) beam: how to include each, and what replaces it.
+"""Physical effects beyond the plain (Euler-Bernoulli) beam: how to include each, and what holds without it.
 
 Messages name the two directions in which the beam bends at the root.
 """

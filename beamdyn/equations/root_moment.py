@@ -8,7 +8,7 @@ work,
 
 with the loads f and the forms m, g, k of mass, gyroscopic terms and stiffness.  The test function is the
 rigid rotation x/L, made orthogonal to the modes in the model with respect to the mass matrix: neither
-accelerations nor modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) do work on it. The result is the
+accelerations nor modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) do work on it.  The result is the
 moment of the modes in the model, and the static moment of all others, as in the mode-acceleration method:
 Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4.  If a spring supports the root, M
 is the moment of the spring; it also does work on the modes contained in w, as they rotate the root.

@@ -261,7 +261,7 @@ def _add_modes(
         return doubled(larger, finer)
 
     def settles(found: _Doubled) -> bool:
-        """Return whether more modes change the value by at most the tolerance times the largest value."""
+        """Return whether more modes change the value by at most tolerance / margin times the largest."""
         _, value, _, finer = found
         share = tolerance / LINEAR_MODES.factor
         return finer is not None and bool(np.abs(finer - value).max() <= share * np.abs(finer).max())

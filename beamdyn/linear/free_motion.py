@@ -27,7 +27,7 @@ _MASSLESS = 16 * _EPS  # mass r^2 of a coordinate, over the largest, up to which
 _STILL = 1e-6
 _INFINITE = 1e-12  # inverse pole, over the largest, up to which it counts as 0: rounding
 _NEARLY_FREE = 1e-6  # squared frequency over an elastic mode's, below which the stiffness is shifted
-_ELASTIC = 2  # number of modes that may lack stiffness: a free rotation in each plane
+_ELASTIC = 2  # number of modes that may lack stiffness, a free rotation in each plane; the next is elastic
 
 
 @dataclass(frozen=True)

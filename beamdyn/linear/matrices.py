@@ -31,7 +31,8 @@ from beamdyn.scene.validity import warn_of_left_out
 
 # Largest rounding error of a trial function at nodes, where it is 1 at one node and 0 at all others.
 _NODAL = 1e-9
-# Number of lowest modes whose model error is stated: effects left out change the lowest modes most.
+# Number of lowest modes whose model error is stated: the lowest loses stability first, and effects left out
+# change it most.
 MOST_JUDGED = 5
 
 

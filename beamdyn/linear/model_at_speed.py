@@ -2,9 +2,8 @@
 
 The coordinates are those of the lowest modes at the speed, without damping and gyroscopic coupling, or of all
 trial functions of the discretization.  What modes leave out follows a slow excitation without delay: its
-static
-deflection is that of all functions minus that of the modes, the residual flexibility (Craig and Kurdila,
-Fundamentals of Structural Dynamics (2006), section 11.4).
+static deflection is that of all functions minus that of the modes, the residual flexibility (Craig and
+Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4).
 """
 
 from __future__ import annotations

@@ -32,7 +32,7 @@ _LEVEL = 1e-10
 # Relative difference between the sum over modes and the solution of the equations, above which the response
 # is only rounding error.
 _NOISE = 0.5
-_STEP = 1e-6  # relative distance from an undamped natural frequency within which its pole is sought
+_STEP = 1e-6  # relative distance from an undamped natural frequency at which its pole is sought
 
 
 class Peak(NamedTuple):

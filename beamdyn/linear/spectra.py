@@ -214,7 +214,7 @@ class RoadRoughness:
 
     @property
     def words(self) -> str:
-        """Describe the road in words: class or density, and range of spatial frequencies."""
+        """Describe the road in words: class or density, and the highest spatial frequency."""
         name = f"class {self.roughness}" if isinstance(self.roughness, str) else f"{self.roughness:g} m3"
         return f"{name}, up to {self.highest:g} 1/m"
 

@@ -17,7 +17,7 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import TimeError, estimate_time_error, vibration_frequencies
 from beamdyn.transient.trajectory import Trajectory
 
-_COMPARED = 4000  # number of times at which two simulations are compared; at most twice as many are used
+_COMPARED = 4000  # largest number of times at which two simulations are compared
 _BATCH = 500  # number of times evaluated at once
 _REFINEMENTS, _FINE = 3, 17  # number of refinements of a maximum, and of grid points in each
 _OF_TURNING_POINTS = 2  # number of refinements of a turning point: values within 1e-6 of the largest range

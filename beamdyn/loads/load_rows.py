@@ -210,7 +210,7 @@ def _camber(scene: Scene, equations: Equations, stations: SpanStations) -> LoadR
 def _rows_of(
     assembled: Mapping[str, FieldEquations], equations: Equations, field: str, moved: slice
 ) -> LoadRows:
-    """Build rows of the virtual work of all loads on one field's virtual displacements at S stations."""
+    """Build rows of the work of all loads and terms on one field's virtual displacements at S stations."""
     count = moved.stop - moved.start
     load: ByQuantity = {}
     by_order: tuple[ByQuantity, ...] = ({}, {}, {})

@@ -39,7 +39,7 @@ from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 _TURN = 2 * np.pi
 _HOUR = 3600.0
 _FEW = 10.0  # number of zero crossings below which the statistics of the largest value do not hold
-_DIGITS = 3  # number of significant digits of the expected largest value
+_DIGITS = 3  # number of significant digits of the expected largest value, as statistics have no more
 _UNSURE = 0.05  # relative error of the largest value above which none of its digits may be certain
 _SEVERAL = 3.0  # number of standard deviations that a deflection rarely exceeds
 

@@ -309,7 +309,7 @@ class AskedLoads:
     notes : tuple of str
         Contributions that the strain does not include.
     start : float
-        Clock time of the request [s].
+        Time of the request by `time.perf_counter` [s].
     """
 
     scene: Scene

@@ -264,7 +264,7 @@ def transient_loads(
 
 
 def _times_in(run: Transient, t: np.ndarray | Sequence[float] | float) -> np.ndarray:
-    """Check that times (T,) [s] are within the simulated time; the default is at most 2000 of its times."""
+    """Check that times (T,) [s] are within the simulated time, and return them as an array."""
     times = ascending("t", t)
     if not (times.min() >= run.path.start and times.max() <= run.path.end * (1 + 1e-12)):
         bound = f"times must lie in the run, from {run.path.start:g} to {run.path.end:g} s"

@@ -186,7 +186,8 @@ SMALL = 0.02
 # error.
 _OF_AMPLITUDE = 2.0
 _STEADY = 1e-3  # relative difference of coefficients below which bases converge steadily
-_ROUNDED = 1e-7  # relative difference of coefficients that rounding may cause, times eps^2
+# Relative difference of coefficients that rounding may cause: rounding errors are divided by eps^2.
+_ROUNDED = 1e-7
 _SAMPLES = 16  # number of samples per period, which separate harmonics up to the seventh
 _RESONANT = 1e-3  # condition of the dynamic stiffness below which the second harmonic is resonant with a mode
 

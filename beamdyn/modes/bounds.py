@@ -32,8 +32,8 @@ from beamdyn.scene.validity import check_speeds, warn_of_static_deflection
 
 _EPS = float(np.finfo(float).eps)
 _NARROW = 1e-11  # relative width of bounds of squared frequencies below which the basis is not enlarged
-# Relative width of bounds below which the basis of two coupled planes is not enlarged: their bases are twice
-# as large, and this width is a few times the allowances for rounding.
+# Relative width of bounds of squared frequencies below which the basis of two coupled planes is not enlarged:
+# their bases are twice as large, and this width is a few times the allowances for rounding.
 _RESOLVED = 1e-8
 # Numbers of functions, on all segments together, tried for a bound of the critical speed.
 _PROOF_SIZES = (24, 48, 96)

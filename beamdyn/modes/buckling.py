@@ -45,7 +45,8 @@ positive, the last section gives a speed below which they cannot cause buckling,
 axial strain of the beam has passed 1 %, where linear theory ends.
 
 **String.**  Otherwise, minimized over D, F is the form of a string with a mass at its end.  Its lowest
-eigenvalue decides; it converges fast, as without bending stiffness there are no thin layers.
+eigenvalue decides: F >= 0 if it is at least 1.  It converges fast, as without bending stiffness there are no
+thin layers.
 
 **Toppling.**  Let F0 be the form F above for a slender beam, and E twice the energy of bending and of
 the springs at the root.  With the tilt theta of the sections (theta2 in the plane of rotation, theta3 out of
@@ -169,7 +170,7 @@ def decide_buckling(scene: Scene) -> Buckling:
 def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> Buckling:
     """Decide for a slender beam in one plane, if necessary by the lowest eigenvalue of a string (see module).
 
-    The parameters are a, the distance of the root beyond the rotation axis, against the beam's direction [m];
+    The parameters are a, the distance of the root from the rotation axis, against the beam's direction [m];
     c^2 and s^2; and the terms of J_e - J_1 [kg m2].
     """
     L, tip = beam.length, beam.tip or TipMass(0.0)
@@ -227,7 +228,7 @@ def _inward(scene: Scene) -> float:
 
 
 def _least_turning(scene: Scene) -> float:
-    """Compute the minimum of the form F (see module) over unit rotations about a hinge [kg m2]; or inf."""
+    """Compute the minimum of the form F (see module) over unit rotations about a hinge [kg m2], or inf."""
     springs = scene.mount.root_stiffnesses[: scene.physics.planes]
     # Whether springs along the beam support the beam, in each direction.
     held = [scene.beam.springs(direction)[1].size > 0 for direction in range(len(springs))]
@@ -315,7 +316,8 @@ def _tilting_inertia(
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Compute I33 and I23 of sections (n,) [kg m], and B23 of the tip body [kg m2]; symbols: see module.
 
-    Products of inertia within rounding of 0 are set to 0.  With precone, B23 includes a factor above 1.
+    In one plane, I33 is all of the rotary inertia.  Products of inertia within rounding of 0 are set to 0.
+    With precone, B23 includes a factor above 1.
     """
     if scene.physics.planes == 1:
         return rotary[:, 0, 0] * bool(components[1, 0]), np.zeros(len(rotary)), 0.0

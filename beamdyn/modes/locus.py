@@ -113,7 +113,8 @@ class Locus(TellsKinds, StatesModelError):
     def left_out_speeds(self) -> np.ndarray:
         """Speeds of the locus at which the model error is computed [rad/s], (k,).
 
-        They are the first and last speed, and the speeds before and after a mode becomes unstable or stable.
+        They are spread evenly from the first to the last speed, with the speeds before and after a mode
+        becomes unstable or stable.
         """
         return self.speeds[self._judged]
 

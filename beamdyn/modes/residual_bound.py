@@ -113,7 +113,7 @@ class Enclosure(ABC):
 
     @abstractmethod
     def _tail(self, coefficients: np.ndarray, terms: np.ndarray) -> float:
-        """Bound how much the forms P_j (see module) reduce the energy of functions outside the Ritz basis.
+        """Bound the relative loss of energy by the forms P_j (see module) for functions outside the basis.
 
         In the module's docstring it is 1 - q.  The bound includes rounding.
         """
@@ -244,7 +244,7 @@ class PlaneEnclosure(Enclosure):
 
     @cached_property
     def _residuals(self) -> tuple[np.ndarray, float]:
-        """Integrals of products of unbalanced moments, and upper bounds of the ratio of EI within a cell."""
+        """Integrals of products of unbalanced moments, and a bound of the ratio of EI within a cell."""
         assert self.flexibility is not None
         compliance = bound_on_cells(self.flexibility, self.part.ends)
         stiffness = bound_on_cells(self.scene.beam.bending_stiffness, self.part.ends)

@@ -10,7 +10,7 @@ the eigenvalues and not to the largest stiffness.
 that is rotated by the twist beta(x).  On cells the curvatures *in the axes of the section* are polynomials,
 so that the energy and the moments D p contain no cosine of the twist.  Only curvatures along the fixed
 directions e1, e2, and moments in the axes of the section, contain it.  Polynomials replace its cosine and
-sine; they are exact for a beam whose stiffness is within (1 -+ `misfit`) D(x): see `twist_degree`. An array
+sine; they are exact for a beam whose stiffness is within (1 -+ `misfit`) D(x): see `twist_degree`.  An array
 (n, 2, N) has components along e1, e2 or, where it says so, in the axes of the section.
 """
 
@@ -44,7 +44,7 @@ _STEEP = 300.0  # ratio of two stiffness samples above which cells must be grade
 _MOST_IN_ALL = 500
 _LARGEST_TURN = 0.25  # largest rotation of a section relative to the middle of its cell [rad]
 _MISFIT = 1e-14  # relative error of the stiffness if polynomials replace cosine and sine of the twist
-_MOST_DEGREE = 40  # highest degree of the polynomials that replace cosine and sine of the twist
+_MOST_DEGREE = 40  # highest degree, in the twist, of polynomials that replace its cosine and sine
 
 _CONDITIONS = CLAMPED._replace(stiffness="bending_stiffness")
 
@@ -429,9 +429,9 @@ def twist_degree(turn: float, ratio: float) -> tuple[int, float]:
     """Find the degree of polynomials for cosine and sine of the twist, and the error of the stiffness.
 
     For an angle of at most `turn` from the middle of its range, interpolation in Chebyshev points has an
-    error of at most e = turn^(m+1) / (2^m (m+1)!) in each. The matrix that rotates curvatures is then R (1 +
-    E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy E grows at
-    most by the root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
+    error of at most e = turn^(m+1) / (2^m (m+1)!) in each.  The matrix that rotates curvatures is then
+    R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy E
+    grows at most by the root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
     """
     for degree in range(_MOST_DEGREE):
         error = turn ** (degree + 1) / (2**degree * math.factorial(degree + 1))

@@ -103,7 +103,7 @@ def setting_angle_limits(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> SettingAngleLimits:
-    """Compute the setting angles above which the first frequency stops falling with speed, and only rises.
+    """Compute setting angles above which the first frequency stops falling, and above which it only rises.
 
     Parameters
     ----------

@@ -88,7 +88,7 @@ def harvest_on_road(
 ) -> tuple[RoadHarvest, list[str]]:
     """Compute the harvest on a random road at speeds (S,) with stable motion, and warnings.
 
-    Unless it is `compared` with other models, its errors are nan, and there are no warnings of the road's.
+    Unless it is `compared` with other models, its errors are nan, and there are no warnings about the road.
 
     Raises
     ------

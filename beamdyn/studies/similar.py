@@ -7,7 +7,7 @@ offset and radius by s_L, root springs are multiplied by s_L/s_k, and the speed 
     T = sqrt(s_m s_L^4 / s_k);
 
 the frequencies of the reference, divided by T, are those of the beams.  The reference's matrices are
-polynomials of few quantities. In one plane of bending they are linear in the mass of the body, its inertia
+polynomials of few quantities.  In one plane of bending they are linear in the mass of the body, its inertia
 J_n, (J_e - J_1)/J_n, in r cos(phi), in the squared cosine of the bending angle and in the spring, quadratic
 in the offset.  In two planes they are linear in the moments of inertia, in the springs, and in the stiffness
 in the second direction over that in the first, and combinations of 1, cos(2 psi) and sin(2 psi) of the
@@ -128,7 +128,7 @@ class SimilarDesigns(FieldsOnly):
     # Similarity -----------------------------------------------------------------------------------
 
     def _scale(self, which: int) -> np.ndarray:
-        """Ratio of mass per length (0) or a stiffness (1, 2, 3) to the reference's, (N,): see `POWERS`."""
+        """Compute ratios (N,) of mass per length (0) or a stiffness (1, 2, 3) to the first: see `POWERS`."""
         scale = np.ones(self.count)
         for name, powers in POWERS.items():
             if name in self.columns:

@@ -5,7 +5,7 @@ difference e of both motions obeys e'' + C e' + K(t) e = R.  The run is divided 
 computed in the larger model's modes in each stretch: the slow ones as oscillators whose frequency follows the
 stiffness, y = Im(exp(i theta) (a + int exp(-i theta) R / sqrt(w) dt)) / sqrt(w) with theta' = w (Liouville
 and Green); those too fast for the samples of the run follow the residual quasi-statically, and vibrate freely
-after its jumps. So no time step has to be solved again.  Where the stiffness of a stretch differs from its
+after its jumps.  So no time step has to be solved again.  Where the stiffness of a stretch differs from its
 mean, the modes are coupled: the motion of all others exerts a force on each, which is taken from the previous
 pass.
 

@@ -32,7 +32,7 @@ class BeamInSpaceSystem:
     motion : Motion
         Motion of the root.
     branch : {"straight", "bent"}
-        Equilibrium branch (undeflected or buckled) from which a run starts, if it starts in equilibrium.
+        Equilibrium (continued from rest, or the one next to it) from which a run in equilibrium starts.
     """
 
     elastica: RotatingBeam
@@ -70,7 +70,7 @@ class BeamInSpaceSystem:
         return np.repeat(self.shape(q, xi)[:, :, None], len(eta), axis=2)
 
     def carrier(self, root: RootMotion) -> Carrier:
-        """Compute the motion of the rotating root frame that drives the equations."""
+        """Compute the motion of the carrier that drives the equations."""
         return Carrier.of_root(self.elastica.axis, root)
 
     def rhs(self, t: float, y: np.ndarray) -> np.ndarray:
@@ -120,7 +120,7 @@ class BeamInSpaceSystem:
     # Evaluation of the equations ----------------------------------------------------------------------
 
     def _moving(self, carrier: Carrier, q: np.ndarray, v: np.ndarray) -> MovingBeam:
-        """Build the beam with coordinates and rates (..., n) on its moving root."""
+        """Build the beam with coordinates and rates (..., n) on its moving carrier."""
         return MovingBeam(self.elastica.beam.at(q), v, carrier, self.elastica.load)
 
     def residual(self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:

@@ -33,7 +33,7 @@ _CHECKED = 64  # number of times at which the equations are checked
 _NEGLIGIBLE = 1e-2  # fraction of the accuracy allowed for the sum of all neglected terms
 _RESOLVED = 12.0  # phase per step [rad] up to which the nodes of a step resolve an exponential
 _MOST_GROWTH = 20.0  # largest exponent by which the motion may grow over a segment
-# number of steps in one batch of exponentials; batches of the squared number of steps are evaluated together
+# Number of steps whose exponentials are computed; its square is the number of steps evaluated as one batch.
 _ROWS = 32
 
 

@@ -167,7 +167,7 @@ def propagate_elastica(
     stages: int,
     like: Segment | None = None,
 ) -> Segment:
-    """Integrate over equal steps by Gauss collocation; nonlinear kin of `beamdyn.transient.gauss.propagate`.
+    """Integrate nonlinear equations over equal steps, as `beamdyn.transient.gauss.propagate` linear ones.
 
     Parameters
     ----------

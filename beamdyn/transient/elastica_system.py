@@ -29,9 +29,9 @@ class ElasticaSystem(BeamInSpaceSystem):
 
     @cached_property
     def kernel_and_moments(self) -> np.ndarray:
-        """Matrix (N + 2, N + 1): minus the mass matrix of the slope angles, and below it two rows of moments.
+        """Matrix (N + 2, N + 1): minus the mass matrix of the slope angles, and below it a row of moments.
 
-        A row of moments [kg m] has the generalized force on each slope angle by a unit acceleration of the
+        The row of moments [kg m] has the generalized force on each slope angle by a unit acceleration of the
         root.
         """
         stations, masses = self.elastica.beam.stations, self.elastica.beam.masses

@@ -309,7 +309,7 @@ def interpolate(
     both = weights @ table.A, weights
     if n > 1:
         dq, dv = (each @ acceleration for each in both)
-    else:  # for one fraction, a single matrix product suffices
+    else:  # for one coordinate, a single matrix product suffices
         dq, dv = ((acceleration[:, :, 0] @ each.T)[:, :, None] for each in both)
     return q + h * theta[:, None] * v + h**2 * dq, v + h * dv
 

@@ -87,7 +87,7 @@ def integrate(
 
 
 class _Start(NamedTuple):
-    """Input of an integration: equations of a straight beam, initial coordinates and velocities, end [s]."""
+    """Input of an integration: equations of a straight beam, initial state, end [s], and tolerance."""
 
     system: ModalSystem
     y0: np.ndarray
@@ -136,7 +136,7 @@ def _attempt(start: _Start, step_size: StepSize, _: Attempt | None) -> Attempt:
 
 
 def _attempt_record(start: _Start, step_size: StepSize, before: Attempt | None) -> Attempt:
-    """Integrate a motion given by samples; use the step size of the attempt `before`, if any.
+    """Integrate a motion given by samples; take account of the attempt `before`, if any.
 
     Steps without a sample inside are far more accurate than steps across samples.  So after steps across many
     samples, one step per sample interval is tried; each later attempt has more steps per interval.

@@ -23,7 +23,7 @@ _MOST_WORK = 5e7
 # The same limit, if the last added modes have divided the truncation error by less than _FAST.
 _SLOW_WORK = 5e6
 _FAST = 4.0
-# Up to the first number, of modes, one more mode may divide the truncation error by the second number.
+# Up to the first number of modes, one more mode may divide the truncation error by the second number.
 _FEW_MODES, _NEARLY = 4, 30.0
 _TIGHT = 1e-5  # tolerance that is tried too, if no basis meets a smaller requested tolerance
 

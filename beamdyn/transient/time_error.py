@@ -181,7 +181,10 @@ def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
 
 
 def _total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
-    """Bound each coordinate's error after some steps by local (k, n) and largest phase errors delta (n,)."""
+    """Bound each coordinate's error after some steps by local (k, n) and largest phase errors delta (n,).
+
+    The bound is the sum of all local errors, or of the largest ones until the phase is lost, if that is less.
+    """
     until_lost = 2 / np.maximum(delta, 1e-30)  # number of steps until the phase is lost
     return np.minimum(steps * local.mean(axis=0), until_lost * local.max(axis=0))
 

@@ -31,10 +31,11 @@ class Path(Protocol):
 
     1. Write a function of the equations (`ModalSystem`), the initial coordinates and velocities, the end
        and the tolerance, which returns a path.  It evaluates C, K and f of the equations at arrays of times.
-    2. Steps end at the motion's breakpoints, see `beamdyn.transient.step_size.split_at_breakpoints`. 3.
-    `samples` has several samples in each step, so that no maximum is missed; `at` interpolates between them.
-    4. The function estimates the time-integration error of the tip deflection [m], or returns nan. 5.
-    `TransientProblem.solve` calls it by the name in ``method=``.  A subclass of scipy's `OdeSolver` needs
+    2. Steps end at the motion's breakpoints, see `beamdyn.transient.step_size.split_at_breakpoints`.
+    3. `samples` has several samples in each step, so that no maximum is missed; `at` interpolates between
+       them.
+    4. The function estimates the time-integration error of the tip deflection [m], or returns nan.
+    5. `TransientProblem.solve` calls it by the name in ``method=``.  A subclass of scipy's `OdeSolver` needs
        none of this: it is passed as ``method=`` itself.
     """
 
@@ -172,7 +173,7 @@ def _top_of_parabola(left: np.ndarray, middle: np.ndarray, right: np.ndarray) ->
     """Find the maximum of the parabola through three equidistant values, or the middle one if higher."""
     is_maximum = (middle >= left) & (middle >= right)
     bend = np.where(is_maximum, 2 * middle - left - right, 0.0)
-    # A tilt above 1 means that the highest value is outside.
+    # The tilt is at most 1 in magnitude: the highest value is between the left and right values.
     tilt = np.divide(right - left, bend, out=np.zeros_like(bend), where=bend > 0)
     return middle + (right - left) * tilt / 8
 

@@ -37,7 +37,7 @@ from beamdyn.transient.trajectory import Path, Trajectory, in_direction, magnitu
 # Largest distance from the refined run, over the largest deflection, that still gives an estimate of the
 # error.
 _LIMIT_DIFFERENCE = 0.3
-_TIMES_COMPARED = 20_000  # number of times at which two runs are compared, at most doubled
+_TIMES_COMPARED = 20_000  # largest number of times at which two runs are compared
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
 # Part of the time-integration error of a motion that is included in its modal truncation error.
 _OF_TIME_ERROR = 0.1
@@ -145,8 +145,8 @@ class Transient(StatesModelError):
         methods is applicable.
 
         The factor of two covers the error of `refined` itself: in random runs it was less than half of the
-        distance.  It is inf if there is no larger model that fits into memory, or if the distance is so large
-        that the error of `refined` is unknown.
+        distance (benchmark of the coverage of transients).  It is inf if there is no larger model that fits
+        into memory, or if the distance is so large that the error of `refined` is unknown.
         """
         system, path, difference = self.system, self.path, None
         known = self.time_error == 0 or not _MOTIONS_WITH_MORE_MODES.isdisjoint(self.__dict__)

@@ -1,7 +1,7 @@
 """Axis of an unloaded curved beam: its curvature, and its kinks between cells.
 
 With the prebend angle b and the sweep angle a, the local axes are the root's axes rotated by b about the
-third axis, then by -a about the second, so that the beam points along (cos a cos b, cos a sin b, sin a). The
+third axis, then by -a about the second, so that the beam points along (cos a cos b, cos a sin b, sin a).  The
 curvature is
 
     k1 = b' sin a,   k2 = -a',   k3 = b' cos a.

@@ -17,8 +17,9 @@ A small change of the coordinates rotates the sections by W and displaces the ax
 
     W' = R dk,   X' = W x r' + R dg,
 
-all with components in space-fixed axes.  With n and m the resultants of the forces F and moments M that act
-beyond a point, virtual work is int [R'm . dk + R'n . dg], and its derivative, at fixed forces, is
+all with components in the axes e1, e2, e3 at the root, here called space-fixed.  With n and m the resultants
+of the forces F and moments M that act beyond a point, virtual work is int [R'm . dk + R'n . dg], and its
+derivative, at fixed forces, is
 
     int [W_i' . (m x W_j) + R g_i . (n x W_j) + W_i . (X_j' x n) + R'n . g_ij].
 
@@ -274,7 +275,7 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _mean_of_arc(self) -> np.ndarray:
-        """Mean rotation matrix (..., 3, 3) along the arc; it maps changes of the root's rotation vector."""
+        """Mean rotation matrix (..., 3, 3) along the arc; it maps changes of the rotation vector."""
         return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:

@@ -127,7 +127,7 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
 def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
     """Compute strains (6, n, 6, N) by six forces and moments, each varying along x as one of n polynomials.
 
-    The polynomials describe components in space-fixed axes, which are smooth over the beam; components in
+    The polynomials describe components in the axes at the root, which are smooth over the beam; components in
     section axes rotate with the axis of the beam.
     """
     xi, unloaded = model.stations.quadrature.xi, model.at(np.zeros(model.size)).rotations[..., :-1]

@@ -1,9 +1,9 @@
 """Stations of a beam: the points at which masses are placed and forces act.
 
 The stations are N Gauss points along the beam, its tip, and k point masses.  Motions of a station are (X, W):
-the displacement of the beam's axis and the rotation of its section, in space-fixed axes.  The corresponding
-forces (F, M) are the force and the moment about the beam's axis.  Arrays have 6 components, then the N + 1 +
-k stations; point masses have no rotation, so that it is set to 0.
+the displacement of the beam's axis and the rotation of its section, in axes at the root.  The corresponding
+forces (F, M) are the force and the moment about the beam's axis.  Arrays have 6 components, then the
+N + 1 + k stations; point masses have no rotation, so that it is set to 0.
 """
 
 from __future__ import annotations

@@ -26,7 +26,7 @@ class TipForces(NamedTuple):
         Couple [N m].
     follows : bool
         Whether the components refer to the axes of the tip section, so that the load rotates with it;
-        otherwise they refer to space-fixed axes.  A couple of fixed direction has no potential.
+        otherwise they refer to the axes at the root.  A couple of fixed direction has no potential.
     """
 
     force: np.ndarray = _NOTHING

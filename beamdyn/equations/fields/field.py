@@ -156,9 +156,9 @@ class Field(ABC):
     In order to add a field, write a subclass in a module of its own in `beamdyn.equations.fields`, and
     name it in the list `FIELDS` there:
 
-    1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it. 2. `requires` has
-    the values of `Physics` with which a scene has the field, or `is_modelled` decides whether
-       it has.  A scene without the field needs no extra computing time.
+    1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it.
+    2. `requires` has the values of `Physics` with which a scene has the field, or `is_modelled` decides
+       whether it has.  A scene without the field needs no extra computing time.
     3. `assemble` takes functions that satisfy the conditions at the root from the discretization, by
        ``spaces.functions(conditions)``, and returns the terms, the loads and, for a field that deflects the
        beam transversely, the `Deflection`; and for a field that deforms the cross-sections, the functions

@@ -230,7 +230,7 @@ class Offsets:
 
     @cached_property
     def _tip(self) -> tuple[TipMass, np.ndarray]:
-        """Tip body, with offsets (4,) [m] of the mass centre and of the tension centre at the tip."""
+        """Tip body, with offsets (4,) [m] of its mass centre and of the tension centre at the tip."""
         beam = self.scene.modelled_beam
         tip, twist = beam.tip or TipMass(0.0), beam.tip_twist
         of_tension = [
@@ -347,7 +347,7 @@ class Offsets:
                     yield _CoupledMatrix(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
 
     def _sheared(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of shear forces on the axis' displacement, which follows the slope of bending."""
+        """Yield the work of shear forces on the displacement of the axis along the slope of bending."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for rows, columns in product(self.tilting, repeat=2):

@@ -300,7 +300,7 @@ class StackedSpace:
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
         """Evaluate second derivatives by eta at x/L (k,), averaged over the width: shape (n, k).
 
-        The second derivative of an even Legendre polynomial has the mean k(k + 1)/2.
+        An even Legendre polynomial's second derivative has the mean k(k + 1)/2, its slope at an edge.
         """
         numbers = np.array(self.numbers)
         means = np.where(numbers % 2, 0, numbers * (numbers + 1) / 2) * np.sqrt(2 * numbers + 1)

@@ -1,6 +1,6 @@
 """Torsion of beams of any cross-section; torsion and camber of strips, modelled as plates.
 
-Torsion of any cross-section uses section constants (Saint-Venant, with Vlasov's warping). With the twist
+Torsion of any cross-section uses section constants (Saint-Venant, with Vlasov's warping).  With the twist
 theta (positive from e2 to e1), the stiffness G J and E Cw, the rotary inertias R1 = rho I1 and R2 = rho I2
 per length about the section's two axes, the mass m per length, and the tension T in the beam, the energies
 are
@@ -9,7 +9,7 @@ are
     1/2 int (R11 + R22) (d theta/dt)^2 dx,
 
 t being the distance of the centre of tension from the shear centre, and R the tensor of rotary inertia about
-the latter along e1, e2.  Rotation at the speed omega twists the section until its broad side is in the plane
+the latter along e1, e2.  Rotation at the speed omega twists the section with its broad side towards the plane
 of rotation (propeller moment): with the components a1, a2 of the axis of rotation along e1 and e2, the energy
 is omega^2/2 int [(a1^2 - a2^2) (R22 - R11) - 4 a1 a2 R12] theta^2 dx, and the load per length -omega^2 [a1 a2
 (R22 - R11) + (a1^2 - a2^2) R12].
@@ -18,7 +18,7 @@ The tension straightens fibres that twist deforms to helices; in a pretwisted be
 A tip body rotates with the tip section.  If a warping stiffness is given, the root cannot warp: theta' = 0.
 The coupling of torsion with bending is in `beamdyn.equations.fields.offsets`.
 
-A strip is modelled as a plate, whose sections twist and camber except at the clamped root.
+A strip is modelled as a plate, whose sections twist and camber as far as the clamped root lets them.
 The deflection of a thin rectangular section of width b and thickness t is
 
     w(x, y) = sum_k u_k(x) p_k(eta),    eta = 2 y/b,    p_k = (2 k + 1)^(1/2) P_k (Legendre),
@@ -38,9 +38,10 @@ the unit vector a adds
     N_y = rho t (1 - a2^2) (b^2/4 - y^2)/2,
 
 where omega^2 T is the tension by rotation per width, and a1, a2 are the components of a in the directions of
-bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle). N_y is
-a tension across the width, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation also
-twists the strip, by the load -omega^2 a1 a2 rho t y per area, reduced by the rotary inertia of the thickness.
+bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle).  N_y
+is a tension across the width, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation
+also twists the strip, by the load -omega^2 a1 a2 rho t y per area, reduced by the rotary inertia of the
+thickness.
 In a tapered strip the functions of torsion are p_k(2 y/b(L)), which lets it bend smoothly where the width has
 a kink or jumps; of the even ones d/dx at constant y is d/dx - eta (b'/b) d/d eta.
 
@@ -239,7 +240,7 @@ class SectionField(Field):
         return replace(scene, beam=beam, physics=replace(scene.physics, **{self.name: True}))
 
     def numbers(self, count: int) -> range:
-        """Return the numbers k of this field's functions, out of `count` functions across (and the mean)."""
+        """Return the numbers k of this field's functions, of `count` functions across beyond the mean."""
         return range(self.first, count + 1, 2)
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:

@@ -10,7 +10,7 @@ inertial forces of rotation; bending also rotates the sections and the tip body,
 
 A body with the centrifugal inertia B (of sections -R, with R their rotary inertia) and the tilt u' = (u2',
 u3') has the centrifugal potential energy omega^2/2 u3' (B u')_3: a body slender along the beam, B > 0, is
-kept in the plane of rotation; a section, -R < 0, is rotated out of it. As sections are not free to twist,
+kept in the plane of rotation; a section, -R < 0, is rotated out of it.  As sections are not free to twist,
 bending in both planes rotates them about the beam by int (u2' u3'' - u3' u2'')/2, on which the moment of
 their product of inertia does work.  Derivation: docs/conventions.md and
 tests/invariants/test_two_planes_derivation.py.
@@ -303,7 +303,7 @@ def _terms(pair: Pair) -> Iterator[Term]:
 
 
 def _spin(pair: Pair, cosine: float, sine: float) -> Iterator[Term]:
-    """Yield the work of centrifugal forces on masses that move in the plane of rotation, or tilt."""
+    """Yield the work of centrifugal forces on masses that move in the plane of rotation or tilt out of it."""
     (i, j), beam, (d, n) = pair.directions, pair.rows.beam, plane_components(pair.rows.scene)
     if softening := d[i] * d[j] + sine**2 * n[i] * n[j]:
         yield pair.term("spin softening", pair.translation, "speed_squared", -softening)
@@ -347,7 +347,7 @@ def _coriolis(pair: Pair) -> Iterator[Term]:
 
 
 def _euler_of_turned(pair: Pair, sine: float) -> Iterator[Term]:
-    """Yield the work of Euler forces on sections and tip body, which bending tilts and twists.
+    """Yield the work of Euler forces on sections and tip body that tilt and turn about the beam.
 
     The matrix is the symmetric part of B T, with the inertia B and the rotation T by 90 degrees about the
     beam.

@@ -210,7 +210,7 @@ def list_models(
     """List the models to try, from the smallest sensible to the finest; a given instance is the only model.
 
     `cheapest` starts with the smallest sensible model, instead of one that usually meets the default target;
-    `has_layers` states whether segments were added for boundary layers, which need several elements. Other
+    `has_layers` states whether segments were added for boundary layers, which need several elements.  Other
     parameters and errors raised are as for `choose_model`.
     """
     segments = len(scene.modelled_beam.breakpoints) - 1

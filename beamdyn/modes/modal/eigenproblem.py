@@ -103,7 +103,7 @@ class Eigensolver(ABC):
     @property
     @abstractmethod
     def softening(self) -> float:
-        """Largest loss of stiffness per squared speed [s2], relative to the stiffness at rest; or 0."""
+        """Largest loss of stiffness per squared speed [s2], over that at rest; 0 if it is within rounding."""
 
     @property
     def critical_speed(self) -> float:

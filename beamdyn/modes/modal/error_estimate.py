@@ -30,7 +30,7 @@ _SHARED = 0.75
 # Ratio of the difference of two meshes to their rounding errors, below which it may be rounding alone.
 _OF_NOISE = 4.0
 # Fractions that count as the error of a mode: of its own distance from the coarser basis, and of the largest
-# distance of all modes; then the relative distance above which margins for slow convergence are added. The
+# distance of all modes; then the relative distance above which margins for slow convergence are added.  The
 # values are for a beam with one segment, with several (whose functions converge at different rates), and for
 # irregular convergence.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
@@ -108,7 +108,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     squared, distance = s**2, s**2 - coarse**2
     order = model.discretization.order
     if order is not None:  # Richardson extrapolation removes the leading term of the error
-        # If one value is a rounding error of 0, the distance is undefined.
+        # If one value is 0 within rounding, the distance counts as 0.
         within_rounding = (fine.eigenvalue[:, :compared] == 0) | (coarse == 0)
         squared = squared + np.where(within_rounding, 0.0, distance / (2**order - 1))
         extrapolated = np.concatenate([_root(squared, s), fine.eigenvalue[:, compared:]], axis=1)
@@ -150,8 +150,8 @@ def _mesh_error(
     left = extrapolation_error(distance, before, noise, least)
     truncation = (left + noise) / (2 * np.abs(squared))
     # Elements usually resolve lower modes better, so no mode is given a smaller error than a lower mode.  A
-    # square below the lowest at rest has a large relative error only by its small size; its error is relative
-    # to the latter.
+    # square below the lowest at rest has a large relative error only by its small size; its error counts
+    # relative to the lowest.
     size = np.abs(squared) / model.solver.lowest_at_rest
     known = (size > 0) & np.isfinite(truncation)
     of_lower = np.where(known, truncation * np.minimum(size, 1.0), 0.0)
@@ -313,7 +313,7 @@ def _ritz_error(
     modes that only every other function changes, and modes whose distance is small by chance.  If convergence
     is slow, a margin is therefore added, which was measured on random scenes: a fraction of the distances of
     all modes, relative to the higher mode of two.  The fraction is `of_few` if one field may have too few
-    functions. If an eigenvalue vanishes, its error is relative to the lowest squared frequency at rest.
+    functions.  If an eigenvalue vanishes, its error is relative to the lowest squared frequency at rest.
     """
     half, size = np.abs(distance) / 2, np.abs(squared)
     scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), lowest[..., None, None])

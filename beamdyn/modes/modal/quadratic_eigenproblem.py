@@ -9,7 +9,7 @@ from scipy.linalg.lapack import zheevr
 _EPS = np.finfo(float).eps
 # Relative growth rate below which a mode counts as stable, as rounding of a double root causes it.
 _REAL = 1e-8
-_MASSLESS = 16 * _EPS  # relative eigenvalue of a mass matrix, below which it is a rounding error of 0
+_MASSLESS = 16 * _EPS  # relative eigenvalue of a mass matrix, below which it is 0 within rounding
 
 
 def solve_gyroscopic(

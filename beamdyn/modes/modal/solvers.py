@@ -2,7 +2,7 @@
 
 The equations decide which eigensolver serves, part by part where parts are uncoupled, such as two planes.
 
-Modes over many speeds are interpolated between those at a few. Without damping, squared frequencies are
+Modes over many speeds are interpolated between those at a few.  Without damping, squared frequencies are
 smooth functions of the speed (without gyroscopic terms: of the squared speed), and so are the modes, except
 at sharp veerings.  They are interpolated in Chebyshev points of an interval.  The error of the interpolant is
 estimated by its coefficients of highest degree: while these exceed rounding, points are added; then the

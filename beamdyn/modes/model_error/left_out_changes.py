@@ -138,7 +138,7 @@ def _diverge(s: np.ndarray) -> np.ndarray:
 
 
 def _shifted(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Estimate, with an effect, the eigenvalues of modes s (m,), v (n, m) that vibrate or diverge without."""
+    """Estimate eigenvalues with an effect, of modes s (m,), v (n, m) that vibrate or diverge without it."""
     known = vibrate(s) | _diverge(s)
     shifted = np.full(len(s), np.nan, dtype=complex)
     shifted[known] = added_effects.shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
@@ -439,7 +439,7 @@ def _add(scene: Scene, effect: Effect) -> Addition | None:
 
 
 def _refined(scene: Scene) -> Scene:
-    """Return the scene with shear and rotary inertia, if its beam has the data."""
+    """Return the scene with shear and rotary inertia, as far as its beam has the data."""
     for effect in _REFINING:
         if not effect.is_in(scene) and can_add(scene, effect):
             scene = add_effect(scene, effect).scene

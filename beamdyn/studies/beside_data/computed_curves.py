@@ -24,8 +24,7 @@ from beamdyn.transient.simulate import Transient, simulate
 from beamdyn.transient.sweep import Sweep, sweep
 
 _DELAYS = 33  # number of trial delays, evenly spaced between the limits
-# Smallest number of times at which histories are compared to find the delay; at most twice as many are used.
-_COMPARED = 4000
+_COMPARED = 4000  # largest number of times at which histories are compared to find the delay
 _ROUNDING = 1e-9  # fraction of the length by which a position may be beyond the tip because of rounding
 _SHARP = 1e-9  # accuracy of a delay, relative to the period
 # A curve counts as inverted if the opposite sign reduces the sum of squares to at most this fraction.

@@ -148,7 +148,7 @@ class CurveComparison(Result):
     def verdict(self) -> tuple[str, ...]:
         """Verdict on each curve: "agrees", "within the model error", "outside" or "not known"; shape (C,).
 
-        Both the largest value and the root mean square of the difference must be within the bounds. With a
+        Both the largest value and the root mean square of the difference must be within the bounds.  With a
         model error larger than the curve, the verdict is "not known".
         """
         at = self.places, np.arange(len(self.name))

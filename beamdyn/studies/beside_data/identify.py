@@ -42,7 +42,7 @@ def identify(
 ) -> Identification:
     """Identify numbers of a scene from measured natural frequencies, by bounded least squares.
 
-    If all frequencies deviate by the ratio of two units, a warning says so, as in `bd.compare`. Deviations
+    If all frequencies deviate by the ratio of two units, a warning says so, as in `bd.compare`.  Deviations
     are divided by the uncertainties of the data.  If these are not given, they are divided by the
     frequencies, and the uncertainty is estimated from the deviations.  At most 40 scenes are solved for each
     number.

@@ -52,7 +52,7 @@ def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None
 
 
 def _distances(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
-    """Compute distances (m, n) of frequencies, relative to half the gap from each mode to the next."""
+    """Compute distances (m, n) of frequencies, relative to half the gap to the next mode on that side."""
     log, order = np.log(computed), np.argsort(computed)
     apart = np.log(measured)[:, None] - log
     gaps = np.diff(log[order], prepend=log[order[0]] - _BELOW, append=log[order[-1]] + _BELOW)

@@ -30,7 +30,8 @@ def wrong_unit(
     """Yield a statement if all values deviate by one common factor that is the ratio of two units.
 
     The values divided by the factor are paired with modes again.  The statement is made if each then has a
-    mode within 10 %, and if the scatter of the ratios of measured to computed values is less than half.
+    mode within 10 %, and if the scatter of the ratios of measured to computed values is less than half of
+    that before.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ def wrong_unit(
         return
 
     def logarithms(factor: float) -> np.ndarray:
-        """Compute log(measured / factor / computed) for each value with a mode; inf if one has no mode."""
+        """Compute log(measured / factor / computed) of each value and its mode; inf if it has none."""
         found = []
         for values, modes, alike in zip(measured, computed, likeness, strict=True):
             place, known = pair(values / factor, modes, alike), np.isfinite(values)

@@ -43,7 +43,7 @@ def design(
     """Find numbers of a scene, within bounds, for which the results meet given targets.
 
     If several designs meet all targets, the one with the best value is returned, if a target requires the
-    best; otherwise the one nearest to the scene, measured in fractions of the (logarithmic) ranges. If no
+    best; otherwise the one nearest to the scene, measured in fractions of the (logarithmic) ranges.  If no
     design meets all targets, the result states that and is the nearest one.  At most 60 designs are computed.
 
     Parameters
@@ -189,7 +189,7 @@ class _BestDesign:
                 yield target.says
 
     def _only_one_way(self) -> bool:
-        """Return whether results that miss their targets are monotone in each number over all designs.
+        """Return whether results that miss their targets are monotone in each number over computed designs.
 
         The design is then at the bounds that are best for each of these results.
         """

@@ -32,7 +32,7 @@ _VERBS = {1: "raises", -1: "lowers", 0: "does not change"}
 
 
 class _RuledOut(NamedTuple):
-    """Box of designs between two corners (p,), all of which have too low or too high a result."""
+    """Box of designs between two corners (p,), all with too low, or all with too high, a result."""
 
     low: np.ndarray
     high: np.ndarray

@@ -15,7 +15,7 @@ from beamdyn.studies.beside_data.single_numbers import say_value
 from beamdyn.studies.questions import KINDS, OPTIONS, Kind
 from beamdyn.studies.study import check_window
 
-_FAR = 5.0  # logarithm of the ratio of result to required value, above which the logarithm is compressed
+_FAR = 5.0  # magnitude of the logarithm of result over required value, above which it is compressed
 _NONE = 100.0  # logarithm that represents a missing result
 
 

@@ -6,8 +6,8 @@ is unbounded, but k times their distance is bounded: the two are m +- sqrt(s), a
 by at most sqrt(D).
 
 Undamped motion preserves an antisymmetric form, so that multipliers come in pairs m, 1 / conj(m).  A
-multiplier near the unit circle would have its partner equally close on the other side.  If it is further from
-all others than the errors, it has no such partner, and thus is on the circle itself.  If several meet, they
+multiplier near, but off, the unit circle would have its partner equally close on the other side.  One that is
+further from all others than the errors has no such partner, and thus is on the circle.  If several meet, they
 stay on the circle if the form has the same sign on all of their vectors (Krein).
 """
 

@@ -2,7 +2,7 @@
 
 The matrices are polynomials, quotients or sines of most numbers, or polynomials of high degree if a number is
 a position along the beam.  They are evaluated for eight values near the number, and the polynomial through
-these values is differentiated; its last term shows how well the dependence is resolved. Eigenvalues have far
+these values is differentiated; its last term shows how well the dependence is resolved.  Eigenvalues have far
 fewer correct digits, so that they are not differenced.
 
 With P(s) = s^2 M + s (C + omega G) + K0 + omega^2 K2 and P v = 0, w^T P = 0, a change dP of P changes the

@@ -1,6 +1,6 @@
 """Sensitivities of frequencies, critical speed and resonance speeds to the numbers of a scene.
 
-Derivatives follow from first-order perturbation of the eigenproblem: no eigenvalues are differenced. Errors
+Derivatives follow from first-order perturbation of the eigenproblem: no eigenvalues are differenced.  Errors
 are estimated as for frequencies, from the same derivatives of the coarser model.
 """
 

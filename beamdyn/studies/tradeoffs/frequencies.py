@@ -335,7 +335,7 @@ def _list_choices(
 
 
 def _combined(scene: Scene, choices: list[Choice]) -> Scene | None:
-    """Return the scene with all effects of several choices; None if the beam lacks data for them."""
+    """Return the scene with all effects of several choices; None if no beam has the data for all."""
     added = {}
     for choice in choices:
         physics = choice.scene.physics
