@@ -19,9 +19,9 @@ class ErrorMargin(NamedTuple):
     Parameters
     ----------
     factor : float
-        Ratio of the error to the distance.
+        Ratio of the stated error to the difference.
     distance : str
-        Results that are compared, in words.
+        Results whose difference is meant, in words.
     reason : str
         Reason for the size of the factor.
     evidence : str

@@ -71,7 +71,7 @@ def chart(answer: SteadyResponse, _: float = 0.0) -> Sequence[Chart]:
 
 
 def stretches(answer: SteadyResponse) -> np.ndarray:
-    """Return for each speed (S,) the reason why the response is invalid; "" if it is valid."""
+    """Return for each speed the reason why the response is invalid; "" if it is valid."""
     said = np.where(answer.status == _STABLE, "", answer.status).astype(object)
     large = np.nan_to_num(answer.amplitude) > LARGE_DEFLECTION * answer.scene.beam.length
     said[(said == "") & large] = _PAST_LIMIT

@@ -65,7 +65,7 @@ def legendre_series(points: int) -> np.ndarray:
 
 
 def longer_semi_axis(c: np.ndarray) -> np.ndarray:
-    """Compute the longer semi-axis (...) of the ellipse Re(c exp(i phi)), 0 <= phi < 2 pi, for c (d, ...)."""
+    """Compute the longer semi-axis (...) of ellipses Re(c exp(i phi)) in d dimensions, for c (d, ...)."""
     return np.sqrt(((np.abs(c) ** 2).sum(axis=0) + np.abs((c * c).sum(axis=0))) / 2)
 
 

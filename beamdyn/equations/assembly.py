@@ -124,7 +124,7 @@ def _damping_of_modes(equations: Equations, scene: Scene) -> Iterator[tuple[tupl
 
 
 def _modal_damping(part: SteadyPencil, ratios: np.ndarray | None = None) -> np.ndarray:
-    """Compute the damping matrix [kg/s] that gives modes at rest the damping ratio 1, or ratios (n,).
+    """Compute the damping matrix [kg/s] that gives modes at rest the damping ratio 1, or given ratios.
 
     C = 2 L (B - shift B^2)^(1/2) L^T with K + shift M = L L^T and B = L^-1 M L^-T; the shift [1/s2] makes
     a singular stiffness positive definite.

@@ -60,14 +60,14 @@ class Circuit:
 
 @dataclass(frozen=True)
 class Voltage:
-    """Voltage [V] or other output: coefficients (n,) times coordinates (order 0) or rates (order 1)."""
+    """Voltage [V] or other output: coefficients (n,) times n coordinates (order 0) or rates (order 1)."""
 
     order: int
     row: np.ndarray
 
 
 def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
-    """Compute the strain of the layer's outer face at xi = x/L (k,) per bending function: shape (n, k)."""
+    """Compute the strain of the layer's outer face at k positions x/L, for n bending functions: (n, k)."""
     assert beam.electrodes is not None, "electrodes stand on a layer"
     return beam.electrodes.fibre / beam.length**2 * deflection.space.evaluate(xi, 2)
 

@@ -1,4 +1,8 @@
-"""Interface of discretizations: function spaces on a beam, integrated by Gauss rules on cells of the beam."""
+"""Interface of discretizations: function spaces on a beam, integrated by Gauss rules on cells of the beam.
+
+In shapes of arrays, n and m count trial functions, k positions, c cells, p Gauss points in a cell, and N
+Gauss points in all cells.
+"""
 
 from __future__ import annotations
 

@@ -5,6 +5,8 @@ quantity(t) * matrix`` with a quantity of the root's motion: analyses at many sp
 omission of terms all use this one list.
 
 Derivation and conventions: docs/conventions.md.
+
+In shapes of arrays, n counts coordinates, k positions along the beam, and l across it.
 """
 
 from __future__ import annotations
@@ -161,7 +163,7 @@ class Equations:
     # Deflection of the beam as a function of the coordinates ---------------------------------------
 
     def deflection(self, xi: np.ndarray, order: int = 0, direction: int = 0) -> np.ndarray:
-        """Evaluate derivatives by x/L of the deflection per unit coordinate at xi (k,): shape (n, k).
+        """Evaluate derivatives with respect to x/L of the deflection per unit coordinate at xi (k,): (n, k).
 
         Direction 0 is that of the bending angle, direction 1 is across.
         """
@@ -187,7 +189,7 @@ class Equations:
         return values
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate the width mean of the deflection's second derivative by eta = 2 y/b at xi (k,): (n, k)."""
+        """Evaluate width means (n, k) of second derivatives of deflection with respect to eta = 2 y/b."""
         values = np.zeros((self.size, len(xi)))
         for name, functions in self.sections:
             of_field = self.shapes[name]

@@ -1,4 +1,7 @@
-"""Finite elements by scikit-fem: cubic Hermite elements for deflection, quadratic ones for stretch."""
+"""Finite elements by scikit-fem: cubic Hermite elements for deflection, quadratic ones for stretch.
+
+In shapes of arrays, n and m count functions, and k positions.
+"""
 
 from __future__ import annotations
 

@@ -2,6 +2,8 @@
 
 A tip body is not included: it has an offset and moments of inertia, and the displacement fields add its
 terms.
+
+In shapes of arrays, n and m count functions, N positions, c cells, and p parts.
 """
 
 from __future__ import annotations

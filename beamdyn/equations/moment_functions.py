@@ -20,6 +20,8 @@ has its own polynomials; the moments are continuous between parts.
 The quotients of moment and stiffness are interpolated by polynomials on cells.  The functions are thus
 piecewise polynomials with exact integrals, and the eigenvalues are upper bounds, as in every Rayleigh-Ritz
 method.
+
+In shapes of arrays, n counts functions, m independent ones, k Gauss points or positions, and c cells.
 """
 
 from __future__ import annotations

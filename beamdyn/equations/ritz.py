@@ -1,4 +1,7 @@
-"""Rayleigh-Ritz trial functions: integrated Legendre polynomials, or eigenfunctions of the beam at rest."""
+"""Rayleigh-Ritz trial functions: integrated Legendre polynomials, or eigenfunctions of the beam at rest.
+
+In shapes of arrays, n and m count functions, and k Gauss points or positions.
+"""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class RootMoment:
     velocity: Mapping[Quantity, np.ndarray]
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Compute the moment [N m], (T,), for q and v (T, n), positive if it bends to positive deflection."""
+        """Compute the moment [N m] at T times, for q and v (T, n); it bends to positive deflection if > 0."""
         moment = np.zeros(root.unity.shape)
         for quantity, value in self.load.items():
             moment += getattr(root, quantity) * value

@@ -9,6 +9,8 @@ A stiffness that is positive definite needs no shift z: T = [-C, -r; r, 0] is sk
 blocks of two with modal damping, so that eigenvalues and vectors are as accurate as those of
 symmetric matrices.  The lowest poles belong to the largest eigenvalues, which keep all digits; coordinates
 without mass have r = 0, and infinite poles.
+
+In shapes of arrays, n counts coordinates, m poles, and k loads.
 """
 
 from __future__ import annotations

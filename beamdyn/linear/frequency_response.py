@@ -98,7 +98,7 @@ class FrequencyResponse(JudgedByRepeating):
 
     @property
     def response_frequencies(self) -> np.ndarray:
-        """Frequencies f + h n of the response [Hz], which may be negative: shape (F, k)."""
+        """Frequencies f + h n of the response [Hz] for F values of f and k of h, some negative: (F, k)."""
         return self.frequencies[:, None] + self.harmonics * self.speed / _TURN
 
     @property

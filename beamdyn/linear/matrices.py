@@ -138,7 +138,7 @@ class Matrices(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the lowest natural frequencies, five at most, by effects left out of the model: (m,)."""
+        """Changes of the lowest natural frequencies, five at most, by effects left out of the model."""
         return left_out_of_frequencies(self.scene, self.speed, min(len(self.mass), MOST_JUDGED))
 
     def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:

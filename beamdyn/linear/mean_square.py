@@ -74,7 +74,7 @@ class PartialFractions:
 
     @property
     def of_square(self) -> np.ndarray:
-        """Coefficients (m,) of the poles in the partial fractions of the squared magnitude |H|^2."""
+        """Coefficients of the m poles in the partial fractions of the squared magnitude |H|^2."""
         between = -self.poles[:, None] - np.conj(self.poles)
         return self.residues * (np.conj(self.direct) + (np.conj(self.residues) / between).sum(axis=1))
 
@@ -176,7 +176,7 @@ def damped_motion(model: ModelAtSpeed) -> FreeMotion:
 
 
 def residues(free: FreeMotion, load: np.ndarray) -> np.ndarray:
-    """Compute the residues (n, m) of the coordinates' response to a load (n,) at the m finite poles."""
+    """Compute residues (n, m) of n coordinates' response to a load (n,) at the m finite poles."""
     poles = free.finite_poles
     finite = slice(0, len(poles))
     return -poles * free.shapes[:, finite] * free.shares(load[:, None])[finite, 0]

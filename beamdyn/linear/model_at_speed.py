@@ -4,6 +4,8 @@ The coordinates are those of the lowest modes at the speed, without damping and 
 trial functions of the discretization.  What modes leave out follows a slow excitation without delay: its
 static deflection is that of all functions minus that of the modes, the residual flexibility (Craig and
 Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4).
+
+In shapes of arrays, n counts kept coordinates, and N all trial functions.
 """
 
 from __future__ import annotations

@@ -269,7 +269,7 @@ def rms_by(
     spectrum: spectra.PowerSpectrum | float,
     outputs: Sequence[inputs_outputs.Observation],
 ) -> np.ndarray:
-    """Compute root mean squares (k,) by one model; arguments as for `root_mean_squares`."""
+    """Compute the root mean squares by one model; arguments as for `root_mean_squares`."""
     squares = (_mean_square(_expand(model, drive, seen), spectrum, model.speed) for seen in outputs)
     return np.sqrt([*squares])
 

@@ -5,6 +5,8 @@ The derivative is sampled in steps of a fraction of the distance to the nearest 
 bisected: every maximum and every minimum, whether or not it lies at a natural frequency.  From a peak to the
 minima beside it the magnitude falls steadily, so that there is one half-power frequency on either side, or
 none.
+
+In shapes of arrays, F counts frequencies, and p peaks.
 """
 
 from __future__ import annotations
@@ -250,7 +252,7 @@ def _damped_peaks(magnitude: HarmonicMagnitude, top: float, share: float) -> Ite
     tops, sides = at[k], np.array([limits[k], limits[k + 2]])
     size, beside = magnitude.size(tops), magnitude.size(sides.ravel()).reshape(2, -1)
     rounding = magnitude.rounding(tops)
-    # Half-power widths [Hz] (p,); nan where a neighbouring minimum is above half power.
+    # Half-power widths [Hz] of p peaks; nan where a neighbouring minimum is above half power.
     level = np.tile(size / np.sqrt(2), 2)
     twice = np.tile(tops, 2)
     ends = _bisect(lambda f: magnitude.size(f) > level, twice, sides.ravel(), twice, share).reshape(2, -1)

@@ -5,6 +5,8 @@ For many frequencies, a transfer function is evaluated as a sum over a model's f
 Each free motion adds one term over 1 - s t_k, with its inverse pole t_k = 1/p_k: see
 `beamdyn.linear.free_motion`.  The lowest poles belong to the largest t_k, which are the accurate ones;
 coordinates without mass have t_k = 0.
+
+In shapes of arrays, F counts frequencies, k harmonics, and n coordinates.
 """
 
 from __future__ import annotations

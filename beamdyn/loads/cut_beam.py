@@ -7,6 +7,8 @@ that the fields (`beamdyn.equations.fields`) write all their terms for them, too
 
 A rotation about the cut is a kink.  Its curvature, a delta function at the cut, is kept in all terms but the
 product of two curvatures: the work of the bending moment there gives the moment that is to be computed.
+
+In shapes of arrays, n and m count functions, S stations, and k other positions.
 """
 
 from __future__ import annotations
@@ -115,7 +117,7 @@ class CutSpace(SampledSpace):
         return self.evaluate(np.ones(1), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives by x/L at xi (k,), without delta functions: shape (n, k)."""
+        """Evaluate the `order`-th derivatives with respect to x/L, without delta functions: shape (n, k)."""
         stations = self.quadrature.stations
         cut, least = stations.xi[:, None], stations.xi + np.where(stations.inboard, -_TOUCHING, _TOUCHING)
         moved = (np.asarray(xi) > least[:, None]).astype(float)  # 1 for points outboard of each cut

@@ -1,4 +1,7 @@
-"""Loads at stations during a transient: values at any time, largest magnitudes, and errors."""
+"""Loads at stations during a transient: values at any time, largest magnitudes, and errors.
+
+In shapes of arrays, S counts stations, K outputs at each, T times, and d directions.
+"""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ class LoadRows:
     load : dict of str to ndarray, shape (S, K)
         Load by each quantity of the root's motion on the beam at rest.
     position, velocity, acceleration : dict of str to ndarray, shape (S, K, n)
-        Load per coordinate and its derivatives, by each quantity of the root's motion.
+        Load per coordinate, velocity and acceleration, by each quantity of the root's motion.
     """
 
     load: ByQuantity
@@ -75,7 +75,7 @@ class LoadRows:
         return next(iter(self.load.values())).shape  # pyright: ignore[reportReturnType]
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Evaluate the loads at T times, with coordinates q and velocities v (T, n): shape (T, S, K)."""
+        """Evaluate the loads at T times, with n coordinates q and velocities v (T, n): (T, S, K)."""
         total = np.zeros((len(q), *self.shape))
         for quantity, values in self.load.items():
             total += getattr(root, quantity)[:, None, None] * values

@@ -19,6 +19,8 @@ angle theta of rotation, which is 0 at the time 0, the mean square is
     int (|H+|^2 + |H-|^2) S df + 2 Re exp(2 i theta) int H+ conj(H-) S df,
 
 whose mean over a turn is the first integral, and whose largest value has the second one's magnitude.
+
+In shapes of arrays, S counts stations, K outputs at each, m poles, n coordinates, and F frequencies.
 """
 
 from __future__ import annotations

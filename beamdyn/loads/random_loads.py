@@ -1,4 +1,7 @@
-"""Loads along the span under a random input, such as a rough road: mean squares and expected extremes."""
+"""Loads along the span under a random input, such as a rough road: mean squares and expected extremes.
+
+In shapes of arrays, S counts stations, k components of a quantity, and d modelled directions.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Base of all results on loads along the span: stations, loads there, and errors of the loads."""
+"""Base of all results on loads along the span: stations, loads there, and errors of the loads.
+
+In shapes of arrays, C counts cases (speeds or times), S stations, and K outputs at each.
+"""
 
 from __future__ import annotations
 

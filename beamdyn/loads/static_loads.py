@@ -1,4 +1,7 @@
-"""Loads along the span in equilibrium at steady speeds, by centrifugal forces and gravity."""
+"""Loads along the span in equilibrium at steady speeds, by centrifugal forces and gravity.
+
+In shapes of arrays, C counts speeds, n coordinates, and d directions.
+"""
 
 from __future__ import annotations
 
@@ -192,7 +195,7 @@ class _Solved(NamedTuple):
 
 
 def _warnings(scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray) -> Iterator[str]:
-    """Yield warnings: effects left out, and large deflection or strain at the speeds (C,)."""
+    """Yield warnings: effects left out, and large deflection or strain at the speeds."""
     yield from warn_of_left_out(scene)
     _, stretch = static_load(model, speeds)
     yield from warn_of_strain(float(stretch.max()))

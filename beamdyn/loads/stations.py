@@ -58,7 +58,7 @@ class SpanStations:
 
     @property
     def beside(self) -> np.ndarray:
-        """Positions x/L (S,) at which section properties are evaluated, on the side of the cut."""
+        """Position x/L for each station at which section properties are evaluated, on the side of the cut."""
         return np.clip(self.xi + np.where(self.inboard, -_BESIDE, _BESIDE), 0.0, 1.0)
 
 
@@ -126,7 +126,7 @@ class StationOutputs:
         return {name: slice(b - n, b) for name, n, b in zip(UNITS, self.sizes, ends, strict=True)}
 
     def split(self, values: np.ndarray, suffix: str = "") -> dict[str, Any]:
-        """Split components (..., K) by quantity, each under its name with a suffix."""
+        """Split K components (..., K) by quantity, each under its name with a suffix."""
         return {name + suffix: values[..., place] for name, place in self.places.items()}
 
 
@@ -214,7 +214,7 @@ def sections_at(
 
 
 def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
-    """Check that points (P, 2) are inside every section whose edges are known."""
+    """Check that P points (P, 2) are inside every section whose edges are known."""
     array = as_floats(points)
     if array is None or array.ndim != 2 or array.shape[1] != 2 or not 1 <= len(array) <= _MOST_POINTS:
         many = f"give 1 to {_MOST_POINTS} pairs"

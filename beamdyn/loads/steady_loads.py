@@ -1,4 +1,8 @@
-"""Loads along the span in steady response, over the phases of rotation and road."""
+"""Loads along the span in steady response, over the phases of rotation and road.
+
+In shapes of arrays, C counts speeds, S stations, K outputs at each, k components of a quantity, n
+coordinates, and l spectral lines.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Loads along the span during a transient, with their extremes and errors."""
+"""Loads along the span during a transient, with their extremes and errors.
+
+In shapes of arrays, T counts times, S stations, and k components of a quantity.
+"""
 
 from __future__ import annotations
 

@@ -235,7 +235,7 @@ class FreeVibration:
         return ["twice the frequency is near that of another mode: the two exchange energy"] if near else []
 
     def _dynamic(self, harmonic: int) -> np.ndarray:
-        """Compute the dynamic stiffness matrix (n, n) at a multiple of the frequency."""
+        """Compute the dynamic stiffness matrix at a multiple of the frequency."""
         state, w, pencil = self.state, harmonic * self.omega, self.state.linearized().steady()
         return (
             pencil.K0
@@ -268,5 +268,5 @@ class FreeVibration:
 
 
 def _harmonic(samples: np.ndarray, harmonic: int) -> np.ndarray:
-    """Compute the complex amplitude (n,) of a harmonic from samples (_SAMPLES, n) over a period."""
+    """Compute the complex amplitude (n,) of a harmonic from samples of n coordinates over a period."""
     return np.fft.fft(samples, axis=0)[harmonic] * (2 if harmonic else 1) / _SAMPLES

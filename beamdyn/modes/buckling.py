@@ -314,7 +314,7 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
 def _tilting_inertia(
     scene: Scene, components: np.ndarray, rotary: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Compute I33 and I23 of sections (n,) [kg m], and B23 of the tip body [kg m2]; symbols: see module.
+    """Compute I33 and I23 of n sections [kg m], and B23 of the tip body [kg m2]; symbols: see module.
 
     In one plane, I33 is all of the rotary inertia.  Products of inertia within rounding of 0 are set to 0.
     With precone, B23 includes a factor above 1.

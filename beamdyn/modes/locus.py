@@ -1,4 +1,7 @@
-"""Frequency loci: natural modes followed over speed."""
+"""Frequency loci: natural modes followed over speed.
+
+In shapes of arrays, S counts speeds, m modes, and k speeds at which the model error is computed.
+"""
 
 from __future__ import annotations
 

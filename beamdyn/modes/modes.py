@@ -1,4 +1,7 @@
-"""Natural modes at a steady speed: frequencies, shapes, growth rates, kinds and errors."""
+"""Natural modes at a steady speed: frequencies, shapes, growth rates, kinds and errors.
+
+In shapes of arrays, m counts modes, n coordinates, and S speeds.
+"""
 
 from __future__ import annotations
 

@@ -127,7 +127,7 @@ def _with_change(found: LeftOutEffects, name: str, own: np.ndarray, bent: Solved
 
 
 def left_out_of_frequencies(scene: Scene, speed: float, modes: int) -> LeftOutEffects:
-    """Compute changes of the lowest natural frequencies at a speed by neglected effects: shape (m,)."""
+    """Compute changes of the lowest natural frequencies at a speed by neglected effects."""
     with unannounced():
         return natural_modes(scene, speed, modes).left_out_effects
 

@@ -12,6 +12,8 @@ so that the energy and the moments D p contain no cosine of the twist.  Only cur
 directions e1, e2, and moments in the axes of the section, contain it.  Polynomials replace its cosine and
 sine; they are exact for a beam whose stiffness is within (1 -+ `misfit`) D(x): see `twist_degree`.  An array
 (n, 2, N) has components along e1, e2 or, where it says so, in the axes of the section.
+
+In shapes of arrays, n counts functions, N Gauss points or nodes, c cells, m moments, and k point masses.
 """
 
 from __future__ import annotations

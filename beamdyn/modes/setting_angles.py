@@ -200,7 +200,7 @@ def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
         return first, _arccos(float(eigh(A, B, eigvals_only=True)[0]), 1.0) if B.any() else np.nan
 
     def slope(phi: float) -> float:
-        """Compute the derivative of the first squared frequency by the squared speed, at the top speed."""
+        """Compute the slope of the first squared frequency over the squared speed, at the top speed."""
         K2 = A - np.cos(phi) * B
         v = Solver(replace(pencil, K2=K2)).solve(np.array([top_speed]), 1).vector[0, :, 0]
         return float(v @ K2 @ v)

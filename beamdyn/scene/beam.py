@@ -410,13 +410,13 @@ class Beam(FieldsOnly, OneLine):
 
     @cached_property
     def lumps(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return positions x/L (k,) of the nonzero point masses, and the masses (k,) [kg]."""
+        """Return the positions x/L of the nonzero point masses, and the masses [kg]."""
         heavy = [(lump.position, lump.mass) for lump in self.point_masses if lump.mass]
         position, mass = np.array(heavy, dtype=float).reshape(-1, 2).T
         return np.minimum(position / self.length, 1.0), mass
 
     def springs(self, direction: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return positions x/L (k,) and stiffnesses (k,) [N/m] of point springs in direction 0 or 1."""
+        """Return positions x/L and stiffnesses [N/m] of the point springs in direction 0 or 1."""
         if not self.point_springs:
             return np.empty(0), np.empty(0)
         found = [s for s in self.point_springs if s.stiffness and direction_of(s.direction) == direction]

@@ -1,4 +1,7 @@
-"""Measured or independently computed data: histories, peaks, loads along the span, frequency responses."""
+"""Measured or independently computed data: histories, peaks, loads along the span, frequency responses.
+
+In shapes of arrays, n counts abscissae, and C curves.
+"""
 
 from __future__ import annotations
 

@@ -100,7 +100,7 @@ class MeasuredFrequencies(ReadOnlyArrays):
 
     @property
     def allowance(self) -> np.ndarray:
-        """Tolerance of each value [Hz]: half a unit of the last digit plus twice the uncertainty: (S, m)."""
+        """Tolerance of each value [Hz]: half a unit of the last digit plus twice the uncertainty."""
         return self.rounding + 2 * np.nan_to_num(self.uncertainty)
 
 

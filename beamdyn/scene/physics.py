@@ -1,6 +1,7 @@
 """Physical effects that a model includes beyond the slender beam that bends in one plane.
 
-Loads at the tip and springs, at the root and along the beam, are checked against them.
+Loads at the tip, and springs at the root and along the beam, are refused if the model with these effects
+cannot represent them.
 """
 
 from __future__ import annotations

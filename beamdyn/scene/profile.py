@@ -156,12 +156,12 @@ class Profile(FieldsOnly):
         return _of_series(self.breakpoints, inner)
 
     def derivative(self) -> Profile:
-        """Differentiate the property by x/L on each segment; jumps are left out."""
+        """Differentiate the property with respect to x/L on each segment; jumps are left out."""
         series = legendre.legder(self.series) if self.degree else np.zeros_like(self.series)
         return _of_series(self.breakpoints, 2 / np.diff(self._ends) * series)
 
     def stepped(self, xi: np.ndarray, steps: np.ndarray) -> Profile:
-        """Add a step (k,) to the property everywhere inboard of each xi (k,)."""
+        """Add a step for each xi to the property, everywhere inboard of this xi."""
         if not len(xi):
             return self
         parts = self.split(xi.tolist())

@@ -4,6 +4,8 @@ Rows and columns belong to the forces and moments (F1, F2, F3, M1, M2, M3) about
 along it, 2 in the direction of bending and 3 across, in the axes of the section, which the twist turns.  The
 stiffness gives them by stretch, the shears, twist rate and the curvatures about 2 and 3; the mass matrix,
 per length, by accelerations.
+
+In shapes of arrays, n and N count sections.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ from beamdyn.steady.harvest import ElectricLines, Harvest, electrodes_of, harves
 from beamdyn.steady.response import steady_response
 from beamdyn.steady.road_harvest import check_road, harvest_on_road
 
-_DECADES = 4.0  # number of decades of resistance that are tried first, on either side of 1/(omega C)
+_DECADES = 4.0  # decades of resistance that are tried first, either side of 1/(omega capacitance)
 _WIDTH, _HEIGHT = 7.5, 4.8  # width and height of the picture [inch]
 _DIGITS = 6  # largest number of digits of a resistance
 # Relative error of the resistance over that of the power: up to 1 in 16 cases with 1 to 5 modes.

@@ -141,7 +141,7 @@ class Crossings(StatesModelError, Sequence[Crossing]):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of each crossing's speed by the effects left out of the model, shape (k,)."""
+        """Changes of each crossing's speed by the effects left out of the model."""
         if not self.crossings:
             return nothing_known(self.scene)
         speeds, modes = np.array([c.speed for c in self]), self.frequency.shape[1]
@@ -214,5 +214,5 @@ def left_out_of_crossings(
 
 
 def _nearest(eigenvalue: np.ndarray, frequency: np.ndarray) -> np.ndarray:
-    """Find the indices (k, 2) of eigenvalues (k, m) nearest to angular frequencies (k, 2)."""
+    """Find, at each of k crossings, which of m eigenvalues (k, m) are nearest to two frequencies (k, 2)."""
     return np.abs(np.imag(eigenvalue)[:, None, :] - frequency[:, :, None]).argmin(axis=2)

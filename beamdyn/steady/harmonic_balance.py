@@ -15,6 +15,8 @@ without damping, there is one equation for each harmonic h of each mode a:
 The coupling by the periodic coefficients and by damping is weak beside the factor on the left, except near
 a resonance.  So the equations are solved iteratively, with the last response on the right-hand side: each
 iteration multiplies the error by the ratio of coupling to factor, some 1e-3, and a few reach rounding error.
+
+In shapes of arrays, H counts harmonics, n coordinates, S speeds, and N samples of a phase.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Harvested power over speed, with voltage, layer strain and efficiency, in the steady response."""
+"""Harvested power over speed, with voltage, layer strain and efficiency, in the steady response.
+
+In shapes of arrays, S counts speeds, and L spectral lines.
+"""
 
 from __future__ import annotations
 

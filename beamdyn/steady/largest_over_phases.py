@@ -2,6 +2,8 @@
 
 The sum is sampled at as many phases as its strong lines need; the largest maxima of the samples are refined
 by Newton's method with all lines.
+
+In shapes of arrays, S counts sums, H lines, d components, N samples, and R maxima.
 """
 
 from __future__ import annotations

@@ -5,6 +5,8 @@
 The harmonic (j, k) is the part that varies as exp(i (j theta + k chi)).  The coefficients are trigonometric
 polynomials, so that an FFT of a few samples gives their harmonics exactly.  At steady speed the phases are
 the angle theta of rotation and chi = kappa theta + const of the road, with `road_multiple` kappa.
+
+In shapes of arrays, S counts speeds, n coordinates, H harmonics, and N samples of a phase.
 """
 
 from __future__ import annotations
@@ -20,7 +22,7 @@ from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.scene.motion import Line, Motion, MotionSample, SteadyRotation
 from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 
-Pair = tuple[int, int]  # harmonic (j, k)
+Pair = tuple[int, int]  # harmonic (j, k): j of rotation, k of the road
 
 _EPS = np.finfo(float).eps
 # Attributes of motions that have a steady state.

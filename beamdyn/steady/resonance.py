@@ -1,4 +1,7 @@
-"""Resonance speeds, at which an excitation line equals a natural frequency."""
+"""Resonance speeds, at which an excitation line equals a natural frequency.
+
+In shapes of arrays, S counts speeds, and m modes.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Steady response over speed, by harmonic balance in the phases of rotation and road."""
+"""Steady response over speed, by harmonic balance in the phases of rotation and road.
+
+In shapes of arrays, S counts speeds, k speeds at which the model error is computed, and l spectral lines.
+"""
 
 from __future__ import annotations
 
@@ -81,7 +84,7 @@ class SteadyResponse(StatesModelError):
         Error of the growth rate [1/s]: for resonant modes by harmonics left out and phases not tried; for
         others the second-order shift by the periodic coefficients.
     error : ndarray, shape (S,)
-        Estimated truncation error of the harmonics, relative to the bound.
+        Estimated truncation error of the harmonics, relative to `bound`.
     lines : tuple of Line, length l
         Spectral lines (frequencies) of the response, named by their excitation.
     line_frequency : ndarray, shape (S, l)
@@ -161,7 +164,7 @@ class SteadyResponse(StatesModelError):
 
     @cached_property
     def mode_error(self) -> np.ndarray:
-        """Estimated modal truncation error, relative to the bound, (S,): twice the distance from `refined`.
+        """Estimated modal truncation error per speed, relative to `bound`: twice the distance from `refined`.
 
         The error is inf where only one of the two has a steady response, or if there is no larger model.
         """
@@ -255,12 +258,12 @@ def steady_response(
         modes at the slowest and at the fastest speed: the smallest modal basis whose truncation error meets
         the tolerance.
     harmonics : int, optional
-        Number of interactions with the periodic stiffness whose lines are kept: 0 keeps the lines of the
-        load, 1 also those that their product with the stiffness adds, and so on.  If not given, as many
+        Number of interactions with the periodic stiffness whose spectral lines are kept: 0 keeps the lines of
+        the load, 1 also those that their product with the stiffness adds, and so on.  If not given, as many
         as the tolerance needs, up to 5.
     tolerance : float
         Target of the truncation error of the harmonics, and with ``modes="auto"`` also the modal
-        truncation error, each relative to the bound.
+        truncation error, each relative to `SteadyResponse.bound`.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
 
@@ -376,7 +379,7 @@ class ResponseRequest(FieldsOnly):
         return refine(first, finer, lambda found: not (found.mode_error > self.tolerance).any())
 
     def smallest_basis(self) -> ModalBasis:
-        """Choose a basis of modes at the slowest and fastest speed; about equilibria, at each speed."""
+        """Choose the first basis: modes at the slowest and fastest speed; of a bent beam, at each speed."""
         if self.scene.physics.large_deflection:
             return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
         speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)

@@ -86,7 +86,7 @@ def harvest_on_road(
     amplitude: np.ndarray,
     compared: bool = True,
 ) -> tuple[RoadHarvest, list[str]]:
-    """Compute the harvest on a random road at speeds (S,) with stable motion, and warnings.
+    """Compute the harvest on a random road at S speeds with stable motion, and warnings.
 
     Unless it is `compared` with other models, its errors are nan, and there are no warnings about the road.
 

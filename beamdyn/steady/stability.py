@@ -14,6 +14,8 @@ the axis.  Without damping, discs that are far from others are drawn smaller fir
 coordinates.  Only where discs still overlap are the eigenvalues computed: with the harmonics h of the
 overlaps and (0, 0), between which the motion resonates, and those that some interactions with the periodic
 coefficients add on all sides.  Their number grows until the growth rate settles.
+
+In shapes of arrays, S counts speeds, n coordinates, m eigenvalues of the mean equations, and H harmonics.
 """
 
 from __future__ import annotations
@@ -317,7 +319,10 @@ class _Resonance:
         return float(rates.max()), float(errors.max() + _BETWEEN_PHASES * np.ptp(rates))
 
     def _growth_rate_at(self, phase: float, scale: float) -> tuple[float, float]:
-        """Compute growth rate and error [1/s] at a phase, with as many harmonics as convergence needs."""
+        """Compute the growth rate and its error [1/s] at a given phase between commensurate rates.
+
+        Harmonics are added until the growth rate settles; `scale` is that of `growth_rate`.
+        """
         hill, inner = self._hill_matrix(1, phase)
         s, z = np.linalg.eig(hill.toarray())
         rate, near, error = *self._select(s, z, inner, scale), np.inf

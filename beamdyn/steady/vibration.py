@@ -4,6 +4,8 @@ A straight beam has the same equations at all speeds.  With large deflection, th
 equilibrium to which rotation bends it: its equations at each speed are linear about the equilibrium there, in
 the modes of small vibration about it.  The lines of the tip's deflection have as many harmonics as each speed
 needs.
+
+In shapes of arrays, S counts speeds, n coordinates, d directions, and H harmonics.
 """
 
 from __future__ import annotations

@@ -112,7 +112,7 @@ class AnswerArrays:
 
     @property
     def status(self) -> np.ndarray:
-        """Statuses of all results, as text: shape (N, S, k)."""
+        """Statuses of k results of N designs at S speeds, as text: shape (N, S, k)."""
         return np.array([*self._words] or [""])[self._codes]
 
     def count(self, word: str) -> int:

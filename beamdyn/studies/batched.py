@@ -2,6 +2,8 @@
 
 Designs are solved together in bases of increasing size; each design in the smallest basis that would be
 chosen if it were solved alone.
+
+In shapes of arrays, N counts designs, R designs solved together, S speeds, and k modes.
 """
 
 from __future__ import annotations
@@ -51,7 +53,7 @@ class BasisAnswers:
     met: np.ndarray
 
 
-# Function that solves the designs with given indices (R,) in a basis.
+# Function that solves the designs with given indices in a basis.
 Solve = Callable[[np.ndarray, Discretization], BasisAnswers]
 
 

@@ -1,6 +1,8 @@
 """Results of designs that are analysed one at a time, and the changes by neglected effects.
 
 For steady responses, all speeds of a design are solved at once.
+
+In shapes of arrays, S counts speeds of a design, k results at each, and N designs.
 """
 
 from __future__ import annotations

@@ -187,7 +187,7 @@ def _excited(
 
 
 def _kind_of(name: str, values: np.ndarray) -> np.ndarray:
-    """Classify values (N,) of an angle or of gravity by which components are zero."""
+    """Classify values of an angle by which of its cosine and sine are zero, and gravity by whether it is."""
     if name == "model.gravity":
         return values != 0
     return (np.abs(np.cos(values)) > 1e-15) * 2 + (np.abs(np.sin(values)) > 1e-15)

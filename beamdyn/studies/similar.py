@@ -15,6 +15,8 @@ bending angle psi.  They are interpolated between the extremes of all designs.  
 must be a valid scene, but a moment of inertia could then exceed the sum of the other two.  So the tip body's
 second moments of mass are combined instead: moments of inertia are sums of two of them, and any nonnegative
 values belong to a possible body.
+
+In shapes of arrays, N counts designs, S speeds, R selected designs, and T scenes at combinations of extremes.
 """
 
 from __future__ import annotations

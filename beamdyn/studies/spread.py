@@ -42,7 +42,7 @@ _NONLINEAR = "physics.large_deflection"
 
 
 def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.SpreadInput]) -> KnownDerivatives:
-    """Compute the derivatives of a result by inputs, where the equations of motion provide them.
+    """Compute the derivatives of a result with respect to inputs, where the equations of motion give them.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ class SceneSpread(Spread, StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the nominal design's results by each neglected effect: shape (k,)."""
+        """Changes of the nominal design's results by each neglected effect."""
         return left_out_of_design(self.question, self.scene, {}) or nothing_known(self.scene)
 
 

@@ -356,7 +356,7 @@ class _Request:
         return found
 
     def _task(self, rows: slice, at: slice) -> SimilarTask | SingleDesigns:
-        """Build a task for some designs, each with some of its speeds (R, S) [rad/s]."""
+        """Build a task for some designs, each with some of its speeds."""
         columns = self._columns(rows)
         if self.together:
             assert self.own_speeds is not None
@@ -408,7 +408,7 @@ class _Request:
     # Results ----------------------------------------------------------------------------------------
 
     def in_order(self, values: np.ndarray) -> np.ndarray:
-        """Arrange results (N, S, k) in the order of the inputs."""
+        """Arrange k results of N designs at S speeds, (N, S, k), in the order of the inputs."""
         if self.own_speeds is None or self.designs.combine == "zip":
             return values
         place = [each.name for each in self.designs.inputs].index(SPEED)

@@ -1,4 +1,7 @@
-"""Result of a study: one kind of quantity over combinations of inputs."""
+"""Result of a study: one kind of quantity over combinations of inputs.
+
+In shapes of arrays, m counts results of a design, and p designs whose model error is computed.
+"""
 
 from __future__ import annotations
 

@@ -9,6 +9,9 @@ after its jumps.  So no time step has to be solved again.  Where the stiffness o
 mean, the modes are coupled: the motion of all others exerts a force on each, which is taken from the previous
 pass.
 
+In shapes of arrays, n counts coordinates of the larger model, m those in the run, N times, and k functions of
+time that multiply stiffness matrices.
+
 References
 ----------
 Bender, Orszag, Advanced Mathematical Methods for Scientists and Engineers, 1978, section 10.1.
@@ -107,13 +110,13 @@ class _Residual:
         return np.linalg.eigh((values.mean(axis=0) @ flat).reshape(self.larger.size, -1))
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Evaluate the residual (N, n) for N root motions, coordinates and velocities (N, m) of the run."""
+        """Evaluate the residual (N, n), for the root's motion, coordinates and velocities (N, m) of a run."""
         loads = [getattr(root, name)[:, None] for name in self.larger.equations.vectors]
         parts = [*loads, *(k[:, None] * q for k in self.values(root).T), v]
         return np.concatenate(parts, axis=1) @ self.factors
 
     def load(self, root: RootMotion) -> np.ndarray:
-        """Evaluate the residual that the undeflected beam leaves under N root motions: shape (N, n)."""
+        """Evaluate the residual (N, n) of the undeflected beam in the larger model, for the root's motion."""
         loads = np.stack([getattr(root, name) for name in self.larger.equations.vectors], axis=1)
         return loads @ self.factors[: loads.shape[1]]
 

@@ -1,4 +1,8 @@
-"""Equations of motion of a beam in large three-dimensional bending, in modal coordinates, at given times."""
+"""Equations of motion of a beam in large three-dimensional bending, in modal coordinates, at given times.
+
+In shapes of arrays, n counts coordinates, T times, N Gauss points, k positions along the beam, and l across
+it.
+"""
 
 from __future__ import annotations
 
@@ -140,9 +144,10 @@ class BeamInSpaceSystem:
     def tangents(
         self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray
     ) -> np.ndarray:
-        """Compute derivatives (3, s, n, n) of a residual (s, n) by coordinates, rates and accelerations.
+        """Compute derivatives of a residual (s, n) with respect to coordinates, rates and accelerations.
 
-        They are computed by finite differences, which are exact for rates and accelerations: the residual is
+        Their shape is (3, s, n, n).  They are computed by finite differences, which are exact for rates and
+        accelerations: the residual is
         quadratic in the rates and linear in the accelerations.  For coordinates they are approximate, which
         suffices for Newton's method.
         """

@@ -61,7 +61,7 @@ def chebyshev_coefficients(values: np.ndarray) -> np.ndarray:
 
 @cache
 def _to_coefficients(points: int) -> np.ndarray:
-    """Build the matrix (P, P) from values at the extrema of a Chebyshev polynomial to coefficients."""
+    """Build the matrix from P values at the extrema of a Chebyshev polynomial to P coefficients."""
     return np.linalg.inv(polynomials(extrema(points), points))
 
 
@@ -71,5 +71,5 @@ def extrema(points: int) -> np.ndarray:
 
 
 def polynomials(x: np.ndarray, count: int) -> np.ndarray:
-    """Evaluate the first `count` Chebyshev polynomials at x (N,) in [-1, 1]: shape (N, count)."""
+    """Evaluate the first `count` Chebyshev polynomials at N points x in [-1, 1]: shape (N, count)."""
     return np.cos(np.arccos(np.clip(x, -1, 1))[:, None] * np.arange(count))

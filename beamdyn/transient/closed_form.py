@@ -5,6 +5,9 @@ are sums of a few harmonics.  So the motion consists of a forced part, at sums o
 those of e, and of free vibrations exp(lambda t) times such sums (Floquet; Hill's method).  Both follow by
 iteration, because e is small.  The residual of the equations is measured, and decides whether the result
 is used.
+
+In shapes of arrays, n counts coordinates, N times or steps, s nodes in a step, and k exponents or
+frequencies.
 """
 
 from __future__ import annotations

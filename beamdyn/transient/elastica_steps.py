@@ -8,6 +8,8 @@ numerical damping, so that energy does not drift.
 A second run uses the same steps with two more stages, so that its order is higher by four.  The difference
 between the runs is the accumulated error of the first.  The second run is the result; its own error is far
 smaller.
+
+In shapes of arrays, n counts coordinates, N steps, and s nodes in each.
 """
 
 from __future__ import annotations
@@ -65,7 +67,7 @@ _CHECKED = 48  # number of steps of a segment at which the interpolation error i
 
 
 def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
-    """Build the path of a beam that stays at rest, if forces on it are in equilibrium at all times."""
+    """Build the motion of a beam that stays at rest, if its forces are in equilibrium at all times."""
     q, v = np.split(y0[None], 2, axis=1)
     if system.motion.steady_start > 0 or v.any():
         return None

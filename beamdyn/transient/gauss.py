@@ -5,6 +5,8 @@ invariants are kept), stable at any step size.  Since the system is linear, the 
 assembled and solved as one batch of affine maps, and only the product of the maps with the state
 is sequential.  `propagate` integrates in equal steps.
 
+In shapes of arrays, n counts coordinates, N steps, m columns of the maps, and d outputs.
+
 References
 ----------
 Hairer, Lubich, Wanner, Geometric Numerical Integration, 2006, sections II.1.3 and IV.2.1.

@@ -96,7 +96,7 @@ class _Start(NamedTuple):
 
 
 def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
-    """Build the path of a beam at rest, if the equations are constant and the forces in equilibrium."""
+    """Build the motion of a beam at rest, if the equations are constant and the forces in equilibrium."""
     system, y0, t_end, tolerance = start
     if system.motion.steady_start > 0:
         return None

@@ -240,7 +240,7 @@ class TransientProblem(FieldsOnly):
 
 
 def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
-    """Build the initial state (2 n,): "rest", "equilibrium", or a given array.
+    """Build the initial state, coordinates and velocities: "rest", "equilibrium", or a given array.
 
     Raises
     ------
@@ -274,7 +274,7 @@ def _equilibrium(system: ModalSystem) -> np.ndarray:
 
 
 def _bent_equilibrium(system: BeamInSpaceSystem) -> np.ndarray:
-    """Compute coordinates (n,) in static equilibrium under loads at time 0, on the scene's branch.
+    """Compute the coordinates in static equilibrium under loads at time 0, on the scene's branch.
 
     The solution is continued from the unloaded beam.  The parameter is the squared speed, and all other
     loads, such as gravity, grow in proportion; for a beam that does not rotate, the parameter is the fraction

@@ -6,6 +6,8 @@ mean square, where s is the number of stages.  The remainder is orthogonal to al
 As the response of a mode over a step is nearly such a polynomial, the remainder hardly changes the state at
 the ends of the steps.  Its effect on the deflection between step ends is part of the error estimate
 (`time_error`).
+
+In shapes of arrays, N counts steps, and s nodes in each.
 """
 
 from __future__ import annotations

@@ -55,7 +55,7 @@ class RootStrain:
         return cls(system, root_moment(scene, discretization, system.equations), strain_per_moment(scene))
 
     def at(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Evaluate the strain at times t [s] (T,), with coordinates q and velocities v (T, n): (T,)."""
+        """Evaluate the strain at T times t [s], with n coordinates q and velocities v (T, n): shape (T,)."""
         return self.per_moment * self.moment.at(self.system.root(t), q, v)
 
     def time_error(self, path: Path, of_tip: float) -> float:

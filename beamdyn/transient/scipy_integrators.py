@@ -1,6 +1,8 @@
 """Time integration by `scipy.integrate.solve_ivp`, and Gauss collocation with error control as its method.
 
 This is a module of its own because importing `scipy.integrate` takes longer than many simulations.
+
+In shapes of arrays, n counts coordinates, and k times.
 """
 
 from __future__ import annotations
@@ -40,12 +42,12 @@ class SolveIvpPath:
 
     @property
     def start(self) -> float:
-        """Time at the beginning of the path [s]."""
+        """Time at the beginning of the computed motion [s]."""
         return float(self.times[0])
 
     @property
     def end(self) -> float:
-        """Time at the end of the path [s]."""
+        """Time at the end of the computed motion [s]."""
         return float(self.times[-1])
 
     @property

@@ -137,7 +137,7 @@ class Sweep(StatesModelError):
 
     @property
     def peak_error(self) -> np.ndarray:
-        """Estimated error of `peaks` and `largest` [m], by time integration and modal truncation, (S,)."""
+        """Estimated error of `peaks` and `largest` [m] by time integration and modal truncation, by speed."""
         with np.errstate(invalid="ignore"):
             of_modes = np.where(self.largest == 0, 0.0, self.mode_error * self.largest)
         return self.time_error + of_modes
@@ -159,7 +159,7 @@ class Sweep(StatesModelError):
         return left_out_of_transient(run.request, run.solution, self.window).at(np.newaxis)
 
     def is_warned(self, tolerance: float) -> np.ndarray:
-        """Return for each speed whether a warning applies, (S,), given the tolerance of the runs."""
+        """Return for each speed whether a warning applies, given the tolerance of the runs."""
         if any(warn_of_missed_modes(self.mode_error, tolerance, "")):
             return np.ones(len(self.speeds), dtype=bool)
         return np.array([any(_warnings(self._at(i), tolerance)) for i in range(len(self.speeds))])

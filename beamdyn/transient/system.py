@@ -1,4 +1,7 @@
-"""Equations of motion of a scene in modal coordinates, evaluated at given times for the integrators."""
+"""Equations of motion of a scene in modal coordinates, evaluated at given times for the integrators.
+
+In shapes of arrays, n counts coordinates, T times, k positions along the beam, and l across it.
+"""
 
 from __future__ import annotations
 

@@ -2,6 +2,8 @@
 
 With equal steps, some steps of each segment are solved again; steps that span many samples are solved again
 from sample to sample.
+
+In shapes of arrays, n counts coordinates, k steps, and d components.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Trajectories: coordinates over time, and the largest tip deflection during a motion."""
+"""Trajectories: coordinates over time, and the largest tip deflection during a motion.
+
+In shapes of arrays, n counts coordinates, and k times.
+"""
 
 from __future__ import annotations
 
@@ -41,12 +44,12 @@ class Path(Protocol):
 
     @property
     def start(self) -> float:
-        """Time at the beginning of the path [s]."""
+        """Time at the beginning of the motion [s]."""
         ...
 
     @property
     def end(self) -> float:
-        """Time at the end of the path [s]."""
+        """Time at the end of the motion [s]."""
         ...
 
     @property
@@ -207,12 +210,12 @@ def sample_tip(system: AnySystem, path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def magnitude_of(deflections: np.ndarray) -> np.ndarray:
-    """Compute the magnitude (...) of deflections given in each direction (..., 1 or 2)."""
+    """Compute magnitudes, shape (...), of deflections given in each direction, shape (..., 1 or 2)."""
     return np.hypot.reduce(np.abs(np.moveaxis(deflections, -1, 0)))
 
 
 def in_direction(deflections: np.ndarray, direction: int) -> np.ndarray:
-    """Select the deflection (...) in one direction from (..., 1 or 2); 0 if the direction is not modelled."""
+    """Select deflections in one direction from those in each, (..., 1 or 2); 0 if it is not modelled."""
     if direction >= deflections.shape[-1]:
         return np.zeros(deflections.shape[:-1])
     return deflections[..., direction]

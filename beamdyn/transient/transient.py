@@ -203,7 +203,7 @@ class Transient(StatesModelError):
         return self.path.at(self._times_in_run(t))
 
     def _times_in_run(self, t: np.ndarray | Sequence[float] | float) -> np.ndarray:
-        """Convert times to an array of shape (T,); a ValueError if one is not finite or outside the run."""
+        """Convert times to an array with one axis; a ValueError if one is not finite or outside the run."""
         t = real_array("t", t if np.iterable(t) else [t])  # pyright: ignore[reportArgumentType]
         if t.size and not (t.min() >= self.path.start and t.max() <= self.path.end * (1 + 1e-12)):
             raise ValueError(f"t: times must lie in the run, from {self.path.start:g} to {self.path.end:g} s")

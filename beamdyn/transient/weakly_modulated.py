@@ -5,6 +5,9 @@ and K depend on the speed.  With e = 0 the maps of the steps are smooth function
 interpolated between a few steps by Chebyshev polynomials; at steady speed one step represents all.  The
 effect of e follows from a power series in the values of e at the nodes, up to the second order.  So no step
 needs a factorisation of its own, and the maps of many steps are one product of matrices.
+
+In shapes of arrays, N counts steps, n coordinates, s nodes in a step, m the factors e, l the factors g, p
+Chebyshev polynomials, and P the steps between which maps are interpolated.
 """
 
 from __future__ import annotations

@@ -163,7 +163,7 @@ class RubbingType(ArrayBrakeType[FileModel]):
 
 
 def heat_outputs(design: Any) -> tuple[Output, ...]:
-    """Describe the outputs of repeated stops; none if the file has no heat."""
+    """Describe the outputs on repeated stops; none if the file has no data for heating."""
     return () if design.heat is None else tables.take_from(lambda answer: answer.fade, HEAT)
 
 

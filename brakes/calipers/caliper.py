@@ -121,7 +121,7 @@ class Caliper:
             ) from None
 
     def _pads(self, travel: dict[str, np.ndarray]) -> np.ndarray:
-        """Order the travels of the two pads, shape (S, 2), positive towards the rim."""
+        """Order the travels of the two pads at S positions, shape (S, 2), positive towards the rim."""
         return -np.stack([travel[name] for name in self.pads], axis=-1)
 
     # Forces -----------------------------------------------------------------------------------------

@@ -1,4 +1,7 @@
-"""Results of a bicycle caliper: over its stroke, with friction in the pivots, and with worn pads."""
+"""Results of a bicycle caliper: over its stroke, with friction in the pivots, and with worn pads.
+
+In shapes of arrays, S counts positions of the stroke.
+"""
 
 from __future__ import annotations
 

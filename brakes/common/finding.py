@@ -179,11 +179,11 @@ class _Answers:
     reason: Callable[[float], str] | None
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
-        """Compute the answers to inputs of shape (n,); nan where there is none."""
+        """Compute the answer to each input; nan where there is none."""
         return self._with_refusals(x)[0]
 
     def there(self, x: np.ndarray) -> np.ndarray:
-        """Return for inputs of shape (n,) whether each of them has an answer."""
+        """Return whether each input has an answer."""
         return np.isfinite(self(x))
 
     def why(self, x: float) -> str:
@@ -346,7 +346,7 @@ def _unrounded(pieces: Sequence[Curve], target: float, rounding: float) -> float
 
 
 def _level(pieces: Sequence[Curve], target: float) -> np.ndarray:
-    """Find the ranges of inputs, shape (r, 2), over which the answer is level at the wanted value."""
+    """Find the ranges of inputs, one in each row, over which the answer is level at the wanted value."""
     ends = [x[[0, -1]] for x, y in pieces if step(y[0], y[-1]) == 0 == step(y[0], target)]
     return np.array(ends).reshape(-1, 2)
 

@@ -275,7 +275,7 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeRe
     bracket_error = i.n_error + mu * i.d_error + _EPS * (n + mu * np.abs(d))
     locked = (limit < np.inf) & (n + s * mu * d <= np.maximum(LEAST_MARGIN * n, bracket_error))
     bracket = np.where(locked, np.nan, n + s * mu * d)
-    load = force * arm / bracket  # A p0
+    load = force * arm / bracket  # peak pressure times the area that it acts on
     normal = _turn(load[..., None] * _vector(-i.S, i.C), shoe.phase)
     tangential = _turn((s * mu * load)[..., None] * _vector(i.C, i.S), shoe.phase)
     pin = -(normal + tangential)

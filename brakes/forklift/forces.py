@@ -267,7 +267,7 @@ def _solve_trailing_share(levers: Levers, P_T: np.ndarray, T: np.ndarray) -> np.
 def _share_equation(
     levers: Levers, P_T: np.ndarray, T: np.ndarray, u: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute f(u) of the module's docstring [N], and its derivative by u [N]."""
+    """Compute f(u) of the module's docstring [N], and its derivative with respect to u [N]."""
     Q, P_L, R_L, R_T = _forces_at_share(levers, P_T, T, u)
     dQ = T / levers.b2
     dP = (dQ * levers.b1 - T) / levers.a1
@@ -403,7 +403,7 @@ def equilibrium_equations(
 
 
 def _c_star_slope(levers: Levers, P_T: Numbers, mu: np.ndarray, P_L: np.ndarray, Q: np.ndarray) -> np.ndarray:
-    """Compute the derivative of the brake factor C* by the friction.
+    """Compute the derivative of the brake factor C* with respect to friction.
 
     It differentiates Q b2 - P_T a2 = s R_T and P_L a1 - Q b1 = s R_L by s, symbols as in this module.
     """

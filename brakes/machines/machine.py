@@ -318,7 +318,7 @@ def _locks(lining: Lining) -> Numbers:
 
 
 def _torque_per_force(brake: Machine, mu: Numbers, reverse: bool, locked: Numbers) -> tuple[Any, Any]:
-    """Compute torque per actuating force, and its derivative by friction [m]; nan if the brake locks."""
+    """Compute torque per actuating force and its slope over friction [m]; nan if the brake locks."""
     stepped = brake.linings(np.asarray(mu) + 1j * _STEP, reverse).values()
     gain = sum(each.share * each.torque / np.where(locked, 1.0, each.force) for each in stepped)
     # Without friction the result would be only rounding error of the complex step.

@@ -1,4 +1,7 @@
-"""Equilibrium at the onset of motion, with Coulomb friction in pivots, slots and contacts."""
+"""Equilibrium at the onset of motion, with Coulomb friction in pivots, slots and contacts.
+
+In shapes of arrays, S counts positions, F joints with friction, and n bodies.
+"""
 
 from __future__ import annotations
 
@@ -159,7 +162,7 @@ def _branch(
         )
     if not words:
         return result
-    # A cable that would have to push is the locking load, which is already reported.
+    # If only the locking load is a cable that would have to push, `words` already say so.
     if set(result.open_or_slack) - {name}:
         return replace(result, message=joined("; ", (result.message, *words)))
     return replace(result, status="self-locking", message="; ".join(words))
@@ -254,7 +257,7 @@ def _newton(
 def _friction(
     system: System, balance: Balance, multiplier: np.ndarray, law: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Set the friction rows; return the residual of equilibrium, and its derivative by the unknowns."""
+    """Set the friction rows; return the residual of equilibrium and its Jacobian in the unknowns."""
     slope = balance.matrix.copy()
     largest = np.abs(multiplier).max(axis=1, keepdims=True)
     for k, (row, normal) in enumerate(zip(system.friction.values(), system.pressing, strict=True)):

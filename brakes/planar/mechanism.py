@@ -1,6 +1,8 @@
 """A planar mechanism, made of bodies, joints and loads, and the positions of its bodies.
 
 The curve of positions of a mechanism with one degree of freedom is found by pseudo-arclength continuation.
+
+In shapes of arrays, S counts positions and n bodies, which have 3 coordinates each.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Base classes of joints and loads: inputs, rows and drawings, and how to write a new kind."""
+"""Base classes of joints and loads: inputs, rows and drawings, and how to write a new kind.
+
+In shapes of arrays, S counts positions.
+"""
 
 from __future__ import annotations
 

@@ -9,6 +9,8 @@ on the bodies, for a unit multiplier (of a joint) or a unit magnitude (of a load
   columns after its index;
 - `constant`: the part of its value that does not depend on the position, with lengths over the mechanism's;
 - `effects`: forces and couples on a body for a size of the row, for free-body diagrams.
+
+In shapes of arrays, S counts positions, n bodies, and R rows.
 """
 
 from __future__ import annotations

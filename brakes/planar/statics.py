@@ -1,4 +1,7 @@
-"""Equilibrium of a mechanism: reactions and load magnitudes, or loose bodies and undetermined forces."""
+"""Equilibrium of a mechanism: reactions and load magnitudes, or loose bodies and undetermined forces.
+
+In shapes of arrays, S counts positions, n bodies, and R rows: of joints, loads and friction.
+"""
 
 from __future__ import annotations
 
@@ -250,7 +253,7 @@ def collect_result(
     received = [np.abs((part[:, :, -1] * multiplier).sum(axis=1)) for part in balance.rows[1:3]]
     virtual_work = np.where(constraints.rank == system.size, np.maximum(*received), work) / scale
     kept = forces.kept if regularity is None else regularity
-    missing = unbalanced | jammed | (kept == 0)  # positions without forces, or without unknown forces
+    missing = unbalanced | jammed | (kept == 0)  # positions without a solution, or without unknowns
     error = np.maximum((system.rounding + residual) / np.where(missing, np.nan, kept), virtual_work)
     verdict = _verdict(position, constraints, forces, unbalanced, undetermined, wrong_way.values())
     weak = (
@@ -403,7 +406,7 @@ def _is_held_beside(position: Position, index: int, motion: np.ndarray, rank: in
     system, y = position.mechanism.system, position.batch[[index]]
     try:
         beside = close_joints(system, y + _BESIDE * motion, motion[None])
-    except np.linalg.LinAlgError:  # motions branch here
+    except np.linalg.LinAlgError:  # the motion branches at this position
         return True
     matrix = balance_at(position.mechanism, Position(position.mechanism, beside[0])).matrix
     return int(decompose(matrix, system.rounding).rank[0]) > rank

@@ -4,6 +4,9 @@ Vectors are complex numbers.  Lengths are relative to the centre of the mechanis
 the angle of a body is multiplied by the radius l of its points. So the coordinates y = (x, y, l angle)
 of all bodies are of one order, whatever the unit, place and size of the drawing.  The ground is the last
 body.
+
+In shapes of arrays, S counts positions, n bodies, R rows, and k motions; matrices in general have m rows and
+n columns.
 """
 
 from __future__ import annotations
@@ -213,7 +216,7 @@ class System:
     def place(self, y: np.ndarray, body: str, at: Point) -> np.ndarray:
         """Compute the position [m], shape (S, 2), of a body's point at coordinates y."""
         k = self.bodies[body]
-        if 3 * k == self.size:  # the ground
+        if 3 * k == self.size:  # index of the ground, which does not move
             return np.tile(np.array(at, dtype=float), (len(y), 1))
         # The displacement is added to the drawn position, so that a point far from (0, 0) keeps its digits.
         shift = y[:, 3 * k] + 1j * y[:, 3 * k + 1]
@@ -315,7 +318,7 @@ def _motion(system: System, bodies: int, twist: np.ndarray) -> str:
 
 
 def check_moves(system: System, driver: str, rates: np.ndarray) -> None:
-    """Raise a ValueError if a driver's velocity per unit of motion is zero within rounding."""
+    """Raise a ValueError if a driver's `rates`, relative to the mechanism's, are zero within rounding."""
     margin, least = np.abs(rates).min(), rank_tolerance(system.rounding)
     if margin < least:
         raise ValueError(

@@ -68,7 +68,7 @@ class NewtonResult(Result):
 
 
 def _jacobian(levers: Levers, x: np.ndarray) -> np.ndarray:
-    """Compute the derivatives of `equilibrium_equations` by the unknowns, shape (10, 10)."""
+    """Compute the derivatives of `equilibrium_equations` with respect to the unknowns, shape (10, 10)."""
     r, a1, b1, b2 = levers.drum_radius, levers.a1, levers.b1, levers.b2
     vectors = x[:8].reshape(4, 2)
     A, B, C, D = sizes = np.hypot(*vectors.T)

@@ -50,7 +50,7 @@ def said_over_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, what: str 
 
 
 def between_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, error: np.ndarray) -> np.ndarray:
-    """Interpolate model errors (k,) to all speeds (S,); outside their range, use the nearest value."""
+    """Interpolate model errors at a few speeds to all speeds; outside their range, use the nearest value."""
     known = result.left_out_speeds
     return np.interp(result.speeds, known, error) if len(known) else np.full(len(result.speeds), np.nan)
 
@@ -167,7 +167,7 @@ def _say_largest(model_errors: np.ndarray, lacks_data: bool) -> str:
 
 
 def model_error_at(result: bd.Locus, indices: np.ndarray) -> np.ndarray:
-    """Return the model error (k, m) at speeds with given indices, by linear interpolation."""
+    """Return model errors of m modes at k speeds with given indices, by interpolation: shape (k, m)."""
     each = (between_speeds(result, error)[indices] for error in result.model_error.T)
     return np.stack([*each], axis=1)
 

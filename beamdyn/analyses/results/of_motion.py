@@ -193,7 +193,7 @@ def peaks(values: np.ndarray, prominence: float) -> np.ndarray:
 
 
 def _model_error_of(result: bd.SteadyResponse | bd.Sweep) -> np.ndarray:
-    """Return the model error at each speed (S,); nan if it was not computed."""
+    """Return the model error at each speed; nan if it was not computed."""
     at = np.isin(result.speeds, result.left_out_speeds)
     found = np.full(len(result.speeds), np.nan)
     found[at] = result.model_error if at.any() else np.nan

@@ -5,6 +5,8 @@ grid of small cells; sums over rectangles of cells tell how much of them a candi
 are placed one by one, the most important first, each at its cheapest free candidate.  A label without a free
 candidate takes the place of another label, if that label can move.  Nothing is random: the same drawing gives
 the same places.
+
+In shapes of arrays, n counts labels or other boxes, and k candidates or lines.
 """
 
 from __future__ import annotations

@@ -219,7 +219,7 @@ class Drawing:
 
 
 def points_of_shape(shape: DrawnShape) -> np.ndarray:
-    """Return points (k, 2) along the outline of a shape."""
+    """Return k points (k, 2) along the outline of a shape."""
     if isinstance(shape, Outline):
         return np.asarray(shape.points, dtype=float).reshape(-1, 2)
     if isinstance(shape, Disc):

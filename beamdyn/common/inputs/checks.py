@@ -392,7 +392,7 @@ _UNIQUE, _IN_ORDER = "pass numpy.unique({field})", "give each once, in ascending
 
 
 def ascending(name: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
-    """Return an ascending array of finite floats, shape (n,); a single number gives an array of length 1."""
+    """Return finite floats, ascending, in an array with one axis; a single number gives length 1."""
     array = as_floats(values)
     array = real_array(name, array.reshape(1) if array is not None and not array.ndim else values)
     if not array.size:

@@ -239,7 +239,7 @@ def _check_history(
 def _check_shapes(
     x: np.ndarray, shapes: np.ndarray, labels: Sequence[str], across: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Check deflections of modes (m, n, k), and deflections across the width (m, n); return both."""
+    """Check and return deflections of m modes at n points of k rows, (m, n, k), and across, (m, n)."""
     shapes = _over_width(shapes)
     aside = np.zeros(shapes.shape[:2]) if across is None else np.asarray(across)
     for name, values, places in ("shapes", shapes, shapes.shape[2:]), ("across", aside, ()):
@@ -262,7 +262,7 @@ def _scale(field: np.ndarray, largest: float) -> np.ndarray:
 
 
 def _displacement(deflection: np.ndarray, points: int, across: np.ndarray) -> np.ndarray:
-    """Return displacement vectors of a strip: z from a deflection (n, k), -y from one across the width (n,).
+    """Return displacement vectors of a strip: z from a deflection (n, k), -y from one across (n,).
 
     Rows of points along the beam follow one another from the lowest y; if k is 1, all rows have the same
     deflection.

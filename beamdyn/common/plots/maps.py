@@ -111,7 +111,7 @@ class PlacedLabels(Artist):
 
 
 def _overlap(boxes: np.ndarray, taken: np.ndarray) -> np.ndarray:
-    """Return whether each box (n, 4) overlaps any of the boxes (m, 4) that are already used; shape (n,)."""
+    """Return whether each of n boxes (n, 4) overlaps any of m boxes (m, 4) that are already used."""
     low, high = boxes[:, None, :2], boxes[:, None, 2:]
     each = np.all((low < taken[:, 2:]) & (taken[:, :2] < high), axis=-1)
     return np.asarray(np.any(each, axis=-1))

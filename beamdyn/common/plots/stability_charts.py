@@ -18,7 +18,7 @@ _FEW = 0.6  # size of the marker of a point whose stability is undecided [pt]
 def plot_multipliers(
     multipliers: np.ndarray, error: np.ndarray, sign: np.ndarray, ax: Axes | None = None
 ) -> Axes:
-    """Draw Floquet multipliers (m,) in the complex plane, coloured by Krein sign, with the unit circle."""
+    """Draw Floquet multipliers in the complex plane, coloured by Krein sign, with the unit circle."""
     ax = set_up_axes(ax, "real part of the multiplier", "imaginary part")
     angle = np.linspace(0, 2 * np.pi, 361)
     ax.plot(np.cos(angle), np.sin(angle), color="0.5", linewidth=1.0, label="unit circle")

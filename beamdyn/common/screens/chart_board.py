@@ -81,7 +81,7 @@ class ChartBoard:
         self._writer = writer
         self._made: list[_ShownChart] = []
         self._charts: list[Chart] = []  # charts that the page shows
-        self._shown: list[dict[str, Any]] = []  # options of these charts, without the cursor
+        self._shown: list[dict[str, Any]] = []  # options of the shown charts, without the cursor
         self._sums: list[int] = []  # checksums of each chart's options
         self._column: Any = ui.element("div").classes("w-full charts")
         self._column.props["data-words"] = words

@@ -45,7 +45,7 @@ class Slopes:
     exact: np.ndarray
 
     def replaced(self, rows: Mapping[int, tuple[np.ndarray, np.ndarray]]) -> Slopes:
-        """Return a copy in which some rows are replaced by exact derivatives (k,), if these are finite."""
+        """Return a copy in which some rows are replaced by exact derivatives, if these are finite."""
         value, error, exact = self.value.copy(), self.error.copy(), self.exact.copy()
         for row, (slope, wrong) in rows.items():
             known = np.isfinite(slope)

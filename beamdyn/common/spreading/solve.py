@@ -1,4 +1,7 @@
-"""Effects of tolerances on results, from the results of designs, which the caller's function computes."""
+"""Effects of tolerances on results, from the results of designs, which the caller's function computes.
+
+In shapes of arrays, N counts designs, d inputs, and k results.
+"""
 
 from __future__ import annotations
 

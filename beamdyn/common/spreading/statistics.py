@@ -10,6 +10,8 @@ The designs are: random designs for statistics, the nominal design, and neighbou
 There are two random samples A and B of n designs each.  For each input, a further sample has that input from
 B and all other inputs from A (Saltelli et al., Computer Physics Communications 181 (2010) 259).  A and B are
 points of `BLOCKS` independently scrambled Sobol' sequences.
+
+In shapes of arrays, d counts inputs, k results, and N all designs.
 """
 
 from __future__ import annotations

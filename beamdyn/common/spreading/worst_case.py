@@ -6,6 +6,8 @@ corners and at the most extreme random designs: it tries steps of each input in 
 best one, and halves the steps if none is better (Kolda, Lewis and Torczon, SIAM Review 45 (2003) 385).  It
 ends at a design that no step improves, which may be only a local extreme.  Monotonicity is inferred from
 pairs of random designs; this is no proof.
+
+In shapes of arrays, d counts inputs, c corners, k results, and n or N designs.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ _MOST_TURNING = 6  # largest number of inputs for which all combinations of ends
 _FIRST_STEP, _LAST_STEP = 0.25, 2.0**-11  # first and last step of a search, in widths of the tolerance
 ROUNDING = 1e-12  # relative change of a result below which it counts as unchanged
 
-# A function that returns the results (N, k) of designs (N, d), not finite where there is none, and their
+# A function that returns k results (N, k) of N designs (N, d), not finite where there is none, and their
 # absolute errors (N, k), nan if unknown.
 Answer = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 

@@ -20,7 +20,7 @@ _STRAIGHT = ONE.scaled(0.0)
 
 
 def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the axis' curvature (3, N) [1/m] at the Gauss points, and kinks (quaternions) before cells."""
+    """Compute the axis' curvature (3, N) [1/m] at N Gauss points, and kinks (quaternions) before cells."""
     cells, sweep, prebend = quadrature.cells, beam.sweep or _STRAIGHT, beam.prebend or _STRAIGHT
     at_points = Sampler.on_cells(cells)
     a = at_points(sweep)

@@ -13,7 +13,7 @@ In axes fixed to the carrier, of angular velocity W, a centre of mass c has the 
 and a section of inertia tensor I has the rate of angular momentum I (w. + W. + W x w) + (w + W) x I (w + W).
 
 Arrays over N + 1 + k stations have the N Gauss points of the strains, the tip and the k point masses: see
-`station_forces`.
+`station_forces`.  n counts coordinates.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ class MovingBeam(FieldsOnly):
 
     @cached_property
     def _tangent_rate(self) -> np.ndarray:
-        """Time derivative (..., 3, N) of r', the derivative of the axis' position by arc length."""
+        """Time derivative (..., 3, N) of r', which is the axis' position differentiated along its length."""
         return cross(self._turning[..., :-1], self.bent.tangents) + self._strain_rates[0]
 
     @cached_property
@@ -128,7 +128,7 @@ class MovingBeam(FieldsOnly):
 
     @property
     def energy(self) -> np.ndarray:
-        """Compute the energy integral (...) [J] on a steadily rotating carrier.
+        """Compute the energy integral [J], shape (...), on a steadily rotating carrier.
 
         It is the sum of the kinetic energy relative to the carrier, the elastic energy, and the potential of
         centrifugal forces, of the root's acceleration and of a force of fixed direction at the tip; other tip

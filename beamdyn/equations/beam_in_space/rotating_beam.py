@@ -5,6 +5,9 @@ directions, shear, stretch, torsion); the trial functions of the fields give the
 forces by the root's motion are exact.  The gyroscopic matrix follows from them: let p be the generalized
 inertial force by a unit angular acceleration, and E the derivative of p with respect to the coordinates; the
 gyroscopic matrix per speed is E - E^T.
+
+In shapes of arrays, n counts coordinates, m those in a reduced model, N Gauss points along the beam, and k
+given positions.
 """
 
 from __future__ import annotations
@@ -406,7 +409,7 @@ class DeflectedFunctions(FieldsOnly):
         return self.evaluate(np.ones(1), order)[:, 0] if order else at_tip
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the functions (order 0) or their derivatives by x/L (order 1) at xi (k,): shape (n, k)."""
+        """Evaluate functions (order 0) or their derivatives with respect to x/L (order 1) at xi: (n, k)."""
         if order > 1:
             raise ValueError("only the deflection and its slope follow a deflected beam")
         stations = self.bent.beam.stations

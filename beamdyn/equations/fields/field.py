@@ -1,4 +1,7 @@
-"""Interface of displacement fields: unknown functions along the beam, with terms in the equations."""
+"""Interface of displacement fields: unknown functions along the beam, with terms in the equations.
+
+In shapes of arrays, n counts coordinates, k positions along the beam, and l across it.
+"""
 
 from __future__ import annotations
 
@@ -104,7 +107,7 @@ class SectionFunctions(Protocol):
         ...
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate second derivatives by 2 y/b at x/L (k,), averaged over the width: shape (n, k)."""
+        """Evaluate width means of second derivatives with respect to 2 y/b at x/L (k,): shape (n, k)."""
         ...
 
 

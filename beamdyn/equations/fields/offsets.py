@@ -74,7 +74,7 @@ class SectionMotion:
 
     @property
     def order(self) -> int:
-        """Order of the derivative by x from functions to the motion: 1 for a tilt, 0 otherwise."""
+        """Order of the x derivative from functions to the motion: 1 for a tilt, 0 otherwise."""
         return int(self.rotation in (0, 1))
 
     @cached_property
@@ -282,7 +282,7 @@ class Offsets:
     def _along(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int]
     ) -> np.ndarray:
-        """Integrate a weight times derivatives by x of two sets of functions; integrals are cached."""
+        """Integrate a weight times derivatives of two sets of functions along x; integrals are cached."""
         key = weight, rows, columns, orders
         if key not in self._known:
             scale = self.scene.beam.length ** (1 - sum(orders))
@@ -325,7 +325,7 @@ class Offsets:
                         )
 
     def _carried(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the axis' acceleration on displacements of second order, by rotations."""
+        """Yield matrices for the work of the axis' acceleration on second-order displacements by turning."""
         rotations = [motion for motion in self.motions if motion.rotation is not None]
         for rows, columns in combinations_with_replacement(rotations, 2):
             for quantity, vector, power in self._parametric:
@@ -335,7 +335,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field, columns.field, quantity, 0, found, mirrored)
 
     def _drawn_in(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the axial force as bending and torsion shorten the line of tension centres."""
+        """Yield matrices for the work of the axial force, as motion shortens the line of tension centres."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for trial in self.trials if vector[0] else ():
@@ -347,7 +347,7 @@ class Offsets:
                     yield _CoupledMatrix(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
 
     def _sheared(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of shear forces on the displacement of the axis along the slope of bending."""
+        """Yield matrices of the work of shear forces on the axis' displacement along bending's slope."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for rows, columns in product(self.tilting, repeat=2):
@@ -357,7 +357,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field.name, columns.field.name, quantity, 0, force * matrix)
 
     def _turned(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of the twisting moment, as bending in two directions twists the sections."""
+        """Yield matrices for the work of the twisting moment, as bending both ways twists the sections."""
         for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
             for quantity, vector, power in self._parametric:
                 if (moment := self._outboard(vector @ self.turn.beside, power)) is not None:
@@ -415,5 +415,5 @@ class Offsets:
             yield quantity, motion.on_axis @ matrix, 0
 
     def _load(self, weight: Profile, conditions: RootConditions, order: int) -> np.ndarray:
-        """Integrate a weight times derivatives by x of functions with given root conditions: shape (n,)."""
+        """Integrate a weight times x derivatives of n functions with given root conditions: shape (n,)."""
         return self.spaces.functions(conditions).load(weight, order) * self.scene.beam.length ** (1 - order)

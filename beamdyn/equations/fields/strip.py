@@ -1,4 +1,7 @@
-"""Functions across the width of a strip, and integrals of their products with functions along the strip."""
+"""Functions across the width of a strip, and integrals of their products with functions along the strip.
+
+In shapes of arrays, n counts coordinates, k positions along the strip, and l across it.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,7 @@ class Derivative(NamedTuple):
     factor : Profile
         Factor along the beam.
     order : int
-        Order of the derivative of u_k by x.
+        Order of the derivative of u_k with respect to x.
     across : ndarray, shape (k, q)
         Functions of eta, for each k, at the Gauss points across.
     """
@@ -71,7 +74,7 @@ class WidthFunctions:
         self.field, self.conditions = field, conditions
         eta, _ = gauss_rule(points)
         self.tip, (p, dp, ddp) = _polynomials(tuple(numbers), points)
-        half = _inverse(section.width).scaled(2.0)  # derivative of eta by y
+        half = _inverse(section.width).scaled(2.0)  # derivative of eta = 2 y/width with respect to y
         self.parts = {  # summands of the deflection and of its derivatives
             "w": [Derivative(ONE, 0, p)],
             "w_y": [Derivative(half, 0, dp)],
@@ -233,7 +236,7 @@ class Strip:
         return np.atleast_1d(total)
 
     def stiffness(self, rows: WidthFunctions, columns: WidthFunctions, warping: Profile = ONE) -> np.ndarray:
-        """Compute the stiffness matrix of the plate [N/m]; `warping` scales its bending along the beam."""
+        """Compute the plate's stiffness matrix [N/m]; `warping` is a factor of its stiffness against w_xx."""
         section, EI = self.section, self.scene.beam.bending_stiffness
         D, bend = EI * section.camber_stiffening, self.integrate
         cross = D * _root(warping) * section.camber_ratio
@@ -298,7 +301,7 @@ class StackedSpace:
         return values.reshape(self.size, len(xi), len(eta))
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate second derivatives by eta at x/L (k,), averaged over the width: shape (n, k).
+        """Evaluate width means of second derivatives with respect to eta = 2 y/b at x/L (k,): shape (n, k).
 
         An even Legendre polynomial's second derivative has the mean k(k + 1)/2, its slope at an edge.
         """

@@ -102,7 +102,7 @@ class TurnedSections:
 
     @property
     def corner(self) -> np.ndarray:
-        """Twist of the tip per unit coordinate (n,), which replaces the deflection of the tip's corner."""
+        """Twist of the tip per unit of each coordinate, which replaces the deflection of the tip's corner."""
         return self.along.end(0)
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:

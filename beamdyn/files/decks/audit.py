@@ -54,7 +54,7 @@ class ModePolynomial:
     frequency: float
 
     def lines(self) -> list[str]:
-        """Return the lines of an ElastoDyn blade file for this polynomial."""
+        """Return lines with the coefficients, as in blade files of the wind turbine program ElastoDyn."""
         name, said = (
             SHAPE_NAMES[self.mode],
             f"{self.mode.split()[0].capitalize()} mode {self.mode.split()[1]}",

@@ -81,7 +81,7 @@ def read_main_file(text: DataText, hub_radius: float) -> Blade:
 
 
 def _read_key_points(text: DataText, found: dict[str, NamedValue]) -> tuple[np.ndarray, list[int]]:
-    """Read coordinates [m] and twist [deg] of the key points, shape (k, 4), and their line numbers."""
+    """Read coordinates [m] and twist [deg] of k key points, shape (k, 4), and their line numbers."""
     count = named_count(text, found["kptotal"], least=3)
     heads = ("kpxr", "kpyr", "kpzr", "initialtwist")
     at = [n for n in range(1, len(text.lines) + 1) if [*map(plain_name, text.words(n)[:4])] == [*heads]]
@@ -133,7 +133,7 @@ def _check_line(text: DataText, points: np.ndarray, lines: Sequence[int]) -> Non
 
 
 def _angles_of_line(points: np.ndarray, members: Sequence[slice]) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Compute arc length [m] (n,), twist, sweep and prebend [deg] at many points of the reference line."""
+    """Compute arc length [m], twist, sweep and prebend [deg] at n points of the reference line."""
     lengths, found = [np.zeros(1)], []
     for member in members:
         own = points[member]
@@ -215,12 +215,12 @@ def read_blade_file(text: DataText, length: float, hub_radius: float) -> Blade:
 
 
 def _to_ours(matrices: np.ndarray) -> np.ndarray:
-    """Convert matrices (n, 6, 6) from the order and axes of BeamDyn to those of this package."""
+    """Convert n matrices (n, 6, 6) from the order and axes of BeamDyn to those of this package."""
     return _SIGNS[:, None] * matrices[:, _ROWS][:, :, _ROWS] * _SIGNS
 
 
 def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], list[np.ndarray]]:
-    """Read stations (n,), their line numbers, and two matrices (n, 6, 6), in the order of the file."""
+    """Read n stations, their line numbers, and two matrices (n, 6, 6), in the order of the file."""
     heads = [n for n, line in enumerate(text.lines, 1) if "distributedproperties" in plain_name(line)]
     if not heads:
         raise text.lacking("expected a line DISTRIBUTED PROPERTIES above the stations")

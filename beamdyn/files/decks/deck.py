@@ -240,7 +240,7 @@ def _needed(
     needed = {"length": length, "hub_radius": hub_radius}
     for name, value in given.items():
         if value is not None and not needed[name]:
-            raise InvalidValue(name, value, f"{text.path.name} says it", "leave it out", "m")
+            raise InvalidValue(name, value, f"{text.path.name} already gives it", "leave it out", "m")
     if missing := [name for name in needed if needed[name] and given[name] is None]:
         words = {"length": "the length of the blade", "hub_radius": "the radius of the hub"}
         names, unsaid = " and ".join(missing), " nor ".join(words[name] for name in missing)

@@ -2,6 +2,8 @@
 
 A curve of solutions of r(q, p) = 0 is computed in steps of its arc length, measured by the beam's slope
 angles and by the parameter over its scale (Keller's pseudo-arclength method).
+
+In shapes of arrays, n counts coordinates, and k positions along the beam or points of the curve.
 """
 
 from __future__ import annotations
@@ -81,7 +83,7 @@ class Loading:
         return Work(*map(np.add, sums, state.under(self.given)) if self.given else sums)
 
     def rate(self, q: np.ndarray) -> np.ndarray:
-        """Compute the derivative of the residual by p, shape (n,)."""
+        """Compute the derivative of the residual with respect to p, shape (n,)."""
         return self.elastica.at(q).under(self.growing).work
 
     @cached_property
@@ -319,7 +321,7 @@ def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tupl
 
 
 def _bordered(load: Loading, q: np.ndarray, p: float, point: Point) -> np.ndarray:
-    """Compute the Jacobian by coordinates and scaled parameter; its last row is the curve's direction."""
+    """Compute the Jacobian in coordinates and scaled parameter; its last row is the curve's direction."""
     weights = load.angles @ (load.angles.T @ point.q_rate) / load.angles.shape[1]
     A, rate = load.at(q, p).change, load.rate(q)[:, None] * load.scale
     return np.block([[A, rate], [weights[None], np.array([[point.p_rate]])]])

@@ -1,4 +1,7 @@
-"""Batches of symmetric eigenproblems with diagonal stiffness, diag(d) z = w^2 M z, solved by the inverse."""
+"""Batches of symmetric eigenproblems with diagonal stiffness, diag(d) z = w^2 M z, solved by the inverse.
+
+In shapes of arrays, S counts eigenproblems, n coordinates, and k eigenvalues.
+"""
 
 from __future__ import annotations
 
@@ -168,11 +171,11 @@ def rounding_of_matrices(
     mass : ndarray, shape (n, n) or (S, n, n)
         Absolute values of the mass matrix of the original equations.
     """
-    modal_terms = np.einsum("snk,sn->sk", z**2, terms)  # modal stiffness without cancellation
+    modal_terms = np.einsum("snk,sn->sk", z**2, terms)  # modal stiffness, if no terms cancelled
     modal_norm = (z**2).sum(axis=1) * terms.max(axis=1, keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):
         by_terms, by_norm = modal_terms / np.abs(squared), modal_norm / np.abs(squared)
-    modal_mass = (size * (mass @ size)).sum(axis=1)  # modal mass without cancellation
+    modal_mass = (size * (mass @ size)).sum(axis=1)  # modal mass, if no terms cancelled
     growth = max(1.0, terms.shape[1] / ROUNDING_SIZE)  # rounding errors accumulate over the functions
     return growth * (BACKWARD * (by_terms + np.sqrt(by_norm) + 0.375 * by_norm) + _EPS * modal_mass)
 

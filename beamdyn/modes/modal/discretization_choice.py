@@ -317,7 +317,7 @@ def check_discretization(discretization: object) -> None:
         raise InvalidValue("discretization", discretization, bound)
 
 
-# Length of a boundary layer in decay lengths; each factor e of accuracy adds half a decay length.
+# Length of a boundary layer in decay lengths; each factor of 2.7 in accuracy adds half a decay length.
 _LENGTHS = 5.0
 # Longest boundary layers, over the length, that get separate functions.
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4

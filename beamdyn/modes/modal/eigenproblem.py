@@ -4,6 +4,8 @@ The inverse problem M v = mu K v is solved: its largest eigenvalues mu belong to
 all digits whatever the size of the basis.  For one speed, the stiffness is factorized.  For many speeds,
 coordinates are used in which the stiffness is diagonal at every speed; these require an additional
 eigenproblem, which for one speed would be most of the work (`diagonal_stiffness`).
+
+In shapes of arrays, S counts speeds, n coordinates, and k modes.
 """
 
 from __future__ import annotations
@@ -425,6 +427,6 @@ def rounding_of_factored(
     size = np.abs(v)
     spin = speed**2 * (size * (np.abs(pencil.K2) @ size)).sum(axis=0)
     by_terms = ((v * (pencil.K0 @ v)).sum(axis=0) + spin) / squared
-    mass = (size * (np.abs(pencil.M) @ size)).sum(axis=0)  # 1 without cancellation
+    mass = (size * (np.abs(pencil.M) @ size)).sum(axis=0)  # modal mass, if no terms cancelled
     growth = max(1.0, len(v) / ROUNDING_SIZE)  # rounding errors accumulate over the functions
     return growth * (BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)

@@ -1,4 +1,7 @@
-"""Equilibria at steady speed of a beam with arbitrarily large deflection, and the modes about them."""
+"""Equilibria at steady speed of a beam with arbitrarily large deflection, and the modes about them.
+
+In shapes of arrays, n counts coordinates, and S speeds.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ Branch = Literal["straight", "bent"]
 _SAME = 1e-6  # difference of slope angles [rad] below which two equilibria count as the same
 # Largest difference of slope angles [rad] between an equilibrium and that of a coarser discretization.
 _NEAR = 0.01
-_PUSH = 0.05  # transverse acceleration, over omega^2 L, that pushes the beam to the other branch
+_PUSH = 0.05  # transverse acceleration, over speed^2 length, that pushes the beam to the other branch
 _FASTEST = 100.0  # highest speed at which equilibria are computed, over the first angular frequency at rest
 # Ratio of speed to first angular frequency at rest up to which a loss of stability is searched: at higher
 # speeds, boundary layers require short steps.

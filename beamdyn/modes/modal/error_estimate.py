@@ -1,4 +1,7 @@
-"""Error estimates of eigenvalues by comparison with those of a coarser model."""
+"""Error estimates of eigenvalues by comparison with those of a coarser model.
+
+In shapes of arrays, S counts speeds, and k modes.
+"""
 
 from __future__ import annotations
 

@@ -2,6 +2,8 @@
 
 They are found by Lanczos iteration on the inverse problem (by Arnoldi iteration with damping or Coriolis
 forces), with factorizations of the stiffness at each speed, in place of all eigenvalues of full matrices.
+
+In shapes of arrays, n counts coordinates, and k modes.
 """
 
 from __future__ import annotations

@@ -11,6 +11,9 @@ Critical speeds and resonances need no search over speed: with B = m^2 M - K2,
 holds where the stiffness is singular (m = 0) or a frequency is m times the speed.  As K0 is positive
 definite, exactly j frequencies lie below the line m speed at speeds above the j-th lowest root (Sylvester's
 law of inertia).  There the j-th mode, counted at that speed, meets the line, and it does so at most once.
+
+In shapes of arrays, N counts designs, S speeds of each, n coordinates, k modes, L multiples of the speed, and
+d outputs.
 """
 
 from __future__ import annotations

@@ -133,7 +133,7 @@ class Model(FieldsOnly):
         return self.deflected.tips(speeds)
 
     def over_strip(self, along: int, across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Compute mesh points over a strip: x [m] (n,), eta from 1 to -1 (k,), and y = -eta b/2 [m] (n, k).
+        """Compute n by k mesh points over a strip: x [m], eta from 1 to -1, and y = -eta b/2 [m] (n, k).
 
         Returns None if the sections keep their shape, or if their width is not known.
         """
@@ -294,13 +294,13 @@ class ModalBasis:
         return self.speeds == (0.0,)
 
     def refined(self) -> ModalBasis | None:
-        """Enlarge the basis by half as many modes, at least two; None if that exceeds the limit."""
+        """Add half as many modes again, at least two; None if that exceeds the largest allowed number."""
         assert self.modes is not None
         modes = self.modes + max(2, self.modes // 2)
         return replace(self, modes=modes) if modes <= _MOST_MODES else None
 
     def with_one_more(self) -> ModalBasis | None:
-        """Enlarge the basis by one mode; None if that exceeds the limit."""
+        """Add one mode; None if that exceeds the largest allowed number."""
         assert self.modes is not None
         return replace(self, modes=self.modes + 1) if self.modes < _MOST_MODES else None
 

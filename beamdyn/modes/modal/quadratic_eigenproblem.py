@@ -30,7 +30,7 @@ def solve_gyroscopic(
 
 
 def solve_general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + diag(d) q = 0, d nonzero: return 1/s (2 n,) and vectors (2 n, 2 n), q first."""
+    """Solve M q'' + C q' + diag(d) q = 0, d nonzero, with q ~ exp(s t): return 1/s and columns (q, s q)."""
     n = len(d)
     B = np.zeros((2 * n, 2 * n))
     B[:n, :n], B[:n, n:], B[n:, :n] = -C / d[:, None], -M / d[:, None], np.eye(n)
@@ -38,7 +38,7 @@ def solve_general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarr
 
 
 def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + K q = 0 for any K: return 1/s (m,) and vectors (2 n, m), which begin with q.
+    """Solve M q'' + C q' + K q = 0 for any K, with q ~ exp(s t): return 1/s (m,) and columns (q, s q).
 
     Of the 2 n eigenvalues s, those that are infinite within rounding are omitted.
     """

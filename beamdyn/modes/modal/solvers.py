@@ -7,6 +7,8 @@ smooth functions of the speed (without gyroscopic terms: of the squared speed), 
 at sharp veerings.  They are interpolated in Chebyshev points of an interval.  The error of the interpolant is
 estimated by its coefficients of highest degree: while these exceed rounding, points are added; then the
 interval is halved, until few speeds are left, which are solved individually.
+
+In shapes of arrays, S counts speeds, n coordinates, and k modes.
 """
 
 from __future__ import annotations

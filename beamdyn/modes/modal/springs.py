@@ -2,6 +2,8 @@
 
 The eigensolver then adds a multiple of the mass, the shift, to the stiffness, and subtracts it from the
 squared frequencies.  This module handles the cases in which that loses digits.
+
+In shapes of arrays, S counts speeds, n coordinates, k modes, and r rigid rotations.
 """
 
 from __future__ import annotations

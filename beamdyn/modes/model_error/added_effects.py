@@ -6,6 +6,8 @@ of inverse iteration, z = D(s)^-1 D'(s) v with D(s) = s^2 M + s (C + omega G) + 
 the root of y^T D(s) z = 0 nearest to s, with y from the transposed equations.  The error is the square of the
 vectors' error; no new eigenproblem is solved, and no modes are matched.  Large effects and close modes need
 further steps.
+
+In shapes of arrays, n counts coordinates, N those with the added effect, and m modes.
 """
 
 from __future__ import annotations

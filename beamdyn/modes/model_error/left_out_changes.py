@@ -7,6 +7,8 @@ Modes of the real body that the model lacks are listed too, up to its highest mo
 without torsion, camber and stretch, lacks the modes of the other direction, of torsion, of camber and of
 stretch.  They are computed if the beam has the data; those of the other direction with shear and rotary
 inertia, if there are data.
+
+In shapes of arrays, S counts speeds, n coordinates, m and k modes.
 """
 
 from __future__ import annotations

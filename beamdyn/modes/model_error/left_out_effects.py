@@ -334,7 +334,7 @@ class StatesModelError(OfChosenPhysics):
 
 
 def where_worst(effects: LeftOutEffects, speeds: np.ndarray) -> str:
-    """Format the speed of the largest model error as "at 100 rad/s", or all speeds (k,) if it is unknown."""
+    """Format the speed of the largest model error as "at 100 rad/s", or all speeds if it is unknown."""
     total = effects.total
     if not np.isfinite(total).any():
         return Words("at ", list_speeds(speeds, np.ones(len(speeds), bool))) if len(speeds) else ""

@@ -19,7 +19,7 @@ from beamdyn.scene.names_elsewhere import REPEATING, ROLLING_WHEEL
 # Time after the end of a motion, relative to the end time, up to which it counts as the end.
 _ROUNDING = 1e-12
 
-Kinematics = tuple[np.ndarray, np.ndarray, np.ndarray]  # angle, speed, acceleration
+Kinematics = tuple[np.ndarray, np.ndarray, np.ndarray]  # angle, speed and angular acceleration
 
 
 @dataclass(frozen=True)
@@ -314,7 +314,7 @@ def _check_continuous(motion: Motion, name: str, unit: str, derivative_name: str
         t = np.linspace(t[k], t[k + 1], _SAMPLES)  # smaller steps show a steep rise as continuous
     raise ValueError(
         f"{derivative_name} is not the derivative of {name} at t = {t[0]:.6g} s, where {name} jumps by "
-        f"{misfit:.3g} {unit}; let {name} continue"
+        f"{misfit:.3g} {unit}; give a continuous {name}"
     )
 
 

@@ -40,7 +40,7 @@ _LOADS = {
 
 @dataclass(frozen=True)
 class ComputedCurves:
-    """Computed curves (n, C), their errors (which broadcast), their units, and the result they belong to.
+    """Computed curves as columns, their errors (which broadcast), their units, and the result they belong to.
 
     `speed` is the speed of the computation [rad/s]; nan for curves over time or speed.
     """
@@ -198,7 +198,7 @@ def _delay(
     sizes[sizes == 0] = 1.0
 
     def squares(delay: float) -> np.ndarray:
-        """Compute sums of squared differences, for the curves and with opposite sign: (2, C)."""
+        """Compute sums of squared differences of each curve, as it is and with opposite sign: two rows."""
         curves = at(t - delay)
         return np.array([(((values - sign * curves) / sizes) ** 2).sum(axis=0) for sign in (1, -1)])
 

@@ -1,4 +1,7 @@
-"""Comparison of measured histories, peaks, loads and responses with computed ones, with a verdict on each."""
+"""Comparison of measured histories, peaks, loads and responses with computed ones, with a verdict on each.
+
+In shapes of arrays, C counts curves.
+"""
 
 from __future__ import annotations
 
@@ -119,7 +122,7 @@ class CurveComparison(Result):
 
     @property
     def deviation(self) -> np.ndarray:
-        """Largest measured minus largest computed value, over the latter, shape (C,); inf for 0."""
+        """Largest measured minus largest computed value, over the computed one, shape (C,); inf for 0."""
         return _over(self.peak - self.computed_peak, self.computed_peak)
 
     @property

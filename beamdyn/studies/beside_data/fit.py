@@ -4,6 +4,8 @@ A residual is the difference of computed and measured frequency, divided by a we
 follow from the eigenproblem, s' = -w^T dP v / (w^T (2 s M + C + omega G) v) (Lancaster 1966, section 7),
 where dP is the difference between the matrices of two nearly equal scenes.  So only matrices are differenced,
 not eigenvalues.
+
+In shapes of arrays, p counts variables, S speeds, n computed and m measured frequencies at each, and N pairs.
 """
 
 from __future__ import annotations
@@ -160,14 +162,14 @@ class FittedModes:
         return off / self.fitting.weight[rows, columns]
 
     def derivative(self, pairs: np.ndarray) -> np.ndarray:
-        """Compute the derivatives (N, p) of the residuals of paired frequencies by the variables."""
+        """Compute derivatives (N, p) of residuals of paired frequencies with respect to the variables."""
         rows, columns = np.nonzero(pairs != NO_MODE)
         of_modes = np.array([self._changes(change) for change in self._matrix_changes])
         found = of_modes[:, rows, pairs[rows, columns]] / self.fitting.weight[rows, columns]
         return found.T.reshape(len(rows), len(self.x))
 
     def _changes(self, change: PencilChange) -> np.ndarray:
-        """Compute derivatives [Hz] (S, n) of the frequencies by a variable, from those of matrices."""
+        """Compute derivatives [Hz] (S, n) of frequencies, for one variable, from those of matrices."""
         each = [np.imag(modes.derivatives(change)) * _HZ for modes in self._perturbed]
         return np.nan_to_num(np.array(each))
 
@@ -179,7 +181,7 @@ class FittedModes:
 
     @property
     def _matrix_changes(self) -> list[PencilChange]:
-        """Derivatives of the matrices by each variable, as differences between two nearly equal scenes."""
+        """Derivatives of matrices with respect to each variable: differences of two nearly equal scenes."""
         changes = []
         for k, (least, most) in enumerate(zip(*self.fitting.limits, strict=True)):
             step = _STEP * (self.x[k] if self.fitting.numbers[k].is_compliance else 1.0)

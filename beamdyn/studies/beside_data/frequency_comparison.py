@@ -1,4 +1,7 @@
-"""Comparison of measured with computed natural frequencies: pairs, deviations, and a verdict on each."""
+"""Comparison of measured with computed natural frequencies: pairs, deviations, and a verdict on each.
+
+In shapes of arrays, N counts measured values.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Identification of numbers of a scene from measured natural frequencies."""
+"""Identification of numbers of a scene from measured natural frequencies.
+
+In shapes of arrays, N counts residuals, and p unknowns (numbers to be identified).
+"""
 
 from __future__ import annotations
 

@@ -5,6 +5,8 @@ size 1.  A change of size 1/s along a column of V changes the data by one uncert
 1/s is limited to ten.  If a number can change by its full size within the uncertainties, the data do not
 determine it.  Uncertainties are at least a millionth of the frequency, so that rounding cannot change the
 verdict.
+
+In shapes of arrays, p counts variables, and N measured values.
 """
 
 from __future__ import annotations

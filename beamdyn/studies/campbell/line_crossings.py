@@ -163,7 +163,7 @@ def _find_roots(locus: Locus, lines: Sequence[Line]) -> Iterator[_Root]:
 
 
 def _frequencies(locus: Locus, speeds: np.ndarray) -> np.ndarray:
-    """Compute angular frequencies [rad/s] (S, k), in ascending order, with the model of the locus."""
+    """Compute k angular frequencies [rad/s] at S speeds, ascending, with the model of the locus: (S, k)."""
     count = locus.ascending.shape[1]
     if locus.model.discretization.order is None:
         return np.abs(np.imag(locus.model.solver.eigenvalues(speeds, count)))
@@ -278,7 +278,7 @@ def margins_in_range(
 def _nearest(
     label: str, names: Sequence[str], locus: Locus, lines: Sequence[Line], at: np.ndarray, where: str
 ) -> Iterator[Margin]:
-    """Yield the margin of each mode from the nearest line, over the speeds with given indices (s,)."""
+    """Yield the margin of each mode from the nearest line, over the speeds with given indices."""
     excited = np.outer(locus.speeds[at], [line.multiple for line in lines]) / (2 * np.pi)
     for mode, name in enumerate(names):
         frequency = locus.frequency[at, mode]

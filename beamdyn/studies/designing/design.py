@@ -134,7 +134,7 @@ def _check_targets(targets: object) -> tuple[Target, ...]:
 
 @dataclass(frozen=True)
 class _BestDesign:
-    """Best design of a search, as fractions x (p,) of the ranges, with statements about it."""
+    """Best design of a search, as fractions x of the numbers' ranges, with statements about it."""
 
     search: Search
     x: np.ndarray

@@ -41,7 +41,7 @@ class FoundDesign(Result):
         Whether each target is met, within 1e-10 or the error of the result; a target "best" is met if there
         is a result.
     derivative : ndarray, shape (m, p)
-        Derivative of each result by each number [unit / unit of the number], by finite differences.
+        Derivative of each result with respect to each number [unit / unit of the number]; finite difference.
     limited_by : tuple of str
         Bounds and limits that the design reaches, in words.
     only_one_way : bool
@@ -112,7 +112,7 @@ class FoundDesign(Result):
 
     @property
     def relative(self) -> np.ndarray:
-        """Relative change of each result over that of each number, (m, p): 3 if it is as the number cubed."""
+        """Relative change of m results over that of p numbers, (m, p): 3 if it is as a number cubed."""
         return self.derivative * self.value / self.reached[:, None]
 
     @property

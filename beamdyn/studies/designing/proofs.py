@@ -4,6 +4,8 @@ Two arguments hold for all designs, computed or not, within the stated errors of
 number increases a result (`beamdyn.studies.designing.quotients`), all smaller values are excluded if the
 result is too low, and all larger ones if it is too high.  (2) The results of similar designs
 (`beamdyn.studies.similar`) all differ by one factor, which is known without solving.
+
+In shapes of arrays, p counts unknowns (numbers to be found).
 """
 
 from __future__ import annotations

@@ -2,6 +2,8 @@
 
 Logarithms of numbers and results are used, so that powers become linear.  All computed designs are kept, and
 the best one is the result.
+
+In shapes of arrays, N counts designs, p unknowns (numbers to be found), and m targets.
 """
 
 from __future__ import annotations
@@ -81,7 +83,7 @@ class Ranges:
         return np.where(positive, of_logarithms, (values - low) / (high - low))
 
     def slopes(self, shares: np.ndarray) -> np.ndarray:
-        """Compute the derivatives [unit] (p,) of the numbers by their fractions of the ranges."""
+        """Compute derivatives [unit] (p,) of the numbers with respect to their fractions of the ranges."""
         low, high, positive = self._ends
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(positive, self.values(shares) * np.log(high / low), high - low)
@@ -333,7 +335,7 @@ class Search:
     # Additional output ------------------------------------------------------------------------------
 
     def derivatives(self, x: np.ndarray) -> np.ndarray:
-        """Compute derivatives (m, p) of the results' logarithms by the scaled numbers, as finite differences.
+        """Compute derivatives (m, p) of the results' logarithms with respect to the scaled numbers.
 
         Each is the slope of a parabola through three designs, all within the bounds.
         """

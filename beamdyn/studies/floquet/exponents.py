@@ -187,7 +187,7 @@ def _products(B: np.ndarray) -> np.ndarray:
 
 
 def _values(p: np.ndarray) -> np.ndarray:
-    """Compute logarithms (P, m) of singular values from the logarithms of their products."""
+    """Compute logarithms (P, m) of the singular values of P matrices from those of their products."""
     return np.diff(p, axis=1, prepend=0.0)
 
 

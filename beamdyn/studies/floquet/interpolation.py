@@ -47,7 +47,7 @@ class ChebyshevAxis:
 
     @property
     def nodes(self) -> np.ndarray:
-        """Values (k,) of the number at which the function is evaluated."""
+        """Values of the number at which the function is evaluated."""
         if self.degree is None:
             return self.values
         low, high = self.values.min(), self.values.max()

@@ -3,6 +3,8 @@
 Time steps are by Gauss collocation of order 16, as for transients, which preserves the symplectic form of
 undamped motion.  Displacements are multiplied by the frequencies at rest, so that the map of each mode at
 rest is orthogonal.
+
+In shapes of arrays, P counts matrices, and n coordinates.
 """
 
 from __future__ import annotations

@@ -9,6 +9,8 @@ Undamped motion preserves an antisymmetric form, so that multipliers come in pai
 multiplier near, but off, the unit circle would have its partner equally close on the other side.  One that is
 further from all others than the errors has no such partner, and thus is on the circle.  If several meet, they
 stay on the circle if the form has the same sign on all of their vectors (Krein).
+
+In shapes of arrays, P counts matrices, and m multipliers of each.
 """
 
 from __future__ import annotations

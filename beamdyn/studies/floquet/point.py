@@ -103,7 +103,7 @@ class FloquetMultipliers(JudgedByRepeating):
 
     @property
     def spectral_radius(self) -> float:
-        """Growth factor of free vibration over a period: largest multiplier, or by the exponent."""
+        """Growth factor of free vibration over a period: from the largest multiplier or the growth rate."""
         known = self.method == MULTIPLIERS
         return float(np.abs(self.multipliers[0])) if known else math.exp(self.growth_rate * self.period)
 

@@ -4,6 +4,8 @@ The monodromy matrix is a smooth function of the numbers, though its eigenvalues
 a few pairs of numbers and interpolated at all others.  Scenes that remain undecided are integrated
 individually; so are all scenes if the number of cycles in the common period varies over the chart, or if
 there is no common period.
+
+In shapes of arrays, A and B count values of the two inputs.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Derivatives of a model's matrices by the numbers of its scene, and of eigenvalues by the matrices.
+"""Derivatives of a model's matrices and eigenvalues with respect to numbers of its scene.
 
 The matrices are polynomials, quotients or sines of most numbers, or polynomials of high degree if a number is
 a position along the beam.  They are evaluated for eight values near the number, and the polynomial through
@@ -8,6 +8,8 @@ fewer correct digits, so that they are not differenced.
 With P(s) = s^2 M + s (C + omega G) + K0 + omega^2 K2 and P v = 0, w^T P = 0, a change dP of P changes the
 eigenvalue by ds = -w^T dP v / (w^T (2 s M + C + omega G) v)  (Lancaster, Lambda-Matrices and Vibrating
 Systems, 1966, section 7).
+
+In shapes of arrays, n counts coordinates, and k eigenvalues.
 """
 
 from __future__ import annotations
@@ -120,7 +122,7 @@ def _intervals(number: SceneNumber) -> Iterator[list[tuple[float, float]]]:
 
 @dataclass(frozen=True)
 class PencilChange:
-    """Derivatives of the matrices of a `SteadyPencil` by one number, each of shape (n, n)."""
+    """Derivatives of the matrices of a `SteadyPencil` with respect to one number, each of shape (n, n)."""
 
     M: np.ndarray
     C: np.ndarray
@@ -218,7 +220,7 @@ class PerturbedModes:
         return -complex(self.left[:, k] @ dP @ self.right[:, k]) / self._slope(k)
 
     def _slope(self, k: int) -> complex:
-        """Compute the derivative of the dynamic stiffness by the eigenvalue, in mode k.
+        """Compute the derivative of the dynamic stiffness with respect to the eigenvalue, in mode k.
 
         It is w^T (2 s M + C + omega G) v, with the eigenvectors w and v of the mode.
         """
@@ -271,7 +273,7 @@ _Pencils: TypeAlias = tuple[SteadyPencil, SteadyPencil]
 
 @dataclass(frozen=True)
 class Changes:
-    """Derivatives of the matrices of a model, and of its coarser model, by each of n numbers.
+    """Derivatives, with respect to n numbers, of the matrices of a model and of its coarser model.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ def frequency_sensitivities(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> Sensitivities:
-    """Compute the derivatives of natural frequencies by the numbers of a scene, and by the speed.
+    """Compute derivatives of natural frequencies with respect to the numbers of a scene and to the speed.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def critical_speed_sensitivities(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> Sensitivities:
-    """Compute the derivatives of the critical speed by the numbers of a scene.
+    """Compute the derivatives of the critical speed with respect to the numbers of a scene.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def crossing_sensitivities(
     discretization: DiscretizationChoice = "ritz",
     tolerance: float | None = None,
 ) -> Sensitivities:
-    """Compute the derivatives of resonance speeds by the numbers of a scene, except those of the motion.
+    """Compute derivatives of resonance speeds with respect to numbers of a scene but not of its motion.
 
     Parameters
     ----------
@@ -283,12 +283,12 @@ def _compared(
     part: Callable[[np.ndarray], np.ndarray] = np.real,
     unit: float = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute derivatives of k results by n numbers and their errors, from both models: shape (n, k).
+    """Compute derivatives of k results with respect to n numbers, and errors, from both models: (n, k).
 
     Parameters
     ----------
     changes : Changes
-        Derivatives of the matrices by n numbers.
+        Derivatives of the matrices with respect to n numbers.
     rate : callable
         Function that computes the derivatives of the results of the model (0) or the coarser one (1) from
         those of the matrices.
@@ -307,7 +307,7 @@ def _compared(
 
 
 def _without_derivative(found: Modes) -> tuple[np.ndarray, list[str]]:
-    """Return which modes (k,) have no derivative, with sentences that explain why."""
+    """Return which modes have no derivative, with sentences that explain why."""
     s, words = found.eigenvalue, []
     apart = np.abs(s[:, None] - s) + np.diag(np.full(len(s), np.inf))
     crossing = (apart <= _SAME * np.abs(s)).any(axis=1) if len(s) > 1 else np.zeros(len(s), dtype=bool)
@@ -324,7 +324,7 @@ def _without_derivative(found: Modes) -> tuple[np.ndarray, list[str]]:
 def _crossing_derivatives(
     model: Model, changes: Changes, crossing: Crossing, modes: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the derivatives of the speed of a crossing by n numbers, and their errors, shape (n, 1).
+    """Compute derivatives (n, 1) of the speed of a crossing with respect to n numbers, and their errors.
 
     At a crossing, a line m omega meets the sum of the angular frequencies lambda of one mode or two modes:
     d omega = -sum d lambda / (sum d lambda / d omega - m).
@@ -340,7 +340,7 @@ def _crossing_derivatives(
 
 
 def _sums(angular: np.ndarray, crossing: Crossing) -> np.ndarray:
-    """Count the occurrences of each mode in the sum of frequencies that the line meets, shape (k,)."""
+    """Count the occurrences of each mode in the sum of frequencies that the line meets."""
     first = 2 * np.pi * crossing.frequency
     sums = np.zeros(len(angular))
     sums[np.abs(angular - first).argmin()] += 1

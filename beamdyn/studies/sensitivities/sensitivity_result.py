@@ -1,4 +1,7 @@
-"""Result of a sensitivity analysis: derivatives of results by the numbers of the scene."""
+"""Result of a sensitivity analysis: derivatives of results with respect to the numbers of the scene.
+
+In shapes of arrays, n counts inputs (numbers of the scene), and k results.
+"""
 
 from __future__ import annotations
 
@@ -192,7 +195,7 @@ def _room_of(beam: Beam, path: str) -> float:
 
 @dataclass(frozen=True)
 class Sensitivities(JudgedByRepeating):
-    """Derivatives of k results by n numbers of a scene.
+    """Derivatives of k results with respect to n numbers of a scene.
 
     `model_error` (k,) and `left_out`, computed at their first use, estimate how much neglected physical
     effects change the derivative of each result by its most important number.
@@ -267,7 +270,7 @@ class Sensitivities(JudgedByRepeating):
         return tuple(self.inputs[row].name for row in size.argmax(axis=0).tolist())
 
     def judged(self, found: Sensitivities) -> np.ndarray:
-        """Return derivatives (k,) by each result's most important number: their error is stated."""
+        """Return derivatives (k,) for each result's most important number: their error is stated."""
         rows = {each.name: i for i, each in enumerate(found.inputs)}
         most = zip(self._same_answers(found).tolist(), self.most_important, strict=True)
         return np.array([np.nan if k < 0 else found.derivative[rows[name], k] for k, name in most])
@@ -296,7 +299,7 @@ class Sensitivities(JudgedByRepeating):
         return self.speed if self.unit == "Hz" else float(np.nanmax(self.value, initial=0.0))
 
     def by(self, name: str) -> np.ndarray:
-        """Return the derivatives by the number with a given name, shape (k,).
+        """Return the derivatives with respect to the number of a given name, shape (k,).
 
         Raises
         ------

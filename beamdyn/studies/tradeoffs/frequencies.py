@@ -289,7 +289,7 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
 
 
 def pick(found: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return the frequencies nearest to the requested ones (m,), each used once."""
+    """Return the frequencies nearest to the requested ones, each used once."""
     order = assign(np.abs(np.log(wanted[:, None] / found[None, :])))
     return found[order]
 
