@@ -148,7 +148,7 @@ class Slow:
 
     def __init__(self):
         self.go, self.solved = threading.Event(), []
-        # Without tables, which would be waited for apart if they took long on this machine.
+        # Without tables: those that take long on a machine are computed separately, after the drawing.
         told = {"coarser": lambda tables: tables, "tables": lambda answer: (), "notes": lambda answer: ()}
         self.screen = replace(FREQUENCIES, solve=self.solve, **told)
         self.program = Program("slow", "Slow", (replace(SCENE, screens=(self.screen,)),))
