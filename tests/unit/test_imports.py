@@ -33,7 +33,9 @@ def test_import_loads_nothing_heavy():
 
 
 def test_first_answer_loads_no_sparse_matrices():
-    own = loaded_by(FIRST_ANSWER, "name") - loaded_by("import scipy.linalg", "name")  # older scipy loads them itself
+    own = loaded_by(FIRST_ANSWER, "name") - loaded_by(
+        "import scipy.linalg", "name"
+    )  # older scipy itself does
     assert not any(name.startswith("scipy.sparse") for name in own)
 
 
