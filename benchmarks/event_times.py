@@ -70,15 +70,15 @@ def _handle(page: Any, _: str) -> Any:
     return page.locator(".handle").locator("visible=true")
 
 
-def _drag(made: Any, across: float) -> float:
-    """Drag an element from a part of its width, by some pixels at each event."""
+def _drag(made: Any, across: float, down: int = 0) -> float:
+    """Drag an element from a part of its width, by some pixels to the right, and down, at each event."""
     page = made.page
     made.scroll_into_view_if_needed()
     box = made.bounding_box()
     x, y = box["x"] + across * box["width"], box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
-    took = _measure(page, "mousemove", lambda i: page.mouse.move(x + STEP * (i + 1), y))
+    took = _measure(page, "mousemove", lambda i: page.mouse.move(x + STEP * (i + 1), y + down * (i + 1)))
     page.mouse.up()
     return took
 
@@ -88,7 +88,7 @@ def _time_slider(page: Any, path: str) -> float:
 
 
 def _time_handle(page: Any, path: str) -> float:
-    return _drag(_handle(page, path).first, 0.5)
+    return _drag(_handle(page, path).first, 0.5, STEP)  # some points move up and down alone
 
 
 def _field(page: Any, path: str) -> Any:
