@@ -14,7 +14,7 @@ from beamdyn.scene.mount import Mount, aligned_cos_sin, exact_cos_sin
 Quantity = Literal[
     "unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse", "root_across"
 ]
-_UNIT_SPEED = MotionSample.steady(1.0)  # the carrier turns at 1 rad/s
+_UNIT_SPEED = MotionSample.steady(1.0)  # the carrier rotates at 1 rad/s
 CONSTANT_AT_STEADY_SPEED: tuple[Quantity, ...] = ("unity", "speed", "acceleration", "speed_squared")
 
 
@@ -90,5 +90,5 @@ def root_motion(mount: Mount, sample: MotionSample, gravity: float = 0.0) -> Roo
 
 @lru_cache(maxsize=64)
 def root_at_unit_speed(mount: Mount) -> RootMotion:
-    """Compute the motion of the root while the carrier turns at 1 rad/s about a fixed centre."""
+    """Compute the motion of the root while the carrier rotates at 1 rad/s about a fixed centre."""
     return root_motion(mount, _UNIT_SPEED)

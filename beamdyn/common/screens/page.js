@@ -51,7 +51,7 @@ window.putDesign = (name, design) => {
 // typed, and it is reported when the page becomes narrow or wide.
 window.narrowPage = matchMedia("(max-width: 600px)"); // below it drawings have narrow paper, as in page.css
 const TOLD = 50; // time after which a field has told what is typed [ms]
-const marked = new Set(); // screens, of which those of hidden tabs are kept apart from the document
+const marked = new Set(); // screens marked as typed; those of hidden tabs are not in the document
 let strokes = 0;
 const askAfter = (delay) => {
   const stroke = ++strokes;
@@ -71,9 +71,9 @@ document.addEventListener("input", (event) => {
   const typed = kept(sessionStorage, "typed");
   (typed[screen.dataset.document] ??= {})[field.dataset.path] = event.target.value;
   keep(sessionStorage, "typed", typed);
-  const marks = field.closest(".screen");
-  marks.classList.add("typed");
-  marked.add(marks);
+  const around = field.closest(".screen");
+  around.classList.add("typed");
+  marked.add(around);
   if (field.closest(".lists")) ++strokes;
   else askAfter(TOLD);
 });

@@ -139,7 +139,7 @@ def solve_at(load: Loading, q: np.ndarray, p: float, most: float = np.inf) -> np
     Raises
     ------
     NotConverged
-        If it does not converge, or changes a slope angle by more than `most` [rad].
+        If the iteration does not converge, or changes a slope angle by more than `most` [rad].
     """
     found = _newton(load, q, p, None)[0]
     if np.abs((found - q) @ load.angles).max() > most:
@@ -189,7 +189,7 @@ def follow(load: Loading, start: Point, longest: float = _LONGEST, easy: int = _
             yield replace(_find_between(load, point, following, lambda found: found.p_rate), p_rate=0.0)
         point, before = following, stability
         yield point
-        # The slope angles change by 1, or the parameter by its size, at least by the smaller of arc lengths.
+        # The longest step changes slope angles by `longest` [rad], or the parameter by that fraction of its value.
         size = max(_metric(load, point.q_rate, 0.0), 1 / (1 + abs(point.p) / load.scale))
         step = min(longest / size, 1.5 * step) if iterations <= easy else max(step / 2, _SHORTEST)
 
@@ -206,7 +206,7 @@ def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
     found, before, towards, why = [], start, np.sign(start.p_rate), "could not be followed beyond"
     step = (goals[-1] - start.p) / (start.p_rate * load.scale)
     with suppress(NotConverged):
-        if len(goals) == 1 and step < _LONGEST:  # one step may do, if the curve hardly turns
+        if len(goals) == 1 and step < _LONGEST:  # one step is enough if the curve hardly turns
             q = solve_at(load, start.q + step * start.q_rate, goals[0], _STRAYED * step)
             turned = (start_curve(load, q, goals[0], towards).q_rate - start.q_rate) @ load.angles
             change = count_negative(load, q, goals[0]) - count_negative(load, start.q, start.p)
@@ -301,7 +301,7 @@ def _find_between(load: Loading, before: Point, after: Point, function: Callable
 
 
 def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tuple[np.ndarray, float, int]:
-    """Iterate to a solution, at fixed p or in the plane across a curve's direction at `point`."""
+    """Iterate to a solution, at fixed p or in the plane normal to a curve's direction at `point`."""
     last = np.nan  # no change is known yet, and comparisons with it are false
     for iteration in range(1, _ITERATIONS + 1):
         r, A = load.at(q, p)
@@ -315,7 +315,7 @@ def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tupl
         # Convergence is at least linear: the next change is at most size**2 / last.
         ends = size < _CONVERGED or (size < _STALLED and size > last / 4)
         if ends or size**2 < _CONVERGED * last:
-            return q, p, iteration + (not ends)  # an iteration that is not needed counts
+            return q, p, iteration + (not ends)  # the omitted iteration counts for the step size
         last = size
     raise NotConverged
 
