@@ -1,7 +1,4 @@
-"""Equilibrium of a mechanism: reactions and load magnitudes, or loose bodies and undetermined forces.
-
-In shapes of arrays, S counts positions, n bodies, and R rows: of joints, loads and friction.
-"""
+"""Equilibrium of a mechanism: forces at S positions of n bodies with R rows of joints, loads and friction."""
 
 from __future__ import annotations
 

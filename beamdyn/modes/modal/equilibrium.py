@@ -206,7 +206,7 @@ class DeflectedSolver(Solver):
         """
         missing = np.array([v for v in np.unique(speeds) if (v, count) not in self._solved])
         for v, q in zip(missing.tolist(), self.equilibria(missing), strict=True):
-            solver = (LoadedSolver if self.elastica.load else Solver)(self.elastica.at(q).steady())
+            solver = (Solver if self.elastica.load is None else LoadedSolver)(self.elastica.at(q).steady())
             self._solved[v, count] = solver.solve(np.array([v]), count)
         return Eigen.joined(self._solved[v, count] for v in speeds.tolist())
 
