@@ -1,4 +1,4 @@
-"""Equilibrium of a mechanism: forces at S positions of n bodies with R rows of joints, loads and friction."""
+"""Equilibrium of a mechanism: forces at S positions of n bodies, R rows of joints, loads and friction."""
 
 from __future__ import annotations
 
