@@ -189,7 +189,7 @@ def follow(load: Loading, start: Point, longest: float = _LONGEST, easy: int = _
             yield replace(_find_between(load, point, following, lambda found: found.p_rate), p_rate=0.0)
         point, before = following, stability
         yield point
-        # The longest step changes slopes by `longest` [rad], or the parameter by that part of its value.
+        # The longest step changes slope angles by `longest` [rad], or the parameter by that part of it.
         size = max(_metric(load, point.q_rate, 0.0), 1 / (1 + abs(point.p) / load.scale))
         step = min(longest / size, 1.5 * step) if iterations <= easy else max(step / 2, _SHORTEST)
 
