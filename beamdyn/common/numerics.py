@@ -72,19 +72,13 @@ def longer_semi_axis(c: np.ndarray) -> np.ndarray:
 def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Multiply two Legendre series; coefficients in columns (m, c) and (n, c), product (m + n - 1, c).
 
-    The recurrence of Legendre polynomials P_k gives the products P_k b; for short series the rounding errors
-    are small.
+    The Gauss rule with as many points as the product has coefficients determines it from the values there.
     """
-    short, long = sorted((a, b), key=len)
-    if len(short) == 1:  # one of the two series is constant
-        return short * long
-    total = np.zeros((len(a) + len(b) - 1, long.shape[1]))
-    before, product = np.zeros_like(total), np.zeros_like(total)
-    product[: len(long)] = long
-    for k, coefficients in enumerate(short):
-        total += coefficients * product
-        before, product = product, ((2 * k + 1) * _times_argument(product) - k * before) / (k + 1)
-    return total
+    if min(len(a), len(b)) == 1:  # one of the two series is constant
+        return a * b
+    points = len(a) + len(b) - 1
+    values_of_a, values_of_b = (legendre_values(points, len(each) - 1) @ each for each in (a, b))
+    return legendre_series(points) @ (values_of_a * values_of_b)
 
 
 def integrate_series(series: np.ndarray) -> np.ndarray:
@@ -97,12 +91,3 @@ def integrate_series(series: np.ndarray) -> np.ndarray:
     integral[: len(series) - 1] -= parts[1:]
     integral[0] -= integral.sum(axis=0)
     return integral
-
-
-def _times_argument(series: np.ndarray) -> np.ndarray:
-    """Multiply Legendre series (columns of coefficients) by t; the highest coefficient, 0, is dropped."""
-    k = np.arange(len(series))[:, None]
-    shifted = np.zeros_like(series)
-    shifted[1:] = (series * (k + 1) / (2 * k + 1))[:-1]
-    shifted[:-1] += (series * k / (2 * k + 1))[1:]
-    return shifted

@@ -123,7 +123,7 @@ def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
     return legendre.legvander(t, points) @ integrals @ legendre_series(points)
 
 
-_OF_TENSION = 3  # polynomial degree of the tension, if the mass per length is linear in x
+_OF_TENSION = 8  # polynomial degree of most properties and of the products with them
 
 
 class Sampler:

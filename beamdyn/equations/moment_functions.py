@@ -49,7 +49,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile, merge_breakpoints
 from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
 
-NODES = 10  # number of nodes on each cell, through which quotients of moment and stiffness are interpolated
+NODES = 12  # number of nodes on each cell, through which quotients of moment and stiffness are interpolated
 # Size of an interpolant's last coefficients, over its largest coefficient, at which a cell is resolved; the
 # error of eigenvalues is as its square.
 _RESOLVED = 1e-7

@@ -21,7 +21,7 @@ from beamdyn.common.inputs.checks import MOST, InvalidValue, real, real_array, r
 from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.words import Named, Words
 
-_FIT_NODES = (8, 16, 32, 64, 128)  # numbers of Gauss points tried in turn; 32 resolve a usual smooth taper
+_FIT_NODES = (12, 24, 48, 128)  # numbers of Gauss points tried in turn; 24 resolve a usual smooth taper
 _SHORTEST_SEGMENT = 1e-12  # difference of x/L below which two breakpoints differ only by rounding
 _FIT_TOLERANCE = 1e-13  # rounding error of the user's function, relative to its largest value
 _ZERO = 5e-13  # a property counts as 0 below this fraction of its largest value on a segment
@@ -111,12 +111,16 @@ class Profile(FieldsOnly):
 
     def end_values(self) -> tuple[np.ndarray, np.ndarray]:
         """Evaluate the property at the left and right end of each segment: two arrays, different at jumps."""
+        return self._at_ends
+
+    @cached_property
+    def _at_ends(self) -> tuple[np.ndarray, np.ndarray]:
         even, odd = self.series[::2].sum(axis=0), self.series[1::2].sum(axis=0)
         return even - odd, even + odd
 
     def split(self, breakpoints: Sequence[float]) -> Profile:
         """Represent the same property on segments that also end at the given breakpoints."""
-        if breakpoints == self.breakpoints:
+        if breakpoints in ((0.0, 1.0), self.breakpoints):
             return self
         ends = merge_breakpoints(np.concatenate([self.breakpoints, breakpoints]))
         if ends == self.breakpoints:

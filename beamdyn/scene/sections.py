@@ -44,11 +44,21 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
         Profiles by pair of directions 0 and 1; only (0, 0) of a beam in one plane, none of a property that
         the beam lacks.
     """
+    return _turn(beam, name, _from_tension_to_mass(beam) if name == "rotary_inertia" else None)
+
+
+@lru_cache(maxsize=64)
+def inertia_about_shear_centre(beam: Beam) -> Tensor:
+    """Compute the tensor of rotary inertia about the shear centre, as `section_tensor` returns it."""
+    return _turn(beam, "rotary_inertia", beam.mass_offset)
+
+
+def _turn(beam: Beam, name: str, lever: Profile | None) -> Tensor:
+    """Compute the tensor of a section property, with the mass at a distance across from the axis [m]."""
     first, second = getattr(beam, name), getattr(beam, f"second_{name}")
     if first is None:
         return {}
-    lever = _from_tension_to_mass(beam)
-    if name == "rotary_inertia" and second is not None and lever is not None:
+    if second is not None and lever is not None:
         second = second + beam.mass_per_length * lever * lever
     if second is None:
         return {(0, 0): first}

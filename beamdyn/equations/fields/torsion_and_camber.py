@@ -76,7 +76,7 @@ from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.profile import ONE, Profile, combine
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
-from beamdyn.scene.sections import section_tensor, tip_inertia
+from beamdyn.scene.sections import inertia_about_shear_centre, tip_inertia
 
 _NAME = "torsion"
 _TURNED = FIXED._replace(stiffness="torsion_stiffness")  # boundary condition of torsion at the root
@@ -174,9 +174,8 @@ def _loads(scene: Scene, space: Space) -> Iterator[Load]:
         turned = -B[0, 1] * space.end(0)
         turned = turned if oblique is None else turned + L * space.load(oblique)
         yield Load("twisting by rotation", _NAME, turned, "speed_squared", a2**2 - a1**2)
-        by_root, by_speed = (
-            space.load(pulled * beam.twist.derivative(), 1) / L for pulled in _pulled_straight(beam)
-        )
+        rate = beam.twist.derivative()
+        by_root, by_speed = (space.load(pulled * rate, 1) / L for pulled in _pulled_straight(beam))
         cosine, _ = exact_cos_sin(scene.mount.precone)
         yield Load("untwisting by tension", _NAME, by_speed, "speed_squared", cosine**2)
         yield Load("untwisting by tension", _NAME, by_root, "root_axial", -1.0)
@@ -190,7 +189,7 @@ def _tip_body(scene: Scene) -> TipMass:
 @lru_cache(maxsize=64)
 def _inertias(beam: Beam) -> tuple[Profile, Profile, Profile | None]:
     """Compute R11 + R22, R22 - R11, and R12 if not 0, about the shear centre, the axis of twist."""
-    R = section_tensor(replace(beam, tension_offset=None), "rotary_inertia")
+    R = inertia_about_shear_centre(beam)
     return R[0, 0] + R[1, 1], R[1, 1] + R[0, 0].scaled(-1.0), R.get((0, 1))
 
 

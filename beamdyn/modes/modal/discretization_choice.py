@@ -39,7 +39,7 @@ _FEW_SEGMENTS = 6
 _MANY_ON_EACH = 2  # number of modes per segment above which moments need more functions, and lose digits
 # Number of forces in each direction, in addition to the number of modes, and per digit of accuracy, as
 # published blades need.  Twisted sections need fewer, because forces in both directions bend them.
-_IN_STRAIGHT, _IN_TWISTED = (11, 2.5), (6, 2.3)
+_IN_STRAIGHT, _IN_TWISTED = (6, 3.0), (-1, 3.0)
 # Smallest number of elements on a segment with a boundary layer, so that half as many resolve it too.
 _ON_LAYERS = 8
 _OF_ELEMENTS = 0.1  # accuracy that determines the length of boundary layers with finite elements
