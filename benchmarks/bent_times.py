@@ -11,14 +11,11 @@ folder, for example the parent of the commit that added beams in space: git work
 from __future__ import annotations
 
 import argparse
-import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from statistics import median
 
-from benchmarks.rows import Row, show
+from benchmarks.rows import Row, show, time_of_version
 
 _CALLS, _TURNS = 15, 3
 _PLANE = "large_deflection=True"
@@ -49,12 +46,7 @@ print(median(times))
 
 def measure(folder: Path, physics: str, further: str = ", poissons_ratio=0.3") -> float:
     """Measure the median processor time [s] of calls of the program version in a folder."""
-    script = _SCRIPT.format(physics=physics, further=further, calls=_CALLS)
-    set_to = os.environ | {"OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(folder)}
-    done = subprocess.run(
-        [sys.executable, "-c", script], cwd=folder, env=set_to, check=True, capture_output=True, text=True
-    )
-    return float(done.stdout)
+    return time_of_version(folder, _SCRIPT.format(physics=physics, further=further, calls=_CALLS))
 
 
 def compare(before: Path | None) -> Iterator[Row]:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 from time import perf_counter
 from typing import TypeVar
 
@@ -25,6 +29,15 @@ def best_time(
         action()
         times.append(clock() - start)
     return min(times)
+
+
+def time_of_version(folder: Path, script: str) -> float:
+    """Run a script that prints a time [s], with the version of the program that a folder holds."""
+    set_to = os.environ | {"OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(folder)}
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=folder, env=set_to, check=True, capture_output=True, text=True
+    )
+    return float(done.stdout)
 
 
 def show(title: str, *parts: Callable[[], Iterator[Row]]) -> list[Row]:

@@ -18,7 +18,7 @@ from numpy.polynomial import legendre
 from beamdyn.equations.discretization import Functions, RootConditions, Space, Spaces
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import Mount, exact_cos_sin
-from beamdyn.scene.profile import FRACTION, Profile, mean
+from beamdyn.scene.profile import Profile, mean
 
 
 @dataclass(frozen=True)
@@ -124,14 +124,14 @@ def moments_about_root(beam: Beam) -> tuple[float, float, float]:
     (xi, mass), weight, moments = beam.lumps, beam.mass_per_length, []
     for k in range(3):
         moments.append(beam.length ** (k + 1) * mean(weight) + float(mass @ (xi * beam.length) ** k))
-        weight = weight * FRACTION
+        weight = weight.times_fraction()
     return moments[0], moments[1], moments[2]
 
 
 @lru_cache(maxsize=64)
 def _moment_per_length(beam: Beam) -> Profile:
     """Compute mass per length times x/L [kg/m]."""
-    return beam.mass_per_length * FRACTION
+    return beam.mass_per_length.times_fraction()
 
 
 @lru_cache(maxsize=64)

@@ -135,6 +135,11 @@ class Profile(FieldsOnly):
         a, b = self.split(other.breakpoints), other.split(self.breakpoints)
         return _of_series(a.breakpoints, numerics.multiply_series(a.series, b.series))
 
+    def times_fraction(self) -> Profile:
+        """Multiply the property by the fraction x/L."""
+        fraction = np.stack([self._ends[:-1] + self._ends[1:], np.diff(self._ends)]) / 2
+        return _of_series(self.breakpoints, numerics.multiply_series(self.series, fraction))
+
     def __add__(self, other: Profile) -> Profile:
         """Add two properties pointwise."""
         a, b = self.split(other.breakpoints), other.split(self.breakpoints)
@@ -229,7 +234,6 @@ def mean(profile: Profile) -> float:
     return float(profile.outboard_integral()(np.zeros(1))[0])
 
 
-FRACTION = Profile((0.0, 1.0), ((0.5, 0.5),))  # the fraction x/L itself, as a property
 ONE = Profile((0.0, 1.0), ((1.0,),))
 
 

@@ -39,7 +39,7 @@ from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import SteadyRotation
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
-from beamdyn.scene.profile import FRACTION, ONE, Profile
+from beamdyn.scene.profile import ONE, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import offset_components
 
@@ -120,7 +120,7 @@ def _moment(beam: Beam, component: int, power: int) -> Profile | None:
     """
     offset = offset_components(beam)[component]
     first = offset and beam.mass_per_length * offset
-    return first and (first * FRACTION).scaled(beam.length) if power else first
+    return first and first.times_fraction().scaled(beam.length) if power else first
 
 
 @lru_cache(maxsize=64)
