@@ -44,6 +44,8 @@ _STEEPEST = 2 * np.pi  # largest slope angle [rad] up to which a branch is conti
 _UNSTABLE = "the straight beam, of which effects are judged, is unstable"
 _JUST_BELOW = 1 - 1e-9  # ratio of the last listed speed of the stable straight beam to its critical speed
 _ROUNDING = 1e-13  # rounding error of a position, relative to the length
+# Relative rounding error of loads and stiffness, which deflects the beam much more near buckling.
+_OF_LOADS = 16 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -128,11 +130,10 @@ class Equilibrium(StatesModelError):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the bent beam in equilibrium."""
-        across = _directions(self.scene.mount)[0]
         points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
-        title = f"equilibrium at {self.display_units.speed_unit().say(self.speed)}, {self.branch} branch"
-        stable = "" if self.stable else ", unstable"
-        return plot_bent_beam(points[:, 0], points[:, 1:] @ across, ax, title + stable)
+        unstable = "" if self.stable else ", unstable"
+        title = f"equilibrium at {self.say_speed(self.speed)}, {self.branch} branch{unstable}"
+        return plot_bent_beam(points[:, 0], points[:, 1:] @ _directions(self.scene.mount)[0], ax, title)
 
 
 def equilibrium(
@@ -202,7 +203,7 @@ def equilibrium(
         branch=scene.physics.branch,
         tip=_in_space(tip, scene.mount),
         tip_angle=solver.elastica.tip_angle(q),
-        error=float(error) + _ROUNDING * scene.beam.length,
+        error=float(error) + _rounding(solver.load, q, speeds[0] ** 2) * scene.beam.length,
         stable=growth <= 0,
         growth_rate=max(growth, 0.0),
         warnings=(*(() if growth <= 0 else (unstable,)), *flat),
@@ -210,6 +211,15 @@ def equilibrium(
         scene=scene,
         model=solution.model,
     )
+
+
+def _rounding(load: Loading, q: np.ndarray, p: float) -> float:
+    """Estimate the rounding error of positions over the length, at coordinates q and squared speed p.
+
+    It includes the deflection by a change of the load within rounding, which is large near buckling.
+    """
+    turned = np.linalg.solve(load.at(q, p).change, p * load.rate(q)) @ load.angles
+    return _ROUNDING + _OF_LOADS * float(np.abs(turned).max())
 
 
 def _with_large_deflection(scene: object, branch: str | None) -> Scene:
@@ -355,9 +365,9 @@ def equilibrium_branches(
         branches = [_collect("straight", load, continuation.start_curve(load, rest, 0.0, 1.0), top)]
     else:
         speeds = np.union1d(np.linspace(0, top, 101), min(top, _JUST_BELOW * solver.critical_speed))
-        stable = speeds < solver.critical_speed  # the stiffness depends linearly on the squared speed
         tips = np.tile(_in_space(load.elastica.beam.at(rest).tip, scene.mount), (len(speeds), 1))
-        branches = [EquilibriumBranch("straight", speeds, tips, stable, np.empty(0))]
+        # The straight beam is stable below one speed: its stiffness is linear in the squared speed.
+        branches = [EquilibriumBranch("straight", speeds, tips, speeds < solver.critical_speed, np.empty(0))]
     try:  # continues another branch from the top speed through its turning points
         start_of_bent = continuation.start_curve(load, find_bent(load, top), top**2, -1.0)
         branches.append(_collect("bent", load, start_of_bent, top))

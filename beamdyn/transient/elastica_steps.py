@@ -15,7 +15,6 @@ In shapes of arrays, n counts coordinates, N steps, and s nodes in each.
 from __future__ import annotations
 
 import math
-from functools import partial
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -74,8 +73,7 @@ def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float)
     still = np.zeros((_TIMES_COMPARED, system.size))
     # Times are unevenly spaced, so that they do not coincide with any period of the forces.
     times = t_end * np.sqrt(np.linspace(0, 1, len(still)))
-    carrier = system.carrier(system.root(times))
-    force = system.residual(carrier, q, still, still)
+    force = system.residual(system.carrier(system.root(times)), q, still, still)
     stiffness, size = np.abs(system.elastica.beam.stiffness), np.abs(q[0])
     # Equilibria are known up to rounding of the coordinates, which means a large force in a stiff mode.
     if (np.abs(force) > _BALANCE * ((stiffness @ size).max() + np.diag(stiffness) * size.max())).any():
@@ -99,8 +97,9 @@ def attempt_elastica(
 
     def run(stages: int, like: tuple[Segment, ...] = ()) -> tuple[Segment, ...]:
         known = iter(like)
-        one = partial(propagate_elastica, system, stages=stages)
-        return chain_segments(edges, steps, y0, lambda *step: one(*step, like=next(known, None)))
+        return chain_segments(
+            edges, steps, y0, lambda *step: propagate_elastica(system, *step, stages, next(known, None))
+        )
 
     try:
         coarse = run(STAGES)
@@ -134,8 +133,7 @@ def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[S
     starts = np.array([(longest.start + longest.end - longest.h) / 2])
     maps, finer = (step_maps(straight, starts, longest.h, tableau(s)).step for s in (STAGES, _FINER))
     phases = phase_errors(finer - maps, vibration_frequencies(straight, longest.end))
-    some = fine[:: 1 + len(fine) // _MANY]
-    interpolation = max(_interpolation_error(system, segment) for segment in some)
+    interpolation = max(_interpolation_error(system, s) for s in fine[:: 1 + len(fine) // _MANY])
     return TimeError.of_coordinates(straight, modes, interpolation, phases > UNRESOLVED_PHASE)
 
 
