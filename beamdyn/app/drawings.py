@@ -93,9 +93,9 @@ def bent_strip(
     ----------
     x : ndarray, shape (n,)
         Positions along the strip [m], from 0 to its length.
-    y : ndarray, shape (n, k)
+    y : ndarray, shape (n, across)
         Positions across the strip [m].
-    deflection : ndarray, shape (n, k)
+    deflection : ndarray, shape (n, across)
         Magnified deflection [m].
     across : ndarray, shape (n,)
         Magnified deflection of the centre line in the direction -y [m].

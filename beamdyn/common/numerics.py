@@ -15,18 +15,18 @@ from scipy.linalg.blas import dtrsm
 
 
 def solve_lower(L: np.ndarray, B: np.ndarray) -> np.ndarray:
-    """Solve L X = B for lower triangular L (n, n) and B (n, m)."""
+    """Solve L X = B for lower triangular L, shape (n, n), and several columns B."""
     # The transpose is stored by columns, as LAPACK needs it, so that no copy is made.
     return dtrsm(1.0, L.T, B, lower=0, trans_a=1)
 
 
 def solve_lower_transposed(L: np.ndarray, B: np.ndarray) -> np.ndarray:
-    """Solve L^T X = B for lower triangular L (n, n) and B (n, m)."""
+    """Solve L^T X = B for lower triangular L, shape (n, n), and several columns B."""
     return dtrsm(1.0, L.T, B, lower=0)
 
 
 def assign(cost: np.ndarray) -> np.ndarray:
-    """Assign a different column (n,) to each row of a cost matrix (n, m), n <= m, at the least total cost."""
+    """Assign a different column to each of the n rows of a cost matrix (n, m), n <= m, at the least cost."""
     least = cost.argmin(axis=1)
     if np.isfinite(cost).all() and len(np.unique(least)) == len(least):
         return least  # the cheapest columns of the rows are all different
@@ -70,7 +70,7 @@ def longer_semi_axis(c: np.ndarray) -> np.ndarray:
 
 
 def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Multiply two Legendre series; coefficients in columns (m, c) and (n, c), product (m + n - 1, c).
+    """Multiply two Legendre series with m and n coefficients, in columns: the product has m + n - 1.
 
     The Gauss rule with as many points as the product has coefficients determines it from the values there.
     """
@@ -82,7 +82,7 @@ def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def integrate_series(series: np.ndarray) -> np.ndarray:
-    """Integrate Legendre series from 1 to t; coefficients in columns (m, c), integral (m + 1, c).
+    """Integrate Legendre series from 1 to t; coefficients in columns, one more in the integral.
 
     The derivative of P_{k+1} - P_{k-1} is (2k + 1) P_k.
     """

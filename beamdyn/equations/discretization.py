@@ -50,12 +50,12 @@ class ArcQuadrature:
 
     @cached_property
     def xi(self) -> np.ndarray:
-        """Gauss points x/L on [0, 1], shape (N,)."""
+        """Gauss points x/L on [0, 1]."""
         return gauss_points_on(self.cells.ends, self.cells.points).ravel()
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Weights of the integral from 0 to 1, shape (N,)."""
+        """Weights of the integral from 0 to 1."""
         return gauss_weights_on(self.cells.ends, self.cells.points)
 
     @cached_property
@@ -63,7 +63,7 @@ class ArcQuadrature:
         return np.diff(self.cells.ends)[:, None] / 2
 
     def integrate(self, values: np.ndarray) -> np.ndarray:
-        """Integrate values (..., N) from the root to each point and to the tip: shape (..., N + 1)."""
+        """Integrate values at the Gauss points (last axis) from the root to each of them and to the tip."""
         p, N = self.cells.points, len(self.xi)
         of_cells = values.reshape(-1, p)
         shape = *values.shape[:-1], (len(self.cells.ends) - 1), p
@@ -78,7 +78,7 @@ class ArcQuadrature:
         return integrals
 
     def transposed(self, forces: np.ndarray) -> np.ndarray:
-        """Apply the transposed matrix of `integrate` to forces (..., N + 1): shape (..., N)."""
+        """Apply the transposed matrix of `integrate` to forces at the Gauss points and the tip."""
         p = self.cells.points
         _, w = gauss_rule(p)
         inside = forces[..., :-1].reshape(*forces.shape[:-1], (len(self.cells.ends) - 1), p)
@@ -88,7 +88,7 @@ class ArcQuadrature:
         return scaled.reshape(*forces.shape[:-1], (len(self.cells.ends) - 1) * p)
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Compute weights (k, N) that integrate values at the Gauss points from the root to xi (k,)."""
+        """Compute weights (k, points) that integrate from the root to k positions xi, at Gauss points."""
         cell, t, own = self._find(xi)
         length, p = np.diff(self.cells.ends)[cell], self.cells.points
         matrix = np.where(np.arange(len(self.xi)) < (cell * p)[:, None], self.weights, 0.0)
@@ -96,7 +96,7 @@ class ArcQuadrature:
         return matrix
 
     def interpolate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Compute weights (k, N) that interpolate from the points of each cell to xi (k,)."""
+        """Compute weights (k, points) that interpolate from the points of each cell to k positions xi."""
         _, t, own = self._find(xi)
         matrix = np.zeros((len(xi), len(self.xi)))
         values = legendre.legvander(t, self.cells.points - 1) @ legendre_series(self.cells.points)
@@ -104,7 +104,7 @@ class ArcQuadrature:
         return matrix
 
     def _find(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Find the cell of each xi (k,), the local coordinate from -1 to 1 (k,), and point indices (k, p)."""
+        """Find the cell of each xi, its local coordinate from -1 to 1, and indices of the cell's points."""
         ends, p = self.cells.ends, self.cells.points
         cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
         t = np.clip(2 * (xi - ends[cell]) / np.diff(ends)[cell] - 1, -1, 1)
@@ -118,7 +118,7 @@ def integrals_between_points(points: int) -> np.ndarray:
 
 
 def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
-    """Compute weights (k, p) that integrate values at p Gauss points from -1 to each of t (k,)."""
+    """Compute weights (k, p) that integrate values at p Gauss points from -1 to each of k values t."""
     integrals = legendre.legint(np.eye(points), lbnd=-1)
     return legendre.legvander(t, points) @ integrals @ legendre_series(points)
 
@@ -157,7 +157,7 @@ class Sampler:
         return self._known[profile]
 
     def _place(self, breakpoints: tuple[float, ...], degree: int) -> tuple[np.ndarray, np.ndarray]:
-        """Find the segment (c,) that contains each cell, and Legendre polynomials (c, points, n).
+        """Find the segment that contains each cell, and Legendre polynomials (cells, points, degrees).
 
         The polynomials have at least the given degree; they are cached, as most properties share their
         segments.
@@ -180,17 +180,17 @@ class SampledSpace(FieldsOnly, ABC):
     @cached_property
     @abstractmethod
     def points(self) -> np.ndarray:
-        """Points x/L of the Gauss rule on [0, 1], shape (k,)."""
+        """Points x/L of the Gauss rule on [0, 1]."""
 
     @cached_property
     @abstractmethod
     def rule(self) -> np.ndarray:
-        """Weights of the Gauss rule, shape (k,)."""
+        """Weights of the Gauss rule."""
 
     @cached_property
     @abstractmethod
     def samples(self) -> list[np.ndarray]:
-        """Values of the trial functions and of each derivative at the Gauss points, of shape (n, k) each."""
+        """Values of the trial functions and of each derivative at the Gauss points, functions in rows."""
 
     @property
     def size(self) -> int:
@@ -207,19 +207,19 @@ class SampledSpace(FieldsOnly, ABC):
         return self.rule * weight(self.points)
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrate a weight times the `order`-th derivatives of functions i and j: shape (n, n)."""
+        """Integrate a weight times the `order`-th derivatives of all pairs of functions: a matrix."""
         phi = self.samples[order]
         return (phi * self.weights(weight)) @ phi.T
 
     def load(self, weight: Profile, order: int = 0) -> np.ndarray:
-        """Integrate a weight times the `order`-th derivative of each function: shape (n,)."""
+        """Integrate a weight times the `order`-th derivative of each function."""
         return self.samples[order] @ self.weights(weight)
 
 
 def product_of(
     rows: SampledSpace, columns: SampledSpace, weight: Profile, orders: tuple[int, int]
 ) -> np.ndarray:
-    """Integrate a weight times derivatives of functions of `rows` and `columns` on a common rule: (n, m)."""
+    """Integrate a weight times derivatives of each pair of functions, by a rule that both spaces share."""
     return (rows.samples[orders[0]] * rows.weights(weight)) @ columns.samples[orders[1]].T
 
 
@@ -258,11 +258,11 @@ class Functions(Protocol):
         ...
 
     def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives of phi_i at the tip: shape (n,)."""
+        """Evaluate the `order`-th derivatives of phi_i at the tip."""
         ...
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives of phi_i at xi of shape (k,): shape (n, k)."""
+        """Evaluate the `order`-th derivatives of all phi_i at k positions xi: shape (functions, k)."""
         ...
 
 
@@ -275,11 +275,11 @@ class Space(Functions, Protocol):
         ...
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrate over xi the weight times the `order`-th derivatives of phi_i and phi_j: shape (n, n)."""
+        """Integrate over xi the weight times the `order`-th derivatives of all pairs phi_i, phi_j."""
         ...
 
     def load(self, weight: Profile, order: int = 0) -> np.ndarray:
-        """Integrate over xi the weight times the `order`-th derivative of phi_i: shape (n,)."""
+        """Integrate over xi the weight times the `order`-th derivative of phi_i."""
         ...
 
 

@@ -89,7 +89,7 @@ class Shape:
     ----------
     block : str
         Name of the block of coordinates: the field's own block, unless the equations are reduced.
-    matrix : ndarray, shape (m, n)
+    matrix : ndarray, shape (m, coordinates)
         Coefficients of the m functions of the discretization per unit of each coordinate of the block.
     """
 
@@ -163,7 +163,7 @@ class Equations:
     # Deflection of the beam as a function of the coordinates ---------------------------------------
 
     def deflection(self, xi: np.ndarray, order: int = 0, direction: int = 0) -> np.ndarray:
-        """Evaluate derivatives with respect to x/L of the deflection per unit coordinate at xi (k,): (n, k).
+        """Evaluate derivatives with respect to x/L of the deflection by unit coordinates, at k positions xi.
 
         Direction 0 is that of the bending angle, direction 1 is across.
         """
@@ -172,7 +172,7 @@ class Equations:
         return self._over_coordinates(lambda d: d.space.evaluate(xi, order), direction, xi.shape)
 
     def surface(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Evaluate a strip's deflection in the direction of bending per unit coordinate: shape (n, k, l).
+        """Evaluate a strip's deflection in the direction of bending by unit coordinates: (coordinates, k, l).
 
         The points are xi = x/L (k,) along and eta = 2 y/b (l,) across, with y in the direction across.
         A ValueError is raised if an eta lies outside the strip.
@@ -189,7 +189,7 @@ class Equations:
         return values
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate width means (n, k) of second derivatives of deflection with respect to eta = 2 y/b."""
+        """Evaluate second derivatives of deflections by eta = 2 y/b, averaged over the width, at xi = x/L."""
         values = np.zeros((self.size, len(xi)))
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -197,7 +197,7 @@ class Equations:
         return values
 
     def momentum(self, vectors: np.ndarray) -> np.ndarray:
-        """Multiply vectors (..., n, k) by the mass matrix, block by block."""
+        """Multiply vectors in columns by the mass matrix, block by block."""
         total = np.zeros_like(vectors)
         for term in (t for t in self.terms if t.order == 2 and t.quantity == "unity"):
             moved = vectors[..., self.blocks[term.columns], :]
@@ -206,7 +206,7 @@ class Equations:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection of the tip's corner in the direction across, per unit of each coordinate: shape (n,)."""
+        """Deflection of the tip's corner in the direction across, per unit of each coordinate."""
         values = self.tip.copy()
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -215,20 +215,20 @@ class Equations:
 
     @cached_property
     def tip(self) -> np.ndarray:
-        """Tip deflection per unit of each coordinate in the direction of bending, shape (n,)."""
+        """Tip deflection per unit of each coordinate in the direction of bending."""
         return self.tips[0]
 
     @cached_property
     def tips(self) -> np.ndarray:
-        """Tip deflection per unit coordinate in each direction in which the beam bends, shape (1 or 2, n)."""
+        """Tip deflection by unit coordinates, one row for each direction in which the beam bends."""
         return np.array([self._over_coordinates(lambda d: d.space.end(0), k) for k in range(self.planes)])
 
     def P(self, direction: int) -> np.ndarray:
-        """Compute the load under a unit root acceleration in a direction of bending [kg], shape (n,)."""
+        """Compute the load under a unit root acceleration in a direction of bending [kg]."""
         return self._over_coordinates(lambda d: d.P, direction)
 
     def Q(self, direction: int) -> np.ndarray:
-        """Compute the load under a unit angular acceleration in a direction's plane [kg m], shape (n,).
+        """Compute the load under a unit angular acceleration in a direction's plane [kg m].
 
         Sections and tip bodies with a product of inertia are also tilted towards the other direction.
         """
@@ -271,11 +271,11 @@ class Equations:
         return root_motion(self.mount, sample, self.gravity)
 
     def matrix(self, order: int, root: RootMotion) -> np.ndarray:
-        """Compute the matrix of the `order`-th time derivative of q: shape (..., n, n) at times (...)."""
+        """Compute the matrix of the `order`-th time derivative of q at each of the times."""
         return _sum_over_quantities(self.matrices[order], root, (self.size, self.size))
 
     def load(self, root: RootMotion) -> np.ndarray:
-        """Compute the right-hand side of the equations: shape (..., n) at times (...)."""
+        """Compute the right-hand side of the equations at each of the times."""
         return _sum_over_quantities(self.vectors, root, (self.size,))
 
     def steady(self) -> SteadyPencil:
@@ -339,7 +339,7 @@ class Equations:
 
         Parameters
         ----------
-        bases : mapping of tuple of str to ndarray, shape (n, m)
+        bases : mapping of tuple of str to ndarray, shape (coordinates, fewer)
             Basis of each set of blocks, in columns: its modes at rest, for instance.
 
         Returns

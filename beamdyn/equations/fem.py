@@ -180,7 +180,7 @@ class FemSpaces(FieldsOnly):
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate a weight times derivatives of functions i of `rows` and j of `columns`: shape (n, m)."""
+        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
         return _integrate(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
@@ -253,26 +253,26 @@ class FemSpace(FieldsOnly):
         return weight(self.points)
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrate a weight times the `order`-th derivatives of functions i and j: shape (n, n)."""
+        """Integrate a weight times the `order`-th derivatives of all pairs of functions."""
         return _integrate(self, self, weight, (order, order))
 
     def load(self, weight: Profile, order: int = 0) -> np.ndarray:
-        """Integrate a weight times the `order`-th derivative of each function: shape (n,)."""
+        """Integrate a weight times the `order`-th derivative of each function."""
         return self.integrate(self.weights(weight), order)
 
     def integrate(self, values: np.ndarray, order: int) -> np.ndarray:
-        """Integrate values at the quadrature points times the `order`-th derivatives of functions: (n,)."""
+        """Integrate values at the quadrature points times the `order`-th derivative of each function."""
         vector = _LOADS[order].assemble(self.basis, weight=values)[self.free]
         if self.turns:
             vector[0] = (self.basis.dx * values * _turn(self.points, order)).sum()
         return vector
 
     def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives of the functions at the tip: shape (n,)."""
+        """Evaluate the `order`-th derivatives of the functions at the tip."""
         return self.evaluate(np.array([1.0]), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives of the functions at xi (k,): shape (n, k)."""
+        """Evaluate the `order`-th derivatives of the functions at k positions xi: (functions, k)."""
         x = np.asarray(xi, dtype=float)[None, :]
         mesh, element, mapping = self.basis.mesh, self.basis.elem, self.basis.mapping
         cells = mesh.element_finder(mapping=mapping)(*x)
@@ -289,12 +289,12 @@ class FemSpace(FieldsOnly):
 
 
 def _turn(xi: np.ndarray, order: int) -> np.ndarray:
-    """Evaluate the `order`-th derivative at xi (k,) of x/L, the rigid rotation about the root."""
+    """Evaluate the `order`-th derivative at xi of x/L, the rigid rotation about the root."""
     return (xi, np.ones_like(xi), np.zeros_like(xi))[order]
 
 
 def _integrate(rows: FemSpace, columns: FemSpace, weight: Profile, orders: tuple[int, int]) -> np.ndarray:
-    """Integrate a weight times derivatives of functions i of `rows` and j of `columns`: shape (n, m)."""
+    """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
     values = rows.weights(weight)
     assembled = _PRODUCTS[orders].assemble(columns.basis, rows.basis, weight=values)
     matrix = assembled.toarray()[np.ix_(rows.free, columns.free)]

@@ -38,7 +38,7 @@ class PiecewisePolynomials:
         return [int(np.ceil(number * length**0.5)) for length in np.diff(self.ends)]
 
     def __call__(self, xi: np.ndarray, counts: Sequence[int], continuous: bool) -> np.ndarray:
-        """Evaluate all polynomials at xi (N,): shape (n, N).
+        """Evaluate all polynomials at xi (N,): shape (functions, N).
 
         Parameters
         ----------
@@ -67,22 +67,22 @@ class PiecewisePolynomials:
         return values
 
     def _hats(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate hat functions: 1 at one end of a part, 0 at all others, linear in between: (p + 1, N)."""
+        """Evaluate hat functions: 1 at one end of a part, 0 at all others, linear in between."""
         return np.array([np.interp(xi, self.ends, unit) for unit in np.eye(len(self.ends))])
 
     def _part(self, xi: np.ndarray) -> np.ndarray:
-        """Find the index of the part that contains each xi: shape (N,)."""
+        """Find the index of the part that contains each xi."""
         return np.clip(np.searchsorted(self.ends, xi, side="right") - 1, 0, len(self.ends) - 2)
 
     def contained(self, counts: Sequence[int], fewer: Sequence[int], continuous: bool) -> np.ndarray:
-        """Mark those of `counts` polynomials per part that a set of `fewer` per part also contains: (n,)."""
+        """Mark those of `counts` polynomials per part that a set of `fewer` per part also contains."""
         bubbles = 2 if continuous and len(counts) > 1 else 0
         on_parts = [np.arange(max(n - bubbles, 0)) < m - bubbles for n, m in zip(counts, fewer, strict=True)]
         hats = np.ones(len(self.ends) if bubbles else 0, dtype=bool)
         return np.concatenate([hats, *on_parts])
 
     def phases(self, left: np.ndarray, right: np.ndarray, number: int) -> np.ndarray:
-        """Compute the phase change (c,) [rad] of the highest polynomial over cells with given ends (c,)."""
+        """Compute the phase change [rad] of the highest polynomial over cells with given ends."""
         part, ends = self._part((left + right) / 2), np.array(self.ends)
         start, length = ends[part], np.diff(ends)[part]
         first, last = (np.arccos(np.clip(1 - 2 * (x - start) / length, -1, 1)) for x in (left, right))
@@ -90,12 +90,12 @@ class PiecewisePolynomials:
 
 
 def gram_by_mass(beam: Beam, space: Space) -> np.ndarray:
-    """Integrate products of functions i and j, weighted by the mass [kg]: shape (n, n)."""
+    """Integrate products of all pairs of functions, weighted by the mass [kg]."""
     return space.gram(beam.mass_per_length, 0) * beam.length + product_at_lumps(beam, space, space)
 
 
 def product_by_mass(beam: Beam, spaces: Spaces, rows: RootConditions, columns: RootConditions) -> np.ndarray:
-    """Integrate products of functions i of `rows` and j of `columns`, weighted by the mass [kg]: (n, m)."""
+    """Integrate products of functions of `rows` with functions of `columns`, weighted by the mass [kg]."""
     of_sections = spaces.product(beam.mass_per_length, rows, columns) * beam.length
     return of_sections + product_at_lumps(beam, spaces.functions(rows), spaces.functions(columns))
 
@@ -112,7 +112,7 @@ def loads_by_mass(beam: Beam, space: Space) -> tuple[np.ndarray, np.ndarray]:
 
 
 def product_at_lumps(beam: Beam, rows: Functions, columns: Functions) -> np.ndarray:
-    """Sum products of functions i of `rows`, j of `columns` over the point masses [kg]: shape (n, m)."""
+    """Sum products of functions of `rows` with functions of `columns` over the point masses [kg]."""
     xi, mass = beam.lumps
     if not mass.size:
         return np.zeros((rows.size, columns.size))

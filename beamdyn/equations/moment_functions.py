@@ -99,7 +99,7 @@ class MomentSpaces(FieldsOnly):
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate a weight times derivatives of functions i of `rows` and j of `columns`: shape (n, m)."""
+        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
@@ -180,7 +180,7 @@ class MomentSpaces(FieldsOnly):
 
 
 def _halve(ends: np.ndarray, are_coarse: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
-    """Halve cells with ends (c + 1,) until `are_coarse(left, right)` marks no cell."""
+    """Halve cells with ends until `are_coarse(left, right)` marks no cell."""
     fine, (left, right) = [], (ends[:-1], ends[1:])
     while left.size:
         coarse = are_coarse(left, right) & (right - left > _SHORTEST)
@@ -276,7 +276,7 @@ def _build_forces(
 
 @lru_cache(maxsize=4)  # all directions share the same polynomials
 def _polynomials(spaces: MomentSpaces, counts: tuple[int, ...], continuous: bool) -> np.ndarray:
-    """Evaluate polynomials on the parts of the beam, `counts` on each, at the nodes: shape (n, N)."""
+    """Evaluate polynomials on the parts of the beam, `counts` on each, at the nodes: (polynomials, nodes)."""
     return spaces.polynomials(spaces.nodes.xi, counts, continuous)
 
 
@@ -313,12 +313,12 @@ class MomentSpace(SampledSpace):
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points x/L of the Gauss rule on [0, 1], shape (k,)."""
+        """Points x/L of the Gauss rule on [0, 1]."""
         return self.spaces.quadrature.xi
 
     @cached_property
     def rule(self) -> np.ndarray:
-        """Weights of the Gauss rule, shape (k,)."""
+        """Weights of the Gauss rule."""
         return self.spaces.quadrature.weights
 
     def weights(self, weight: Profile) -> np.ndarray:
@@ -331,7 +331,7 @@ class MomentSpace(SampledSpace):
 
     @cached_property
     def _quotients(self) -> tuple[int, np.ndarray]:
-        """Number of quotients of the coarser basis, and orthonormal quotients of force and stiffness (m, k).
+        """Number of quotients of the coarser basis, and orthonormal quotients (rows) of force and stiffness.
 
         The first quotients, whose number is returned, span the coarser discretization; 0 if none do.
         """
@@ -360,7 +360,7 @@ class MomentSpace(SampledSpace):
 
     @cached_property
     def _derivatives(self) -> list[np.ndarray]:
-        """Functions and derivatives at the points and, except for the highest, at the tip: (n, k + 1)."""
+        """Functions and derivatives at the points and, except for the highest, at the tip."""
         rows = [self._quotients[1]]
         for _order in reversed(range(self.conditions.derivatives)):
             rows.insert(0, self.spaces.quadrature.integrate(rows[0][:, : len(self.rule)]))
@@ -372,17 +372,17 @@ class MomentSpace(SampledSpace):
 
     @cached_property
     def samples(self) -> list[np.ndarray]:
-        """Values of the functions and of each derivative at the Gauss points, of shape (n, k) each."""
+        """Values of the functions and of each derivative at the Gauss points, (functions, points) each."""
         return [values[:, : len(self.rule)] for values in self._derivatives]
 
     def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives of the functions at the tip: shape (n,)."""
+        """Evaluate the `order`-th derivatives of the functions at the tip."""
         if order < self.conditions.derivatives:
             return self._derivatives[order][:, -1]
         return self.evaluate(np.ones(1), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives of the functions at xi (k,): shape (n, k)."""
+        """Evaluate the `order`-th derivatives of the functions at k positions xi: (functions, k)."""
         xi, quadrature = np.asarray(xi, dtype=float), self.spaces.quadrature
         if order == self.conditions.derivatives:
             return self.samples[order] @ quadrature.interpolate_to(xi).T
@@ -404,7 +404,7 @@ def _orthonormalize_nested(
 
 
 def orthonormalize(columns: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Compute an orthonormal basis (k, m) of columns (k, n) with weights (k,), accurate to rounding."""
+    """Compute an orthonormal basis of columns, in products weighted by `weight`, accurate to rounding."""
     root = np.sqrt(weight)[:, None]
     return _span(_unit(columns * root)) / root
 
@@ -416,7 +416,7 @@ def _unit(columns: np.ndarray) -> np.ndarray:
 
 
 def _span(columns: np.ndarray) -> np.ndarray:
-    """Compute an orthonormal basis (k, m) of columns (k, n) of norm 1 or less, accurate to rounding."""
+    """Compute an orthonormal basis of columns of norm 1 or less, accurate to rounding."""
     n = columns.shape[1]
     reflectors, _, tau, _, _ = dgeqp3(columns, lwork=_BLOCK * (n + 1) + 2 * n)
     rank = int((np.abs(np.diag(reflectors)) > _DEPENDENT).sum())

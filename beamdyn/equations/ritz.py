@@ -151,7 +151,7 @@ class RitzSpaces:
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate a weight times derivatives of functions i of `rows` and j of `columns`: shape (n, m)."""
+        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
         return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
@@ -194,12 +194,12 @@ class RitzSpace(SampledSpace):
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points x/L of the Gauss rule on [0, 1], shape (k,)."""
+        """Points x/L of the Gauss rule on [0, 1]."""
         return gauss_points_on(np.array(self.spaces.breakpoints), self.spaces.points).ravel()
 
     @cached_property
     def rule(self) -> np.ndarray:
-        """Weights of the Gauss rule, shape (k,)."""
+        """Weights of the Gauss rule."""
         return gauss_weights_on(np.array(self.spaces.breakpoints), self.spaces.points)
 
     def weights(self, weight: Profile) -> np.ndarray:
@@ -210,7 +210,7 @@ class RitzSpace(SampledSpace):
 
     @cached_property
     def samples(self) -> list[np.ndarray]:
-        """Values of the functions and of each derivative at the Gauss points, of shape (n, k) each."""
+        """Values of the functions and of each derivative at the Gauss points, (functions, points) each."""
         return [self.evaluate(self.points, order) for order in range(self.conditions.derivatives + 1)]
 
     @cached_property
@@ -219,11 +219,11 @@ class RitzSpace(SampledSpace):
         return [self.evaluate(np.ones(1), order)[:, 0] for order in orders]
 
     def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives of the functions at the tip: shape (n,)."""
+        """Evaluate the `order`-th derivatives of the functions at the tip."""
         return self._tip_values[order]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives at xi (k,); with a hinged root, the rotation x/L is first."""
+        """Evaluate the `order`-th derivatives at xi; with a hinged root, the rotation x/L is first."""
         xi, (held, derivatives) = np.asarray(xi, dtype=float), self.conditions[:2]
         ritz, ends = self.spaces.ritz, self.spaces.breakpoints
         values = _BASES[ritz.basis](ritz.functions, ends, derivatives, xi, order)
@@ -260,7 +260,7 @@ def _integrated_legendre(
 
 
 def _integrate_on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -> np.ndarray:
-    """Integrate n Legendre polynomials on [a, b] repeatedly from the root; return values at xi: (n, k)."""
+    """Integrate n Legendre polynomials on [a, b] repeatedly from the root; return values (n, k) at k xi."""
     half = (b - a) / 2
     scale = np.sqrt((2 * np.arange(n) + 1) / (b - a))[:, None]
     inside, beyond = (xi >= a) & (xi <= b), xi > b

@@ -47,7 +47,7 @@ class RootMoment:
     velocity: Mapping[Quantity, np.ndarray]
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Compute the moment [N m] at T times, for q and v (T, n); it bends to positive deflection if > 0."""
+        """Compute the moment [N m] at given coordinates and velocities; positive deflection if it is > 0."""
         moment = np.zeros(root.unity.shape)
         for quantity, value in self.load.items():
             moment += getattr(root, quantity) * value
@@ -210,7 +210,7 @@ def _embed(full: Equations, equations: Equations) -> np.ndarray:
 
 
 def _rotation(full: Equations, field: slice) -> np.ndarray:
-    """Build the rigid rotation x/L about the root, a deflection without elastic energy, as coordinates (n,).
+    """Build the rigid rotation x/L about the root, a deflection without elastic energy, as coordinates.
 
     The only coordinate with a slope at the root is the field's first.
     """

@@ -1,7 +1,7 @@
 """Free motion of linear equations, M q'' + C q' + K q = 0, independent of the units of coordinates.
 
-Coordinates u are chosen in which K + z^2 M is the unit matrix and M = diag(r^2), and the states are u and
-w = r u'.  Then all quantities are times, and for the poles s the eigenvalues of T are 1 / (s - z), where
+Coordinates u are chosen in which K + z^2 M is the unit matrix and M = diag(r^2), and the states are u and w =
+r u'.  Then all quantities are times, and for the poles s the eigenvalues of T are 1 / (s - z), where
 
     T (u, w) = (v, r (u + z v)),    v = -(I + z C)^-1 ((C + z r^2) u + r w).
 
@@ -85,7 +85,7 @@ class FreeMotion:
 
     @property
     def poles(self) -> np.ndarray:
-        """Poles [1/s] (m,), ascending in magnitude; infinite for massless coordinates."""
+        """Poles [1/s], ascending in magnitude; infinite for massless coordinates."""
         massless = np.full(np.count_nonzero(self.inverse_poles == 0), np.inf)
         return np.concatenate([self.finite_poles, massless])
 
@@ -103,7 +103,7 @@ class FreeMotion:
         return len(self.shapes) * _EPS * float(size.max(where=np.isfinite(size), initial=0.0))
 
     def shares(self, loads: np.ndarray) -> np.ndarray:
-        """Compute the coefficients (m, k) of the free motions in the responses to k loads (n, k)."""
+        """Compute the coefficients (poles, k) of the free motions in the responses to k loads in columns."""
         z, r = self.coordinates.shift, self.coordinates.roots[:, None]
         u = np.linalg.solve(np.eye(len(r)) + z * self.damping, self.coordinates.basis.T @ loads)
         return _in_terms_of(self.states, np.vstack([u, z * r * u])) * (1 - z * self.inverse_poles)[:, None]
@@ -114,7 +114,7 @@ def free_motion(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> FreeMotion:
 
     Parameters
     ----------
-    M, C, K : ndarray, shape (n, n)
+    M, C, K : ndarray, shape (coordinates, coordinates)
         Mass, damping with gyroscopic terms, and stiffness.
     """
     chosen = balance(M, K)
@@ -174,7 +174,7 @@ def _is_definite(A: np.ndarray) -> bool:
 
 
 def _in_terms_of(vectors: np.ndarray, states: np.ndarray) -> np.ndarray:
-    """Express states (m, k) as sums of eigenvectors, by least squares if the eigenvectors are dependent."""
+    """Express states (columns) as sums of eigenvectors, by least squares if these are dependent."""
     try:
         return np.linalg.solve(vectors, states)
     except np.linalg.LinAlgError:

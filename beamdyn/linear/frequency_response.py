@@ -98,7 +98,7 @@ class FrequencyResponse(JudgedByRepeating):
 
     @property
     def response_frequencies(self) -> np.ndarray:
-        """Frequencies f + h n of the response [Hz] for F values of f and k of h, some negative: (F, k)."""
+        """Frequencies f + h n of the response [Hz], with n turns per second: a column for each h."""
         return self.frequencies[:, None] + self.harmonics * self.speed / _TURN
 
     @property
@@ -197,7 +197,7 @@ def frequency_response(
     start = perf_counter()
     given = ascending("frequencies", frequencies)
     refuse(given < 0, "frequencies", given, "Hz", "give 0 or more")
-    refuse(given > _HIGHEST, "frequencies", given, "Hz", "at most {limit}", limit=_HIGHEST)
+    refuse(given > _HIGHEST, "frequencies", given, "Hz", "give at most {limit}", limit=_HIGHEST)
     drive, seen = as_excitation("input", input), as_observation("output", output)
     scene, speed = check_linear(scene, speed, modes if isinstance(modes, int) else None)
 

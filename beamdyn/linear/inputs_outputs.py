@@ -75,7 +75,7 @@ class BaseMotion:
         at_start, after_quarter = (_of_unit(mount, angle, self.direction) for angle in (0.0, np.pi / 2))
         if speed == 0 or self.direction == "n3":
             return {0: _without_zeros(at_start)}
-        # x(theta) = x(0) cos(theta) + x(pi/2) sin(theta)
+        # Each acceleration x varies with the angle: x(theta) = x(0) cos(theta) + x(pi/2) sin(theta).
         return {
             h: _without_zeros({k: (at_start[k] - 1j * h * after_quarter[k]) / 2 for k in _ACCELERATIONS})
             for h in (-1, 1)

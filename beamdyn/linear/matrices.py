@@ -62,7 +62,7 @@ class Matrices(StatesModelError):
         the parametric term of translation and gravity [unit of K / (m/s2)].
     static_load : ndarray, shape (n,)
         Load f by the steady rotation [units of the rows].
-    input_matrix : ndarray, shape (n, k)
+    input_matrix : ndarray, shape (n, inputs)
         Input matrix B: load by a unit of each input [unit of the row / unit of the input].
     inputs : tuple of str
         The inputs u, with units.

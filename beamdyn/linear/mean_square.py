@@ -176,7 +176,7 @@ def damped_motion(model: ModelAtSpeed) -> FreeMotion:
 
 
 def residues(free: FreeMotion, load: np.ndarray) -> np.ndarray:
-    """Compute residues (n, m) of n coordinates' response to a load (n,) at the m finite poles."""
+    """Compute residues of the coordinates' response to a load at the finite poles (columns)."""
     poles = free.finite_poles
     finite = slice(0, len(poles))
     return -poles * free.shapes[:, finite] * free.shares(load[:, None])[finite, 0]

@@ -131,22 +131,22 @@ class ModelAtSpeed(FieldsOnly):
 
     @property
     def M(self) -> np.ndarray:
-        """Mass matrix at this speed, shape (n, n)."""
+        """Mass matrix at this speed."""
         return self.pencil.M
 
     @cached_property
     def C(self) -> np.ndarray:
-        """Sum of damping and gyroscopic matrices at this speed, shape (n, n)."""
+        """Sum of damping and gyroscopic matrices at this speed."""
         return self.pencil.C + self.speed * self.pencil.G
 
     @cached_property
     def K(self) -> np.ndarray:
-        """Stiffness matrix at this speed, shape (n, n)."""
+        """Stiffness matrix at this speed."""
         return self.pencil.K0 + self.speed**2 * self.pencil.K2
 
     @cached_property
     def shapes(self) -> np.ndarray:
-        """Matrix (N, n) that gives the coordinates of all trial functions from the kept coordinates."""
+        """Matrix that gives the coordinates of all trial functions from the kept coordinates."""
         full, kept = self.model.equations, self.equations
         shapes = np.zeros((full.size, kept.size))
         for name, shape in kept.shapes.items():
@@ -253,7 +253,7 @@ class ModelAtSpeed(FieldsOnly):
         return np.array([self._per_moment(observation) * (total - by_kept), 0.0, 0.0])
 
     def _of_layers(self, observation: OfLayers) -> tuple[np.ndarray, int, np.ndarray]:
-        """Express an output of layers in all functions (N,), with order in time, and in kept ones (n,).
+        """Express an output of layers by all coordinates, its order in time, and it by the kept ones.
 
         Where the circuit has a coordinate, the first row has only deflections beyond the kept coordinates.
         """
@@ -329,7 +329,7 @@ _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the mat
 
 
 def pole_errors(model: ModelAtSpeed) -> np.ndarray:
-    """Estimate the relative errors (2 n,) of the poles of a model, in the order of `FreeMotion.poles`.
+    """Estimate the relative errors of the poles of a model, in the order of `FreeMotion.poles`.
 
     The error by modes left out, through damping and gyroscopic terms, is a pole's distance from its partner
     among the poles of all functions; these are compared with those of two coarser discretizations.  An

@@ -200,16 +200,16 @@ class HarmonicMagnitude:
         return -np.real(self.poles) <= _UNDAMPED * np.abs(self.poles)
 
     def size(self, f: np.ndarray) -> np.ndarray:
-        """Compute the magnitudes at excitation frequencies f (F,) [Hz]."""
+        """Compute the magnitudes at excitation frequencies f [Hz]."""
         return np.abs(self.total(self._s(f))[0])
 
     def rises(self, f: np.ndarray) -> np.ndarray:
-        """Return whether the magnitude increases with frequency at excitation frequencies f (F,) [Hz]."""
+        """Return whether the magnitude increases with frequency at excitation frequencies f [Hz]."""
         value, slope = self.total(self._s(f))
         return np.real(np.conj(value) * 1j * slope) > 0
 
     def solved(self, f: np.ndarray) -> np.ndarray:
-        """Compute the complex response at excitation frequencies f (F,) [Hz] from the equations of motion."""
+        """Compute the complex response at excitation frequencies f [Hz] from the equations of motion."""
         return respond(self.model, self.drive, self.seen, self._s(f))
 
     def rounding(self, f: np.ndarray) -> np.ndarray:

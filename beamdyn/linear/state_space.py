@@ -159,7 +159,7 @@ class _Rates(NamedTuple):
 
 
 def _rates(model: ModelAtSpeed, loads: np.ndarray) -> _Rates:
-    """Compute velocities and accelerations under k unit inputs' loads (n, k); a charge has only a rate."""
+    """Compute velocities and accelerations by loads of unit inputs (columns); a charge has only a rate."""
     n = model.equations.size
     m = model.mechanical.stop
     M = _with_mass(model, model.M[:m, :m])

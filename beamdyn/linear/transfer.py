@@ -50,7 +50,7 @@ class ModalSum:
         return 1 / self.inverse_poles[self.inverse_poles != 0]
 
     def __call__(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Evaluate the transfer function and its derivative at complex frequencies s [1/s], shapes (F,)."""
+        """Evaluate the transfer function and its derivative at complex frequencies s [1/s]."""
         step = max(1, _TERMS_AT_ONCE // len(self.inverse_poles))
         values, slopes = [], []
         for part in np.split(s, range(step, len(s), step)):
@@ -109,7 +109,7 @@ def transfer(
 
 
 def respond(model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation, s: np.ndarray) -> np.ndarray:
-    """Compute the response to one harmonic drive at complex frequencies s [1/s]: shape (F,)."""
+    """Compute the response to one harmonic drive at complex frequencies s [1/s]."""
     row, extra = model.row(observation), model.residual(observation, drive)
     size = model.equations.size
     step = max(1, _AT_ONCE // size**2)
@@ -122,7 +122,7 @@ def respond(model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation,
 
 
 def _solve(model: ModelAtSpeed, load: np.ndarray, s: np.ndarray) -> np.ndarray:
-    """Solve the equations of motion for coordinates (F, n) per unit of the input; inf where singular."""
+    """Solve the equations of motion for the coordinates per unit input at each s; inf where singular."""
     A = s[:, None, None] ** 2 * model.M + s[:, None, None] * model.C + model.K
     try:
         return np.linalg.solve(A, np.broadcast_to(load, (len(s), len(load)))[..., None])[..., 0]

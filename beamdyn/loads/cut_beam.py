@@ -43,7 +43,7 @@ class CutQuadrature:
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Quadrature points x/L, followed by the stations: shape (k + S,)."""
+        """Quadrature points x/L, followed by the stations."""
         return np.concatenate([gauss_points_on(self._ends, self.cells.points).ravel(), self.stations.xi])
 
     @cached_property
@@ -113,11 +113,11 @@ class CutSpace(SampledSpace):
         return values
 
     def end(self, order: int) -> np.ndarray:
-        """Evaluate the `order`-th derivatives of the functions at the tip: shape (n,)."""
+        """Evaluate the `order`-th derivatives of the functions at the tip."""
         return self.evaluate(np.ones(1), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives with respect to x/L, without delta functions: shape (n, k)."""
+        """Evaluate the `order`-th derivatives with respect to x/L, without delta functions: one row each."""
         stations = self.quadrature.stations
         cut, least = stations.xi[:, None], stations.xi + np.where(stations.inboard, -_TOUCHING, _TOUCHING)
         moved = (np.asarray(xi) > least[:, None]).astype(float)  # 1 for points outboard of each cut
@@ -128,11 +128,11 @@ class CutSpace(SampledSpace):
         return np.concatenate([*parts, moved if order == 0 else flat])
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
-        """Integrate a weight times the `order`-th derivatives of functions i and j: shape (n, n)."""
+        """Integrate a weight times the `order`-th derivatives of all pairs of functions."""
         return self.product(self, weight, (order, order))
 
     def product(self, columns: CutSpace, weight: Profile, orders: tuple[int, int]) -> np.ndarray:
-        """Integrate a weight times derivatives of functions of this space and of another: shape (n, m)."""
+        """Integrate a weight times derivatives of functions of this space and of another."""
         rule = self.weights(weight)
         if orders == (2, 2):
             rule[-len(self.quadrature.stations.xi) :] = 0.0
@@ -172,7 +172,7 @@ class CutSpaces:
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate a weight times derivatives of functions i of `rows` and j of `columns`: shape (n, m)."""
+        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
         return self.functions(rows).product(self.functions(columns), weight, orders)
 
     @property

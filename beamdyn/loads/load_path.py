@@ -72,11 +72,11 @@ class LoadPath(FieldsOnly):
         return self.run.system
 
     def at(self, t: np.ndarray) -> np.ndarray:
-        """Evaluate the outputs at times t [s] (T,): shape (T, S, K)."""
+        """Evaluate the outputs at times t [s]: shape (times, stations, outputs)."""
         return self.rows.at(self._system.root(t), *self.run.path.at(t))
 
     def loads_at(self, t: np.ndarray) -> np.ndarray:
-        """Evaluate forces and moments at times t [s] (T,): shape (T, S, 1 + 2 d)."""
+        """Evaluate forces and moments at times t [s]: (times, stations, components)."""
         return self.loads.at(self._system.root(t), *self.run.path.at(t))
 
     # Turning points and largest magnitudes --------------------------------------------------------
@@ -104,7 +104,7 @@ class LoadPath(FieldsOnly):
         return np.concatenate(found)
 
     def peaks(self, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
-        """Find the values of largest magnitude from start to end [s], and their times [s]: (S, K) each."""
+        """Find the values of largest magnitude from start to end [s], and their times [s], of all outputs."""
         t = self.run.path.samples[0]
         longest_gap = float(np.diff(t).max())
         t = np.concatenate([[start], t[(t > start) & (t < end)], [end]])
@@ -130,7 +130,7 @@ class LoadPath(FieldsOnly):
         last: np.ndarray,
         refinements: int,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Refine O largest values near times t [s], within `first` to `last`: values and times, (O, 1)."""
+        """Refine the largest values near times t [s], between `first` and `last`; return values and times."""
         found, half_width = np.empty(0), np.maximum(last - t, t - first)
         for _ in range(refinements):
             near = np.clip(t + half_width * np.linspace(-1, 1, 2 * _FINE + 1), first, last)
@@ -141,7 +141,7 @@ class LoadPath(FieldsOnly):
         return found, t
 
     def _each_at(self, single: LoadRows, t: np.ndarray) -> np.ndarray:
-        """Evaluate O single outputs, output i at the times t[i] [s]: shape (O, T)."""
+        """Evaluate single outputs, output i at the times t[i] [s]: shape (outputs, times)."""
         root = self._system.root(t)
         states = (each.reshape(*t.shape, -1) for each in self.run.path.at(t.ravel()))
         total = np.zeros(t.shape)
@@ -156,7 +156,7 @@ class LoadPath(FieldsOnly):
 
     @cached_property
     def error(self) -> np.ndarray:
-        """Estimated errors (S, K) over the whole transient, due to modes left out and time integration."""
+        """Estimated errors of all outputs over the transient, due to modes left out and time integration."""
         run, refined = self.run, self.run.refined
         if refined is None:
             return np.full(self.rows.shape, np.inf)
@@ -173,7 +173,7 @@ class LoadPath(FieldsOnly):
         return of_modes + through(self.outputs, self._time_errors())
 
     def _time_errors(self) -> np.ndarray:
-        """Estimate the time-integration errors of the loads, shape (S, 1 + 2 d).
+        """Estimate the time-integration errors of the loads, (stations, components).
 
         The errors are nan where the error of the tip is not known, and 0 where the beam stays in equilibrium.
         """

@@ -60,7 +60,7 @@ class LoadRows:
     ----------
     load : dict of str to ndarray, shape (S, K)
         Load by each quantity of the root's motion on the beam at rest.
-    position, velocity, acceleration : dict of str to ndarray, shape (S, K, n)
+    position, velocity, acceleration : dict of str to ndarray, shape (S, K, coordinates)
         Load per coordinate, velocity and acceleration, by each quantity of the root's motion.
     """
 
@@ -102,7 +102,7 @@ class LoadRows:
         return self.each(lambda row: row[station, component][:, None])
 
     def through(self, matrix: np.ndarray) -> LoadRows:
-        """Multiply the K loads of each station by a matrix (S, P, K) to get P other quantities."""
+        """Multiply the K loads of each station by its matrix (P, K) to get P other quantities."""
         return self.each(lambda row: np.einsum("spk,sk...->sp...", matrix, row))
 
     def in_motion(self, equations: Equations) -> LoadRows:

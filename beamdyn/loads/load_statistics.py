@@ -77,16 +77,16 @@ class LoadFractions:
     poles: np.ndarray
 
     def at(self, s: np.ndarray) -> np.ndarray:
-        """Evaluate the transfer functions at complex frequencies s [1/s] (F,): shape (S, K, F)."""
+        """Evaluate the transfer functions at complex frequencies s [1/s]: (stations, outputs, s)."""
         return self.direct[..., None] + self.residues @ (1 / (s - self.poles[:, None]))
 
     def mean_square(self, spectrum: PowerSpectrum, order: int = 0) -> np.ndarray:
-        """Compute the mean square (S, K) of the outputs (order 0) or their time derivatives (order 2)."""
+        """Compute the mean square of each output (order 0) or of its time derivative (order 2)."""
         by_pole, constant = self._parts(spectrum, order)
         return constant + 2 * np.real(by_pole).sum(axis=-1)
 
     def rounding(self, spectrum: PowerSpectrum, order: int = 0) -> np.ndarray:
-        """Compute the rounding error (S, K) of `mean_square`, whose terms may cancel."""
+        """Compute the rounding errors of `mean_square`, whose terms may cancel."""
         by_pole, constant = self._parts(spectrum, order)
         return _EPSILON * (constant + 2 * np.abs(by_pole).sum(axis=-1))
 
@@ -99,7 +99,7 @@ class LoadFractions:
         return by_pole, np.abs(self.direct) ** 2 * integrals.whole
 
     def together_with(self, other: LoadFractions, spectrum: PowerSpectrum) -> np.ndarray:
-        """Integrate the input's density times H conj(H'): shape (S, K).
+        """Integrate the input's density times H conj(H'): (stations, outputs).
 
         H are these transfer functions, H' those of `other`.
         """
@@ -114,7 +114,7 @@ class LoadFractions:
 
     @property
     def _mu(self) -> np.ndarray:
-        """Poles as functions of the input's frequency [Hz], shape (m,)."""
+        """Poles as functions of the input's frequency [Hz]."""
         return self.poles / (2j * np.pi) - self.shift
 
 
@@ -155,7 +155,7 @@ class LinearLoads:
         return (*found,)
 
     def _direct(self, drive: HarmonicDrive) -> np.ndarray:
-        """Compute the direct outputs (S, K) of a unit input, including the accelerations it causes."""
+        """Compute the direct outputs at stations by a unit input, including the accelerations it causes."""
         rows, by_force = self._rows
         total = _sum(drive.accelerations, rows.load, np.zeros(rows.shape))
         if drive.force is None:
@@ -174,8 +174,8 @@ class LinearLoads:
 
         Returns
         -------
-        constant, amplitude : ndarray, shape (S, K)
-            Outputs (S, K); at rest, gravity is included in the constant outputs, at the angle of rotation 0.
+        constant, amplitude : ndarray, shape (stations, outputs)
+            Outputs; at rest, gravity is included in the constant outputs, at the angle of rotation 0.
         """
         (rows, _), model, vectors = self._rows, self.model, self.model.equations.vectors
         position, velocity = self._at_speed
@@ -197,7 +197,7 @@ class LinearLoads:
 
     @cached_property
     def _rows(self) -> tuple[LoadRows, np.ndarray]:
-        """Rows without accelerations, and the outputs (S, K, n) by a unit force on each coordinate."""
+        """Rows without accelerations, and the outputs at stations by a unit force on each coordinate."""
         model, n = self.model, self.model.equations.size
         rows = span_rows(model.scene, model.discretization, model.equations, self.stations)
         acceleration = rows.acceleration.get("unity", np.zeros((*rows.shape, n)))
@@ -206,7 +206,7 @@ class LinearLoads:
 
     @cached_property
     def _at_speed(self) -> tuple[np.ndarray, np.ndarray]:
-        """Outputs (S, K, n) per coordinate, and per velocity, in steady rotation."""
+        """Outputs at each station per unit of each coordinate, and per velocity, in steady rotation."""
         rows, _ = self._rows
         zero = np.zeros((*rows.shape, self.model.equations.size))
         position, velocity = (_sum(self._values(row), row, zero) for row in (rows.position, rows.velocity))
@@ -226,7 +226,7 @@ def _sum(
 
 
 def largest_in_turn(fractions: Sequence[LoadFractions], spectrum: PowerSpectrum) -> np.ndarray:
-    """Compute the mean square (S, K) at the angle of rotation at which it is largest."""
+    """Compute the mean square of each output at the angle of rotation at which it is largest."""
     total = sum(each.mean_square(spectrum) for each in fractions)
     if len(fractions) == 1:
         return np.asarray(total)
@@ -275,12 +275,12 @@ class RandomStatistics:
 
     @property
     def crossings(self) -> np.ndarray:
-        """Rate of upward zero crossings of the random part [1/s], shape (S, K); 0 where there is none."""
+        """Rate of upward zero crossings of each output's random part [1/s]; 0 where there is none."""
         moving = self.rms > 0
         return np.where(moving, self.rate_rms, 0.0) / (_TURN * np.where(moving, self.rms, 1.0))
 
     def largest(self, factor: Callable[[np.ndarray], np.ndarray], duration: float) -> np.ndarray:
-        """Compute the largest magnitude (S, K) in a duration [s]; `factor(crossings)` is the peak factor."""
+        """Compute the expected largest magnitudes in a duration [s]; peak factors are `factor(crossings)`."""
         count = np.maximum(2 * self.crossings * duration, _LEAST)
         return np.abs(self.mean) + self.gravity + factor(count) * self.rms_in_turn
 
@@ -356,7 +356,7 @@ def _rounding(
 
 
 def error_of_largest(found: RandomStatistics, error: RandomStatistics, duration: float) -> np.ndarray:
-    """Estimate errors (S, K) of the expected largest from the errors of all statistics."""
+    """Estimate errors of the expected largest magnitudes from the errors of all statistics."""
     total = found.rms + error.rms
     with np.errstate(invalid="ignore"):
         less = np.where(np.isfinite(total) & (total > 0), found.rms**2 / np.where(total > 0, total, 1.0), 0.0)

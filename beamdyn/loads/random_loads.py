@@ -103,27 +103,27 @@ class RandomLoads(SpanLoads):
         yield warned(self.warnings)
 
     def rms(self, quantity: str = "strain") -> np.ndarray:
-        """Return a quantity's root mean square of the random part, over time and a turn: shape (S, k)."""
+        """Return the root mean square over time of a quantity's random part: (stations, components)."""
         return self._of(quantity, self.statistics.rms)
 
     def rms_error(self, quantity: str = "strain") -> np.ndarray:
-        """Return the estimated error of `rms`, shape (S, k)."""
+        """Return the estimated error of `rms`, (stations, components)."""
         return self._of(quantity, self.statistics_error.rms)
 
     def rms_in_turn(self, quantity: str = "strain") -> np.ndarray:
-        """Return a quantity's largest root mean square over the angle of rotation: shape (S, k)."""
+        """Return a quantity's largest root mean square over the angle of rotation: (stations, components)."""
         return self._of(quantity, self.statistics.rms_in_turn)
 
     def mean(self, quantity: str = "strain") -> np.ndarray:
-        """Return the constant part of a quantity, by the steady rotation: shape (S, k)."""
+        """Return the constant part of a quantity, by the steady rotation: (stations, components)."""
         return self._of(quantity, self.statistics.mean)
 
     def gravity(self, quantity: str = "strain") -> np.ndarray:
-        """Return the amplitude of a quantity's variation by gravity within a turn: shape (S, k)."""
+        """Return the amplitude of a quantity's variation by gravity within a turn: (stations, components)."""
         return self._of(quantity, self.statistics.gravity)
 
     def crossings(self, quantity: str = "strain") -> np.ndarray:
-        """Return the frequency of upward zero crossings of a quantity's random part [1/s]: (S, k)."""
+        """Return the frequency of upward zero crossings of a quantity's random part [1/s]."""
         return self._of(quantity, self.statistics.crossings)
 
     def quantile(self, quantity: str = "strain", probability: float = 0.99) -> np.ndarray:
@@ -140,7 +140,7 @@ class RandomLoads(SpanLoads):
 
         Returns
         -------
-        ndarray, shape (S, k)
+        ndarray, shape (stations, components)
         """
         p = within("probability", probability, 0.5, 1 - 1e-9)
         return self._of(quantity, self.statistics.largest(lambda count: safe_factor(count, p), self.duration))
@@ -184,7 +184,7 @@ class RandomLoads(SpanLoads):
         return self.draw(ax, quantity, self.values, label)
 
     def _of(self, quantity: str, values: np.ndarray) -> np.ndarray:
-        """Select the components (S, k) of one quantity from the values of all quantities."""
+        """Select the components (columns) of one quantity from the values of all quantities."""
         self.check_component(quantity, None)
         return values[:, self.outputs.places[quantity]]
 
@@ -293,7 +293,7 @@ def random_loads(
 
 
 def _tip_deflection(model: ModelAtSpeed, drive: Excitation, spectrum: PowerSpectrum) -> np.ndarray:
-    """Compute the tip deflection [m] that is rarely exceeded, in each modelled direction: shape (d,)."""
+    """Compute the tip deflection [m] that is rarely exceeded, in each modelled direction."""
     seen = [DeflectionAt(), DeflectionAt(direction=ACROSS)][: model.equations.planes]
     squares = [
         sum(

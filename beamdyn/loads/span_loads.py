@@ -109,19 +109,19 @@ class SpanLoads(JudgedByRepeating):
         side first.
     inboard : ndarray of bool, shape (S,)
         Whether the station is just inboard of its position.
-    points : ndarray, shape (S, P, 2)
+    points : ndarray, shape (S, points, 2)
         Points of each section [m]: along its first direction, in which `bending_stiffness` counts, and along
         the second.
-    force : ndarray, shape (C, S, 1 + d)
+    force : ndarray, shape (cases, S, 1 + d)
         Axial force, tension positive, then shear force along the bending direction at the root and, with two
         planes, across it [N].
-    moment : ndarray, shape (C, S, d)
+    moment : ndarray, shape (cases, S, d)
         Bending moment in each of these directions [N m], positive if it bends towards positive deflection.
-    curvature : ndarray, shape (C, S, d)
+    curvature : ndarray, shape (cases, S, d)
         Curvature in each direction of the section, which turns with the twist of the beam [1/m].
-    strain : ndarray, shape (C, S, P)
+    strain : ndarray, shape (cases, S, points)
         Axial strain at the points.
-    stress : ndarray, shape (C, S, P)
+    stress : ndarray, shape (cases, S, points)
         Axial stress at the points [Pa]; nan if Young's modulus is not known.
     force_error, moment_error, curvature_error, strain_error, stress_error : ndarray
         Estimated errors; for a transient one error for the whole run, without the first axis.
@@ -200,11 +200,11 @@ class SpanLoads(JudgedByRepeating):
 
     @property
     def cases(self) -> np.ndarray:
-        """Times [s] or speeds [rad/s] of the first axis, shape (C,)."""
+        """Times [s] or speeds [rad/s] of the first axis."""
         return np.atleast_1d(getattr(self, self.case.field))
 
     def values(self, quantity: str) -> np.ndarray:
-        """Return the values of a quantity of k components by its name: shape (C, S, k)."""
+        """Return the values of a quantity of k components by its name: (cases, stations, k)."""
         one_of("quantity", quantity, (*UNITS,))
         return getattr(self, quantity)
 
@@ -279,7 +279,7 @@ class SpanLoads(JudgedByRepeating):
         return self.draw(ax, quantity, self.values, with_unit(quantity))
 
     def draw(self, ax: Axes | None, quantity: str, values: Callable[[str], np.ndarray], label: str) -> Axes:
-        """Plot values (C, S, k) of the k components of a quantity along the span, if the result has it."""
+        """Plot values (cases, stations, components) of a quantity along the span, if the result has it."""
         self.check_known(quantity)
         named = self.components(quantity)
         scale, _ = SHOWN[quantity]
@@ -307,7 +307,7 @@ class AskedLoads:
         The S stations.
     outputs : StationOutputs
         The K outputs at each station.
-    points : ndarray, shape (S, P, 2)
+    points : ndarray, shape (S, points, 2)
         Points of the sections [m].
     notes : tuple of str
         Contributions that the strain does not include.
@@ -335,7 +335,7 @@ class AskedLoads:
     def result(
         self, values: np.ndarray, errors: np.ndarray, warnings: Iterable[str], method: str, compared_with: str
     ) -> dict[str, Any]:
-        """Build the fields of a `SpanLoads` from values and errors of the outputs (..., S, K)."""
+        """Build the fields of a `SpanLoads` from values and errors of the outputs at stations (last axes)."""
         by_quantity = self.outputs.split(values)
         beyond = warn_of_elastic_limit(by_quantity["strain"])
         return {

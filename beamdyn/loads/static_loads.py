@@ -56,7 +56,7 @@ class StaticLoads(span_loads.SpanLoads):
         Speeds [rad/s].
     angle : float
         Angle of rotation at which gravity acts [rad].
-    tip : ndarray, shape (C, d)
+    tip : ndarray, shape (C, directions)
         Deflection of the tip in each modelled direction [m].
 
     Examples
@@ -206,7 +206,7 @@ def _warnings(scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray) -
 def _solve(
     model: Model, asked: span_loads.AskedLoads, speeds: np.ndarray, theta: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute K outputs at S stations in equilibrium at C speeds, (C, S, K), and tip deflections (C, d)."""
+    """Compute K outputs at S stations in equilibrium at C speeds, (C, S, K), and the tip deflections."""
     equations = model.equations
     rows = span_rows(model.scene, model.discretization, equations, asked.stations)
     root = equations.root(replace(MotionSample.steady(speeds), angle=np.full(len(speeds), theta)))
@@ -215,9 +215,9 @@ def _solve(
 
 
 def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarray:
-    """Solve K q = load for equilibrium coordinates (C, n) at C speeds.
+    """Solve K q = load for the coordinates q in equilibrium at several speeds.
 
-    A stiffness matrix, of K (C, n, n), that is not positive definite is refused.
+    A stiffness matrix K of a speed that is not positive definite is refused.
     """
     size = np.sqrt(np.einsum("cii->ci", np.abs(K)))
     size[size == 0] = 1.0  # trial functions without stiffness are not scaled

@@ -131,7 +131,7 @@ class StationOutputs:
 
 
 class Sections(NamedTuple):
-    """Outputs at stations, points of the sections (S, P, 2) [m], and effects that the strain leaves out."""
+    """Outputs at stations, points (stations, points, 2) [m] of sections, and what the strain leaves out."""
 
     outputs: StationOutputs
     points: np.ndarray
@@ -248,7 +248,7 @@ def _curvature(beam: Beam, xi: np.ndarray, planes: int) -> np.ndarray:
 
 
 def _with_camber(curvature: np.ndarray, section: Rectangle, length: float, xi: np.ndarray) -> np.ndarray:
-    """Compute the mean curvature per unit load and unit moment of camber: shape (S, d, 2 + 2 d).
+    """Compute the mean curvature per unit load and unit moment of camber, at each station.
 
     The bending moment is E I/(1 - nu^2) times the curvature, plus the moment of camber.
     """

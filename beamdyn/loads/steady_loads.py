@@ -73,7 +73,7 @@ class SteadyLoads(span_loads.SpanLoads):
     case: ClassVar[span_loads.LoadCase] = span_loads.SPEEDS
 
     def line_amplitude(self, quantity: str) -> np.ndarray:
-        """Return complex amplitudes a of each spectral line of a quantity: shape (C, S, k, l).
+        """Return complex amplitudes a of a quantity's spectral lines: (speeds, stations, components, lines).
 
         The quantity is the sum of Re(a exp(i (j theta + k chi))), as in `SteadyResponse`.
         """
@@ -81,14 +81,14 @@ class SteadyLoads(span_loads.SpanLoads):
         return self._amplitudes[:, :, self.outputs.places[quantity]]
 
     def mean(self, quantity: str) -> np.ndarray:
-        """Compute the mean of a quantity over the phases: shape (C, S, k)."""
+        """Compute the mean of a quantity over the phases: (speeds, stations, components)."""
         static = ~self.harmonics.any(axis=1)
         return np.real(self.line_amplitude(quantity)[..., static]).sum(axis=-1)
 
     def at_phases(
         self, quantity: str, rotation: np.ndarray | float, road: np.ndarray | float = 0.0
     ) -> np.ndarray:
-        """Evaluate a quantity at phases of rotation and road [rad] of shape (...): shape (C, S, k, ...)."""
+        """Evaluate a quantity at phases of rotation and road [rad]: (speeds, stations, components, ...)."""
         angle, wave = np.broadcast_arrays(rotation, road)
         phase = np.tensordot(self.harmonics, np.stack([angle, wave]), axes=1)
         return np.real(np.tensordot(self.line_amplitude(quantity), np.exp(1j * phase), axes=1))
@@ -182,9 +182,9 @@ class LoadLines:
 
     Parameters
     ----------
-    harmonics : ndarray of int, shape (l, 2)
+    harmonics : ndarray of int, shape (lines, 2)
         Harmonic (j, k) of each line; of two opposite harmonics, the one of positive frequency.
-    amplitude : ndarray of complex, shape (C, S, K, l)
+    amplitude : ndarray of complex, shape (C, S, K, lines)
         Amplitudes a at C speeds, S stations, of K outputs; nan where there is no steady response.
     of_harmonics : ndarray, shape (C, S, K)
         Estimated error by the harmonics left out.
@@ -196,7 +196,7 @@ class LoadLines:
 
     @cached_property
     def largest(self) -> np.ndarray:
-        """Compute the largest magnitudes over all phases: shape (C, S, K)."""
+        """Compute the largest magnitudes over all phases: (speeds, stations, outputs)."""
         flat = self.amplitude.reshape(-1, 1, len(self.harmonics))
         found, known = np.full(len(flat), np.nan), np.flatnonzero(np.isfinite(flat).all(axis=(1, 2)))
         for some in np.array_split(known, 1 + len(known) // _BATCH):
@@ -204,7 +204,7 @@ class LoadLines:
         return found.reshape(self.amplitude.shape[:-1])
 
     def distance_from(self, other: LoadLines) -> np.ndarray:
-        """Sum the differences of all lines' amplitudes from those of another solution: shape (C, S, K).
+        """Sum the differences of all lines' amplitudes from those of another solution, output by output.
 
         The sum is inf where only one of the two has a steady response.
         """
@@ -263,15 +263,9 @@ def lines_of_response(
 def _solve(
     response: SteadyResponse, equations: Equations
 ) -> tuple[list[periodic_system.Pair], np.ndarray, np.ndarray]:
-    """Solve for the coordinates with further harmonics, to which periodic coefficients couple the given ones.
+    """Solve for the coordinates, also at harmonics to which periodic coefficients couple the given ones.
 
     Lines of the tip that are within rounding error at all speeds are left out.
-
-    Returns
-    -------
-    harmonics : list of pair, length H
-    coordinates, truncated : ndarray of complex, shape (C, H, n)
-        Coordinates with all harmonics, and without the further ones, to estimate the error.
     """
     request = response.request
     vibration = vibration_of(request.model, request.basis, request.scene.motion, response.speeds)

@@ -80,9 +80,9 @@ class TransientLoads(span_loads.SpanLoads):
 
     Notes
     -----
-    The errors, of shape (S, k), hold for the whole run.  They are infinite if there is no larger model to
-    compare with or the distance from it is too large to judge by, and nan for the methods of `solve_ivp`,
-    whose time-integration error is not known.
+    The errors, by station and component, hold for the whole run.  They are infinite if there is no larger
+    model to compare with or the distance from it is too large to judge by, and nan for the methods of
+    `solve_ivp`, whose time-integration error is not known.
 
     Examples
     --------
@@ -141,7 +141,7 @@ class TransientLoads(span_loads.SpanLoads):
         return copy
 
     def at(self, quantity: str, t: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Evaluate a quantity at times t [s] (T,) of the run, ascending: shape (T, S, k)."""
+        """Evaluate a quantity at ascending times t [s] of the run: (times, stations, components)."""
         self.check_component(quantity, None)
         return self.path.at(_times_in(self.run, t))[..., self.path.outputs.places[quantity]]
 
@@ -152,7 +152,7 @@ class TransientLoads(span_loads.SpanLoads):
 
         Returns
         -------
-        values, times : ndarray, shape (S, k)
+        values, times : ndarray, shape (stations, components)
             Values with their signs, and the times at which they are reached [s].
         """
         self.check_component(quantity, None)
@@ -267,7 +267,7 @@ def transient_loads(
 
 
 def _times_in(run: Transient, t: np.ndarray | Sequence[float] | float) -> np.ndarray:
-    """Check that times (T,) [s] are within the simulated time, and return them as an array."""
+    """Check that times [s] are within the simulated time, and return them as an array."""
     times = ascending("t", t)
     if not (times.min() >= run.path.start and times.max() <= run.path.end * (1 + 1e-12)):
         bound = f"times must lie in the run, from {run.path.start:g} to {run.path.end:g} s"

@@ -40,28 +40,28 @@ _EXTRA_MODES = 2  # number of additional higher modes, with which the requested 
 class Locus(TellsKinds, StatesModelError):
     """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
 
-    `error` is the numerical error.  `model_error` (k, m) and `left_out`, computed at their first use,
+    `error` is the numerical error.  `model_error` (k, modes) and `left_out`, computed at their first use,
     estimate the changes by neglected physical effects at the `left_out_speeds` (k,); `left_out_at` does so at
-    other speeds.  `kind` (S, m) is "bending", "torsion" or "camber" as in `Modes`, at each speed: modes
+    other speeds.  `kind` (S, modes) is "bending", "torsion" or "camber" as in `Modes`, at each speed: modes
     exchange their kinds at a veering.
 
     Parameters
     ----------
     speeds : ndarray, shape (S,)
         Speeds [rad/s].
-    frequency : ndarray, shape (S, m)
+    frequency : ndarray, shape (S, modes)
         Frequencies [Hz]; nan where a mode is unstable or does not oscillate.
-    growth_rate : ndarray, shape (S, m)
+    growth_rate : ndarray, shape (S, modes)
         Growth rates [1/s].
-    confidence : ndarray, shape (S, m)
+    confidence : ndarray, shape (S, modes)
         Confidence that a mode continues the one at the speed before: 1 is certain, 0 a guess.
-    error : ndarray, shape (S, m)
+    error : ndarray, shape (S, modes)
         Estimated relative error of the eigenvalues.
-    status : ndarray of str, shape (S, m)
+    status : ndarray of str, shape (S, modes)
         "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
-    eigenvalue : ndarray of complex, shape (S, m)
+    eigenvalue : ndarray of complex, shape (S, modes)
         Eigenvalue s of the motion exp(s t) [1/s].
-    plane_share : ndarray, shape (S, m, 2)
+    plane_share : ndarray, shape (S, modes, 2)
         Fraction of the kinetic energy of the mode's deflection in each direction of bending at the root.
     static_deflection : ndarray, shape (S,)
         Static tip deflection under the rotation [m], signed or a magnitude as in `Modes`.
@@ -109,12 +109,12 @@ class Locus(TellsKinds, StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of frequencies at the `left_out_speeds` by each neglected effect, (k, m)."""
+        """Changes of frequencies at the `left_out_speeds` by each neglected effect: (speeds, modes)."""
         return self.left_out_at(self._judged)
 
     @property
     def left_out_speeds(self) -> np.ndarray:
-        """Speeds of the locus at which the model error is computed [rad/s], (k,).
+        """Speeds of the locus at which the model error is computed [rad/s].
 
         They are spread evenly from the first to the last speed, with the speeds before and after a mode
         becomes unstable or stable.
@@ -123,14 +123,14 @@ class Locus(TellsKinds, StatesModelError):
 
     @property
     def _judged(self) -> np.ndarray:
-        """Indices (k,) of the speeds at which the model error is computed."""
+        """Indices of the speeds at which the model error is computed."""
         changed = (self.status[1:] != self.status[:-1]).any(axis=1)
         before = np.flatnonzero(changed)[:_MOST_JUDGED]
         spread = evenly_spread(len(self.speeds), _MOST_JUDGED)
         return np.unique(np.concatenate([spread, before, before + 1]))
 
     def left_out_at(self, indices: Sequence[int] | np.ndarray) -> LeftOutEffects:
-        """Estimate the changes by neglected effects at the speeds with given indices (k,): shape (k, m)."""
+        """Estimate the changes by neglected effects at the speeds with given indices: (speeds, modes)."""
         at = np.asarray(indices, dtype=int)
         return left_out_with_modes(self.model, self.speeds[at], self.eigenvalue[at])
 

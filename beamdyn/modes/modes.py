@@ -127,7 +127,7 @@ class Modes(TellsKinds, StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of each frequency by each neglected effect, shape (m,)."""
+        """Changes of each frequency by each neglected effect."""
         # The import is inside the function because few calls need the module.
         from beamdyn.modes.model_error.left_out_changes import left_out_with_modes
 
@@ -163,11 +163,11 @@ class Modes(TellsKinds, StatesModelError):
         -------
         x : ndarray, shape (n,)
             Positions along the strip [m].
-        y : ndarray, shape (n, k)
+        y : ndarray, shape (n, across)
             Positions across the strip [m], ascending.
-        shapes : ndarray, shape (m, n, k)
+        shapes : ndarray, shape (modes, n, across)
             Deflections in the direction of bending, real numbers.
-        across : ndarray, shape (m, n)
+        across : ndarray, shape (modes, n)
             Deflections in the direction across, which is -y.
 
         None if the sections keep their shape, or if their width is not known.
@@ -328,7 +328,7 @@ def natural_modes(
 
 
 def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | None) -> np.ndarray:
-    """Scale modes (n, m) by signs or phases that make the larger tip deflection real and positive.
+    """Scale modes (columns) by signs or phases that make the larger tip deflection real and positive.
 
     If sections twist or camber, the deflection of the tip's corner in the direction across is used.
     """
@@ -363,7 +363,7 @@ def warn_of_modes(
     growth_rate: np.ndarray,
     tolerance: float | None,
 ) -> Iterator[Statement]:
-    """Yield warnings about modes: errors and growth rates (S, m) at speeds (S,), and static loads."""
+    """Yield warnings about modes: errors and growth rates (speeds, modes), and static loads."""
     scene = model.scene
     yield from warn_of_left_out(scene)
     unstable = growth_rate > 0

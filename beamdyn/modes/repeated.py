@@ -27,7 +27,7 @@ Answer = TypeVar("Answer")
 BY_FREQUENCY = "by the first frequency"
 _LOADED = "the result or its source was loaded from a file without model error: compute it before saving"
 _NOTHING = "there is no value that the effect could change"
-# Number of lowest modes, and relative change of their frequencies below which nothing is repeated.
+# Number of lowest modes, and relative change of their frequencies below which no analysis is repeated.
 _LOWEST, _SMALL = 2, 1e-5
 
 

@@ -91,9 +91,9 @@ class Enclosure(ABC):
     ----------
     speed : float
         Nondimensional speed.
-    stiffness : ndarray, shape (n, n)
+    stiffness : ndarray, shape (functions, functions)
         Elastic energies a of pairs of functions of the Ritz basis (Ritz part).
-    forms : ndarray, shape (m, n, n)
+    forms : ndarray, shape (m, functions, functions)
         The forms P_j on the Ritz part.
     spin, mass : ndarray, shape (m,)
         Parts of the coefficients c_j per squared speed and per -z.
@@ -120,7 +120,7 @@ class Enclosure(ABC):
 
     @abstractmethod
     def _residual(self, coefficients: np.ndarray) -> np.ndarray:
-        """Compute the residual R (see module), (n, n), of loads with coefficients c_j of the forms."""
+        """Compute the residual R (see module), a matrix, of loads with coefficients c_j of the forms."""
 
     @abstractmethod
     def _residual_allowance(self, terms: np.ndarray) -> float:
@@ -128,7 +128,7 @@ class Enclosure(ABC):
 
     @abstractmethod
     def _sizes(self) -> np.ndarray:
-        """Compute traces (m,), on the Ritz basis, of the forms with all terms taken as absolute values."""
+        """Compute traces, on the Ritz basis, of the forms with all terms taken as absolute values."""
 
     def bounds(self, modes: int) -> tuple[np.ndarray, np.ndarray]:
         """Compute lower and upper bounds of the lowest eigenvalues z (squared frequencies), (modes,) each."""
@@ -358,7 +358,7 @@ class CoupledEnclosure(Enclosure):
     def _residuals(self) -> np.ndarray:
         """Integrals of products of moments that the response of the Ritz basis leaves unbalanced.
 
-        The shape is (2, n, 2, n), for moments by the squared speed (softening) and by -z (mass).
+        The shape is (2, functions, 2, functions): moments by the squared speed (softening) and by -z (mass).
         """
         n, d, (spin, inertia) = len(self.stiffness), self._direction, self._tensors
         of_spin = self.spin[:2], -np.outer(d, d), spin, self.spin[6]
@@ -380,7 +380,7 @@ class CoupledEnclosure(Enclosure):
         return self.unit * products**2 + variation * len(self.stiffness) * moments**2
 
     def _of_all(self, traces: np.ndarray, twisting: float) -> np.ndarray:
-        """Combine the sizes of four forms (4,) and the twisting form to sizes of all seven forms (7,)."""
+        """Derive the sizes of all seven forms from those of tension (2), mass, tip slope, and of twisting."""
         return np.array([*traces[:3], traces[2], *(self._tensor_terms * traces[3]), twisting])
 
     def _sizes(self) -> np.ndarray:

@@ -52,8 +52,9 @@ _CONDITIONS = CLAMPED._replace(stiffness="bending_stiffness")
 
 
 class RitzPart(ABC):
-    """Trial functions on a clamped beam, orthonormal in elastic energy, in one plane (n, N) or two (n, 2, N).
+    """Trial functions on a clamped beam, orthonormal in elastic energy, in one plane of bending or two.
 
+    Values at the Gauss points have the shape (functions, points) or (functions, 2, points).
     Subclasses define the nondimensional `beam`.
     """
 
@@ -75,7 +76,7 @@ class RitzPart(ABC):
         """Curvatures of the functions at the Gauss points, along fixed directions."""
 
     def at(self, profile: Profile, rule: ArcQuadrature | None = None) -> np.ndarray:
-        """Evaluate a property at the Gauss points of `quadrature`, or of another rule on the cells: (N,)."""
+        """Evaluate a property at the Gauss points of `quadrature`, or of another rule on the cells."""
         points = (rule or self.quadrature).cells.points
         return profile.split(self.ends.tolist()).at_points(points).ravel()
 
@@ -86,12 +87,12 @@ class RitzPart(ABC):
 
     @cached_property
     def slope(self) -> np.ndarray:
-        """Slopes of the functions at the Gauss points and at the tip: shape (..., N + 1)."""
+        """Slopes of the functions at the Gauss points and at the tip."""
         return self.quadrature.integrate(self.bending)
 
     @cached_property
     def deflection(self) -> np.ndarray:
-        """Deflections of the functions at the Gauss points and at the tip: shape (..., N + 1)."""
+        """Deflections of the functions at the Gauss points and at the tip."""
         return self.quadrature.integrate(self.slope[..., :-1])
 
     @cached_property
@@ -106,13 +107,13 @@ class RitzPart(ABC):
         return self.at(n_b), self.at(n_a), self.at(self.beam.mass_per_length)
 
     def gram(self, values: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """Integrate products of values (n, ..., N) with a weight (..., N): shape (n, n)."""
+        """Integrate products of all pairs of the values (functions, ..., points) with a weight."""
         flat = values.reshape(len(values), -1)
         scale = np.broadcast_to(self.quadrature.weights * weight, values.shape[1:]).reshape(-1)
         return (flat * scale) @ flat.T
 
     def from_tip(self, values: np.ndarray, rule: ArcQuadrature | None = None) -> np.ndarray:
-        """Integrate from each point to the tip, with small relative errors also near the tip: (..., N)."""
+        """Integrate from each point to the tip, with small relative errors also near the tip."""
         cells = (rule or self.quadrature).cells
         inwards = ArcQuadrature(Cells(-cells.ends[::-1], cells.points))
         return inwards.integrate(values[..., ::-1])[..., -2::-1]
@@ -189,7 +190,7 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def bending(self) -> np.ndarray:
-        """Curvatures of the functions at the Gauss points, shape (n, N)."""
+        """Curvatures of the functions at the Gauss points, (functions, points)."""
         given = self._ritz.spaces(self.beam).functions(_CONDITIONS).samples[2]
         on_cells = given.reshape(len(given), len(self.ends) - 1, -1)
         series = on_cells @ legendre_series(on_cells.shape[-1])[: self._degree + 1].T
@@ -202,17 +203,17 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def _at_lumps(self) -> np.ndarray:
-        """Deflections at the point masses, shape (n, k)."""
+        """Deflections at the point masses, (functions, point masses)."""
         return self.slope[:, :-1] @ self.quadrature.integrate_to(self.beam.lumps[0]).T
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """Elastic energies of pairs of functions, shape (n, n): the unit matrix up to rounding."""
+        """Elastic energies of pairs of functions: the unit matrix up to rounding."""
         return self.gram(self.bending, self.at(self.beam.bending_stiffness))
 
     @cached_property
     def forms(self) -> np.ndarray:
-        """Matrices of the four forms (tension by speed, by root acceleration, mass, tip slope): (4, n, n)."""
+        """Matrices of the four forms (tension by speed, by root acceleration, mass, tip slope)."""
         tension_b, tension_a, mass = self.loads
         slope, at_tip, centre = self.slope[:, :-1], self.slope[:, -1], self.centre
         inertia = self.gram(self.deflection[:, :-1], mass) + self.tip.mass * np.outer(centre, centre)
@@ -222,7 +223,7 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """Bending moments at the Gauss points by the four loads of each function, shape (4, n, N)."""
+        """Bending moments at the Gauss points by the four loads of each function, (4, functions, points)."""
         tension_b, tension_a, mass = self.loads
         slope, (xi, lumped) = self.slope[:, :-1], self.beam.lumps
         inertia = self.from_tip(self.from_tip(mass * self.deflection[:, :-1]))
@@ -232,7 +233,7 @@ class PlaneRitzPart(RitzPart):
         return np.array([*by_tension, inertia, np.broadcast_to(self.slope[:, -1:], slope.shape)])
 
     def residuals(self, compliance: np.ndarray) -> np.ndarray:
-        """Integrate products of unbalanced moments, weighted by a compliance of cells (c,): (4, n, 4, n).
+        """Integrate products of unbalanced moments, with the compliance of each cell as weight.
 
         The moment for the load j of the function i is F_ji - EI p, where p is the curvature of the Ritz
         response to the load, by functions that are orthonormal in energy.
@@ -280,21 +281,21 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def ends(self) -> np.ndarray:
-        """Ends of the cells, on which compliance and twist are resolved, as x/L."""
+        """Ends x/L of the cells, which are so short that twist and compliance vary little within each."""
         ends = MomentSpaces(self.beam, self.number).cells
         while (coarse := self._turns(ends) > _LARGEST_TURN).any():
             ends = np.sort(np.concatenate([ends, (ends[:-1] + ends[1:])[coarse] / 2]))
         return ends
 
     def _turns(self, ends: np.ndarray) -> np.ndarray:
-        """Bound the angles by which sections are rotated relative to the middle of their cell, shape (c,)."""
+        """Bound the angles by which sections are rotated relative to the middle of their cell."""
         parts = self._twist.split(ends.tolist())
         varying = tuple((0.0, *row[1:]) for row in parts.coefficients)
         return bound_on_cells(Profile(parts.breakpoints, varying), ends)
 
     @cached_property
     def compliance(self) -> np.ndarray:
-        """Upper bounds of 1/EI in either direction on the cells, shape (2, c)."""
+        """Upper bounds of 1/EI in either direction on the cells, (2, cells)."""
         return np.array([bound_on_cells(p, self.ends) for p in self.flexibility])
 
     @cached_property
@@ -326,11 +327,11 @@ class CoupledRitzPart(RitzPart):
         return ArcQuadrature(Cells(self.ends, NODES - 1 + max(of_loads, of_stiffness) + 1))
 
     def _both_at(self, rule: ArcQuadrature) -> np.ndarray:
-        """Evaluate both bending stiffnesses at the points of a Gauss rule, shape (2, N)."""
+        """Evaluate both bending stiffnesses at the points of a Gauss rule, (2, points)."""
         return np.array([self.at(p, rule) for p in self.stiffnesses])
 
     def _turned(self, values: np.ndarray, rule: ArcQuadrature, sign: int) -> np.ndarray:
-        """Transform components (n, 2, N) to the axes of the section (sign -1), or back to fixed axes (1)."""
+        """Transform components (n, 2, points) of n functions to section axes (sign -1), or back (1)."""
         beta = self.at(self._twist, rule)
         c, s = np.cos(beta), sign * np.sin(beta)
         first, second = values[:, 0], values[:, 1]
@@ -340,7 +341,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def curvature(self) -> np.ndarray:
-        """Curvatures of the functions in the axes of the section at the Gauss points, shape (n, 2, N)."""
+        """Curvatures in the axes of the section at the Gauss points, (functions, 2, points)."""
         nodes = self._nodes
         moments = self._all_moments
         given = self._turned(moments, nodes, -1) / self._both_at(nodes)
@@ -352,7 +353,7 @@ class CoupledRitzPart(RitzPart):
 
     @property
     def _all_moments(self) -> np.ndarray:
-        """Bending moments along e1, e2 at the nodes (m, 2, N): polynomials, and by inertia and tension.
+        """Bending moments along e1, e2 at the nodes: polynomials, and those by inertia and tension.
 
         The latter act in a beam that vibrates in the shapes caused by the first polynomials.
         """
@@ -370,18 +371,18 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def bending(self) -> np.ndarray:
-        """Curvatures of the functions along e1, e2 at the Gauss points, shape (n, 2, N)."""
+        """Curvatures of the functions along e1, e2 at the Gauss points, (functions, 2, points)."""
         return self._turned(self.curvature, self.quadrature, 1)
 
     # Forms and loads ------------------------------------------------------------------------------
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """Elastic energies of pairs of functions, (n, n): the unit matrix up to small errors."""
+        """Elastic energies of pairs of functions: the unit matrix up to small errors."""
         return self.gram(self.curvature, self._both_at(self.quadrature))
 
     def forms(self, direction: np.ndarray) -> np.ndarray:
-        """Build the forms of tension by speed, by root acceleration, mass, directed mass: (4, n, n)."""
+        """Build the forms of tension by speed, by root acceleration, mass, directed mass."""
         tension_b, tension_a, mass = self.loads
         slope, along = self.slope[..., :-1], direction @ self.deflection
         inertia = self.gram(self.deflection[..., :-1], mass) + self.tip.mass * self.centre @ self.centre.T
@@ -391,7 +392,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def twisting(self) -> np.ndarray:
-        """Matrix of the form of twisting by inertia, int (v' w'' - v'' w') dx, shape (n, n)."""
+        """Matrix of the form of twisting by inertia, int (v' w'' - v'' w') dx."""
         across = np.stack([-self.bending[:, 1], self.bending[:, 0]], axis=1)
         form = -np.tensordot(self.slope[..., :-1] * self.quadrature.weights, across, ((1, 2), (1, 2)))
         return (form + form.T) / 2
@@ -407,9 +408,10 @@ class CoupledRitzPart(RitzPart):
     ) -> np.ndarray:
         """Compute bending moments by loads minus those by the Ritz response, in section axes: (n, 2, N).
 
-        Loads are multiples of the tensions N_B, N_A (2,), a tensor (2, 2) times the mass, another one times
-        the slope at the tip, and a multiple of the twisting by inertia.  Row i of `answer` (n, n) contains
-        the coefficients of the response to the loads of function i.
+        The loads are the tensions by rotation and by axial acceleration, times the two factors `tension`; the
+        tensor `inertia` (2, 2) times mass and deflection; the tensor `tilt` (2, 2) times the slope at the
+        tip; and the twisting by a tip body's product of inertia, times `twisting`.  Row i of `answer` (n, n)
+        contains the coefficients of the response to the loads of function i.
         """
         (tension_b, tension_a, mass), rule, at_tip = self.loads, self.quadrature, self.slope[..., -1]
         shear = self.from_tip(mass * (inertia @ self.deflection[..., :-1]))
@@ -423,7 +425,7 @@ class CoupledRitzPart(RitzPart):
         return self._turned(fixed, rule, -1) - np.tensordot(answer, own, 1)
 
     def residuals(self, unbalanced: np.ndarray) -> np.ndarray:
-        """Integrate products of moments (m, 2, N), weighted by the upper bounds of the compliance."""
+        """Integrate products of moments (moments, 2, points), weighted by upper bounds of the compliance."""
         return self.gram(unbalanced, np.repeat(self.compliance, self.quadrature.cells.points, axis=1))
 
 

@@ -230,7 +230,7 @@ class Harvester(FieldsOnly):
             remedy = Words(RECTANGULAR, " makes one")
             raise InvalidValue("harvester", "layers", "they need a beam of rectangular section", remedy)
         if beam.is_twisted:
-            raise InvalidValue("twist", beam.tip_twist, "a twisted beam carries no layers", unit="rad")
+            raise InvalidValue("twist", beam.tip_twist, "a twisted beam carries no layers", "omit one", "rad")
         end, bound = beam.length if math.isinf(self.end) else self.end, "the beam ends at {limit}"
         beyond = real("harvester.end", end) > beam.length * (1 + _EVEN)
         refuse(beyond, "harvester.end", end, "m", bound, "end the layers on it", limit=beam.length)

@@ -31,23 +31,23 @@ class MeasuredCurves(ReadOnlyArrays):
 
     @property
     def x(self) -> np.ndarray:
-        """Abscissa of the data: times [s], speeds [rad/s], positions [m] or frequencies [Hz], shape (n,)."""
+        """Abscissa of the data: times [s], speeds [rad/s], positions [m] or frequencies [Hz]."""
         return getattr(self, self.along[0])
 
     @property
     def columns(self) -> np.ndarray:
-        """The measured values, one column for each name, shape (n, C)."""
+        """The measured values, one column for each name."""
         return getattr(self, "value")  # noqa: B009  (of subclasses)
 
     @property
     def allowance(self) -> np.ndarray:
-        """Tolerance of each value: half a unit of the last digit plus twice the uncertainty: (n, C)."""
+        """Tolerance of each value: half a unit of the last digit plus twice the uncertainty."""
         spread = np.asarray(getattr(self, "uncertainty"))  # noqa: B009  (of subclasses)
         return self.half_digits + 2 * np.nan_to_num(spread).reshape(self.columns.shape)
 
     @property
     def half_digits(self) -> np.ndarray:
-        """Half a unit of the last digit of each value, shape (n, C)."""
+        """Half a unit of the last digit of each value, in columns."""
         return np.asarray(getattr(self, "rounding")).reshape(self.columns.shape)  # noqa: B009
 
     def _check_columns(self, given: Any, names: Sequence[str], units: dict[str, str]) -> None:
@@ -310,7 +310,7 @@ class MeasuredResponse(MeasuredCurves):
 
     @property
     def columns(self) -> np.ndarray:
-        """The response as one column, shape (n, 1): complex where the phase is known."""
+        """The response as one column: complex where the phase is known."""
         turned = self.magnitude if self.phase is None else self.magnitude * np.exp(1j * self.phase)
         return turned[:, None]
 

@@ -223,7 +223,7 @@ def combine(function: Callable[..., np.ndarray], *profiles: Profile) -> list[Pro
 
 
 def _project(f: Callable, a: float, b: float, t: np.ndarray, w: np.ndarray) -> tuple[float, ...]:
-    """Compute Legendre coefficients of f on [a, b] by the Gauss rule (t, w) on [-1, 1]."""
+    """Compute Legendre coefficients of f on [a, b] by a Gauss rule of points t and weights w on [-1, 1]."""
     values = f((a + b) / 2 + (b - a) / 2 * t)
     k = np.arange(len(t))
     return tuple((((2 * k + 1) / 2) * (legendre.legvander(t, len(t) - 1).T @ (w * values))).tolist())

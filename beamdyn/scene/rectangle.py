@@ -41,7 +41,7 @@ from beamdyn.scene.profile import ONE, Profile, as_profile, combine
 # 1 + a r + b r^2 of the ratio r of thickness and width; the warping constant 1/(1 + c r^2).
 _THICK_CAMBER, _THICK_WARPING = (-0.975, 0.826), 7.0
 # Length of the root on which the clamp stiffens bending in the direction of the width, in widths and in
-# thicknesses; fitted to the same solids.
+# thicknesses; fitted to solids of random cantilevers.
 _REACH_OF_WIDTH, _REACH_OF_THICKNESS = 0.195, 0.54
 # Largest length of the root on which the clamp stiffens bending, over the length of the beam.
 _LONGEST_REACH = 0.7
@@ -183,7 +183,7 @@ class Rectangle:
 
 
 def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Compute the series of 3 J/(b t^3) for sides (c, n) with b >= t, as shape (1, c, n).
+    """Compute the series of 3 J/(b t^3) for arrays of sides b >= t; the result has a further first axis.
 
     With tanh = 1 its terms add up to a multiple of zeta(5); what is left falls as exp(-n pi b/t).
     """
@@ -193,9 +193,9 @@ def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
 
 
 def _warping_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Compute the warping function's mean square for sides (c, n), b >= t, over b^2 t^2/144: (1, c, n).
+    """Compute the warping function's mean square over b^2 t^2/144, for arrays of sides b >= t.
 
-    The result is divided by 1 + 7 (t/b)^2, which was fitted to solids.
+    The result has a further first axis. It is divided by 1 + 7 (t/b)^2, which was fitted to solids.
 
     With y along the width and z along the thickness, Saint-Venant's warping function is y z minus
     8 t^2/pi^3 sum over odd n of (-1)^((n-1)/2) sin(n pi z/t) sinh(n pi y/t)/(n^3 cosh(n pi b/2t)).

@@ -377,7 +377,7 @@ def _check_properties(beam: Beam, physics: Physics) -> None:
 
 # Lengths, over the local width, of segments at a clamped root that resolve the stresses in a plate's corners.
 _CORNERS = 0.2, 1.2
-# Largest x/L of the end of these segments.
+# Largest x/L at which a segment near the root that resolves stresses in corners may end.
 _LAST_CORNER = 0.7
 _SHARPEST = 1.0  # change of the width's slope above which camber is wrong by several percent
 _JUMP = 1e-9  # jump of the width, relative to the width, below which it is rounding

@@ -127,7 +127,7 @@ class SectionMatrices(FieldsOnly):
         return merge_breakpoints(np.concatenate([each.breakpoints for each in (*self.stiffness, *self.mass)]))
 
     def _at_breakpoints(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Evaluate one matrix at both ends of each segment: positions x/L (N,) and matrices (6, 6, N)."""
+        """Evaluate one matrix at both ends of each segment: positions x/L and matrices (6, 6, ends)."""
         ends = self._breakpoints
         found = np.empty((SIZE, SIZE, 2 * (len(ends) - 1)))
         for (i, j), entry in zip(UPPER, getattr(self, name), strict=True):
@@ -135,7 +135,7 @@ class SectionMatrices(FieldsOnly):
         return np.repeat(ends, 2)[1:-1], found
 
     def at(self, name: str, xi: np.ndarray) -> np.ndarray:
-        """Evaluate the matrices "stiffness" or "mass" (6, 6, N) at x/L = xi (N,)."""
+        """Evaluate the matrices "stiffness" or "mass" at x/L = xi: (6, 6, positions)."""
         found = np.empty((SIZE, SIZE, len(xi)))
         for (i, j), entry in zip(UPPER, getattr(self, name), strict=True):
             found[i, j] = found[j, i] = entry(xi)
@@ -174,14 +174,14 @@ def _profile(name: str, stations: Sequence[float] | np.ndarray, values: np.ndarr
 
 
 def _scaled(matrices: np.ndarray) -> np.ndarray:
-    """Scale matrices (n, 6, 6) to a diagonal of 1; rows with a diagonal that is not positive stay."""
+    """Scale matrices (sections, 6, 6) to a diagonal of 1; rows with a diagonal that is not positive stay."""
     diagonal = np.einsum("nii->ni", matrices)
     roots = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
     return matrices / (roots[:, :, None] * roots[:, None, :])
 
 
 def least_eigenvalues(matrices: np.ndarray) -> np.ndarray:
-    """Compute the smallest eigenvalue (N,) of matrices (6, 6, N), scaled to a diagonal of 1."""
+    """Compute the smallest eigenvalue of each matrix (6, 6, sections), scaled to a diagonal of 1."""
     return np.linalg.eigvalsh(_scaled(np.moveaxis(matrices, 2, 0)))[:, 0]
 
 
@@ -196,13 +196,13 @@ def _check_symmetry(name: str, stations: Any, matrices: np.ndarray) -> None:
 
 
 def asymmetry(matrices: np.ndarray) -> np.ndarray:
-    """Compute the largest asymmetry (n,) of matrices (n, 6, 6), over the root of their diagonal entries."""
+    """Compute the largest asymmetry of matrices (sections, 6, 6), over the root of diagonal entries."""
     scaled = _scaled(matrices)
     return np.abs(scaled - scaled.swapaxes(1, 2)).max(axis=(1, 2))
 
 
 def split_mass(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Split mass matrices (6, 6, N) into mass per length (N,), centre (3, N), inertia about it (3, 3, N)."""
+    """Split mass matrices (6, 6, sections) into mass per length, mass centre, and inertia about it."""
     m = matrices[0, 0]
     c2, c3 = -matrices[0, 5] / m, matrices[0, 4] / m
     none = np.zeros_like(m)
@@ -212,7 +212,7 @@ def split_mass(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def strangeness(matrices: np.ndarray) -> np.ndarray:
-    """Compute the largest scaled difference (N,) of mass matrices (6, 6, N) from those of rigid sections."""
+    """Compute the largest scaled difference of mass matrices (6, 6, sections) from rigid sections' ones."""
     m, (_, c2, c3), _ = split_mass(matrices)
     rigid = matrices.copy()
     rigid[:3, :3], rigid[:3, 3:] = m * np.eye(3)[..., None], 0.0

@@ -51,7 +51,7 @@ class ResistanceSearch:
     compared: bool = True
 
 
-FULL, ROUGH = ResistanceSearch(), ResistanceSearch(9, 1e-2, False)  # of an answer, and of a preliminary one
+FULL, ROUGH = ResistanceSearch(), ResistanceSearch(9, 1e-2, False)  # for a full and a preliminary result
 
 
 @dataclass(frozen=True, kw_only=True)

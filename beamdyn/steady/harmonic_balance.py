@@ -48,7 +48,7 @@ def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) ->
 
     Returns
     -------
-    ndarray of complex, shape (S, H, n)
+    ndarray of complex, shape (S, H, coordinates)
         Harmonics q_h of the response; nan where the equations are singular.
     """
     response, settled = sum_interactions(system, harmonics)
@@ -78,7 +78,7 @@ def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: P
 
     Parameters
     ----------
-    spectrum : ndarray of complex, shape (S, N, N)
+    spectrum : ndarray of complex, shape (rates, samples, samples)
         Harmonics of the function.
     harmonics : sequence of pair, length H
         Harmonics of the other factor, and of the product.
@@ -87,7 +87,7 @@ def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: P
 
     Returns
     -------
-    ndarray of complex, shape (S, H, H)
+    ndarray of complex, shape (rates, H, H)
     """
     h = np.array(harmonics)
     return select_harmonics(spectrum, h[:, None] - h[None, :] + np.array(shift))
@@ -154,7 +154,7 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
 
     Returns
     -------
-    response : ndarray of complex, shape (S, H, n)
+    response : ndarray of complex, shape (S, H, coordinates)
         Harmonics q_h of the response; nan where the series has not settled.
     settled : ndarray of bool, shape (S,)
         Whether the series has settled to rounding error.
@@ -188,7 +188,7 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
 
 
 def _size(y: np.ndarray) -> np.ndarray:
-    """Compute the magnitudes (S,) of responses (H, n, S) of n modes in H harmonics."""
+    """Compute the magnitudes of responses (harmonics, modes, rates), one for each pair of rates."""
     return (np.abs(np.real(y)) + np.abs(np.imag(y))).sum(axis=(0, 1))
 
 
@@ -200,7 +200,7 @@ class _Products:
     ----------
     order : int
         Order of the response's derivative: 0 or 1.
-    matrix : ndarray, shape (n, n, S)
+    matrix : ndarray, shape (coordinates, coordinates, S)
         Matrix in modal coordinates.
     factors : tuple of ndarray, shape (S,)
         Harmonics of the coefficients.
@@ -236,7 +236,7 @@ class _Products:
         return replace(self, matrix=self.matrix[..., chosen], factors=factors)
 
     def sum(self, both: np.ndarray, count: int) -> np.ndarray:
-        """Sum the forces (H, n, S) that follow from harmonics and their conjugates, `both` (2 H, n, S)."""
+        """Sum the forces that follow from harmonics and their conjugates, stacked in `both`."""
         product = np.zeros((count, *both.shape[1:]), dtype=complex)
         for factor, (to, source) in zip(self.factors, self.places, strict=True):
             product[to] += factor * both[source]
@@ -295,7 +295,7 @@ class _Series:
         return _Series(load, compliance, rate, damping, products)
 
     def respond(self, y: np.ndarray) -> np.ndarray:
-        """Compute the response (H, n, S) to the load, and to coupling terms of the last response y."""
+        """Compute the response to the load, and to coupling terms of the last response y."""
         force, both = self.load.copy(), np.concatenate([y, y.conj()])
         for products in self.products:
             of_rate = np.concatenate([self.rate, -self.rate]) if products.order else 1.0
@@ -306,7 +306,7 @@ class _Series:
 
 
 def _multiply(matrix: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Multiply matrices (n, n, S) with y: shape (H, n, S)."""
+    """Multiply matrices (n, n, S) of S pairs of rates with responses y (harmonics, n, S)."""
     total = np.empty_like(y)
     for row, out in zip(matrix, np.moveaxis(total, 1, 0), strict=True):
         out[:] = (row * y).sum(axis=1)

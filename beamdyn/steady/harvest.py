@@ -135,12 +135,12 @@ class Harvest(JudgedByRepeating):
 
     @property
     def total_power(self) -> np.ndarray:
-        """Mean power into the load [W], including the power by a random road: shape (S,)."""
+        """Mean power into the load [W], including the power by a random road."""
         return self.power if self.road is None else self.power + self.road.power
 
     @property
     def total_error(self) -> np.ndarray:
-        """Estimated relative error of `total_power`; if that is 0, the larger error of both parts: (S,)."""
+        """Estimated relative error of `total_power`; if that is 0, the larger error of both parts."""
         if self.road is None:
             return self.error
         errors, powers = (self.error, self.road.error), (self.power, self.road.power)
@@ -150,7 +150,7 @@ class Harvest(JudgedByRepeating):
 
     @property
     def efficiency(self) -> np.ndarray:
-        """Ratio of harvested power to power into the vibration, (S,); 0 where nothing vibrates."""
+        """Ratio of harvested power to power into the vibration; 0 where nothing vibrates."""
         into = np.where(self.input_power == 0, 1.0, self.input_power)
         return np.where(self.input_power == 0, 0.0, self.power / into)
 
@@ -378,11 +378,11 @@ class ElectricLines:
     ----------
     equations : Equations
         Equations of the n coordinates.
-    pairs : ndarray, shape (L, 2)
+    pairs : ndarray, shape (lines, 2)
         Multiples of the speed and of the road's frequency of each line.
-    coordinates, velocity : ndarray, shape (S, n, L)
+    coordinates, velocity : ndarray, shape (S, n, lines)
         Coordinates, and their rates.
-    voltage, current : ndarray, shape (S, L)
+    voltage, current : ndarray, shape (S, lines)
         Voltage [V] and current [A].
     truncation : ndarray, shape (S,)
         Relative error by the harmonics left out.
@@ -416,12 +416,12 @@ class ElectricLines:
 
     @property
     def halves(self) -> np.ndarray:
-        """Factor (L,) of the mean product of two amplitudes of a line: 1 for a static line, else 1/2."""
+        """Factor of the mean product of two amplitudes of a line: 1 for a static line, else 1/2."""
         return np.where(self.pairs.any(axis=1), 0.5, 1.0)
 
     @property
     def power(self) -> np.ndarray:
-        """Mean power (S,) [W]."""
+        """Mean power [W]."""
         return np.real(self.voltage.conj() * self.current) @ self.halves
 
 
@@ -455,7 +455,7 @@ class HarvestedPowers:
         )
 
     def apart(self, other: HarvestedPowers) -> np.ndarray:
-        """Compute relative differences (S,) in power or, if power is 0, in voltage or current."""
+        """Compute relative differences in power or, if power is 0, in voltage or current."""
         found = np.zeros(len(self.power))
         for name in ("current", "voltage", "power"):
             own, its = getattr(self, name), getattr(other, name)

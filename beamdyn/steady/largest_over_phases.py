@@ -25,9 +25,9 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
 
     Parameters
     ----------
-    amplitude : ndarray of complex, shape (S, d, H)
+    amplitude : ndarray of complex, shape (S, d, lines)
         Complex amplitudes a_h of the lines, of d components.
-    harmonics : ndarray of int, shape (H, 2)
+    harmonics : ndarray of int, shape (lines, 2)
         Harmonics h of the lines.
 
     Returns
@@ -47,7 +47,7 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
 
 
 def _find_strong(size: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
-    """Find the strong lines, of sizes (S, H): among all, or among those that cross the strongest line.
+    """Find the strong lines, of sizes (sums, lines): among all, or among those that cross the strongest line.
 
     Lines cross if their harmonics are not multiples of each other.  The strongest line is constant along its
     crests, so that the lines that cross it decide there, however weak they are.
@@ -64,7 +64,7 @@ def _grid(degree: np.ndarray) -> np.ndarray:
 
 
 def _find_largest(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) -> np.ndarray:
-    """Find the largest magnitude (S,) of sums of lines, sampled with harmonics up to a degree (2,)."""
+    """Find the largest magnitude of sums of lines, sampled with harmonics up to a degree (2,)."""
     grid = _grid(degree)
     sampled = _sample(amplitude, harmonics, degree)
     owner, place = _find_maxima(sampled)
@@ -97,7 +97,7 @@ def _sample(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) ->
 
 
 def _find_maxima(sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Find the R largest local maxima of S sampled sums (S, N, N): indices of sum (R,) and sample (R, 2)."""
+    """Find the R largest local maxima of sampled sums (sums, N, N): indices of sum and sample."""
     highest = sampled
     for axis in (1, 2):  # the samples are periodic
         beside = np.roll(highest, 1, axis), np.roll(highest, -1, axis)
@@ -110,7 +110,7 @@ def _find_maxima(sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, longest: float) -> np.ndarray:
-    """Compute Newton's step (R, 2) of the phases towards a larger magnitude.
+    """Compute Newton's step of the phases towards a larger magnitude.
 
     The absolute values of the curvatures are used, so that the iteration does not end at saddles.
     """
@@ -124,7 +124,7 @@ def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, lo
 def _evaluate_size(
     a: np.ndarray, h: np.ndarray, phases: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate the magnitude (R,) of sums of lines, with the first component's sign, and derivatives.
+    """Evaluate the magnitude of sums of lines, with the first component's sign, and derivatives.
 
     The derivatives are the gradient and the second derivatives with respect to the two phases.
     """
@@ -143,7 +143,7 @@ def _evaluate_size(
 
 
 def _evaluate(a: np.ndarray, h: np.ndarray, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate R sums of H lines, with amplitudes a (R, d, H), at phases (R, 2), and their derivatives.
+    """Evaluate sums of lines and their derivatives at two phases each; a is (sums, components, lines).
 
     The derivatives are the gradient and the second derivatives with respect to the two phases.
     """

@@ -34,18 +34,18 @@ _GRIDS = (8, 16, 32, 64)  # numbers of samples of each phase, tried in turn
 class PeriodicSystem:
     """Equations with coefficients periodic in two phases, as harmonics, for a batch of S pairs of rates.
 
-    A spectrum has the shape (S, N, N): the harmonic (j, k) is at [:, j, k], as in numpy's FFT.
+    A spectrum has the shape (S, samples, samples): the harmonic (j, k) is at [:, j, k], as in numpy's FFT.
 
     Parameters
     ----------
     rates : ndarray, shape (S, 2)
         Rates nu_1, nu_2 of the phases [rad/s].
-    mean : ndarray, shape (3, S, n, n)
+    mean : ndarray, shape (3, S, coordinates, coordinates)
         Constant parts of K, C and M, in this order: of the derivatives 0, 1 and 2.
     varying : tuple of (int, ndarray, ndarray)
-        Periodic parts: the order of the derivative (0 for K, 1 for C), a spectrum, its matrices (S, n, n).
+        Periodic parts: the order of the derivative (0 for K, 1 for C), a spectrum, its matrices at each rate.
     loads : tuple of (ndarray, ndarray)
-        Terms of the load: a spectrum, its vectors (S, n).
+        Terms of the load: a spectrum, its vectors (S, coordinates).
     """
 
     rates: np.ndarray
@@ -81,7 +81,7 @@ class PeriodicSystem:
 
     @cached_property
     def without_stiffness(self) -> np.ndarray:
-        """Whether only the time derivative of each coordinate matters, as of a circuit's flux: shape (n,)."""
+        """Whether only the time derivative of each coordinate matters, as of a circuit's flux."""
         stiff = self.mean[0].any(axis=(0, 1))
         for order, _, matrix in self.varying:
             stiff = stiff | (matrix.any(axis=(0, 1)) & (order == 0))
@@ -90,7 +90,7 @@ class PeriodicSystem:
     def is_free(self, harmonics: np.ndarray) -> np.ndarray:
         """Find coordinates without stiffness, whose static part is arbitrary and set to 0.
 
-        The result for harmonics (H, 2) has the shape (S, H, n).
+        The result has the shape (rates, harmonics, coordinates).
         """
         return (self.rates @ harmonics.T == 0)[..., None] & self.without_stiffness
 
@@ -111,9 +111,9 @@ class MeanModes:
 
     Parameters
     ----------
-    squared : ndarray, shape (S, n)
+    squared : ndarray, shape (rates, coordinates)
         Squared frequencies [rad2/s2].
-    shapes : ndarray, shape (S, n, n)
+    shapes : ndarray, shape (rates, coordinates, coordinates)
         Modes, in columns.
     """
 
@@ -129,12 +129,12 @@ class MeanModes:
         return cls(squared, np.swapaxes(inverse, 1, 2) @ vectors)
 
     def transform(self, matrix: np.ndarray) -> np.ndarray:
-        """Transform matrices (S, n, n) to modal coordinates, with the rates last: shape (n, n, S)."""
+        """Transform matrices (rates, n, n) to modal coordinates, with the rates last: shape (n, n, rates)."""
         return np.ascontiguousarray(np.moveaxis(np.swapaxes(self.shapes, 1, 2) @ matrix @ self.shapes, 0, 2))
 
 
 def _fourier_coefficients(samples: np.ndarray) -> np.ndarray:
-    """Compute the harmonics of samples (S, N, N) on an N x N grid of phases; rounding errors are set to 0."""
+    """Compute the harmonics of samples (rates, N, N) on an N x N grid of phases; 0 within rounding."""
     if (samples == samples[:, :1, :1]).all():
         constant = np.zeros(samples.shape, dtype=complex)
         constant[:, 0, 0] = samples[:, 0, 0]
@@ -287,7 +287,7 @@ def expand_quantities(
 
     Returns
     -------
-    dict of str to ndarray of complex, shape (S, N, N)
+    dict of str to ndarray of complex, shape (S, samples, samples)
         Spectrum of each quantity, as in `PeriodicSystem`.
 
     Raises

@@ -277,11 +277,11 @@ class _Loci:
 
     @property
     def tracked(self) -> np.ndarray:
-        """Angular frequencies [rad/s] of modes followed through crossings, shape (S, m)."""
+        """Angular frequencies [rad/s] of modes followed through crossings, (speeds, modes)."""
         return np.take_along_axis(self.values, self.order, axis=1)
 
     def frequencies(self, speeds: np.ndarray) -> np.ndarray:
-        """Compute angular frequencies [rad/s] at speeds (S,), ascending: shape (S, m)."""
+        """Compute angular frequencies [rad/s] of all modes at speeds, ascending: (speeds, modes)."""
         return np.abs(np.imag(self.solver.eigenvalues(speeds, self.modes)))
 
     def crossings(self, kind: str, line: Line, indices: tuple[int, ...]) -> Iterator[Crossing]:

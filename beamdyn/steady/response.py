@@ -147,7 +147,7 @@ class SteadyResponse(StatesModelError):
 
     @property
     def is_warned(self) -> np.ndarray:
-        """Whether a warning applies, for each speed: shape (S,)."""
+        """Whether a warning applies, for each speed."""
         undecided = (np.abs(self.growth_rate) < self.growth_rate_error) & np.isin(
             self.status, ("stable", UNSTABLE)
         )
@@ -184,7 +184,7 @@ class SteadyResponse(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the amplitude at the `left_out_speeds` (k,) by effects left out of the model."""
+        """Changes of the amplitude at the `left_out_speeds` by effects left out of the model."""
         return self.left_out_at(self.left_out_speeds)
 
     @property
@@ -197,14 +197,14 @@ class SteadyResponse(StatesModelError):
         return self.speeds[np.union1d(known[spread], known[np.argmax(self.amplitude[known])])]
 
     def left_out_at(self, speeds: Sequence[float] | np.ndarray) -> LeftOutEffects:
-        """Compute changes of the amplitude at speeds [rad/s] (k,) by effects left out of the model."""
+        """Compute changes of the amplitude at speeds [rad/s] by effects left out of the model."""
         if not len(speeds):
             return nothing_known(self.scene)
         request = replace(self.request, speeds=np.asarray(speeds, dtype=float))
         return left_out_by_solving(self.scene, request.solve_with)
 
     def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0, direction: int = 0) -> np.ndarray:
-        """Compute the tip deflection [m] at phases of rotation and road [rad] of shape (...): (S, ...).
+        """Compute the tip deflection [m] at phases of rotation and road [rad]: (speeds, phases).
 
         Direction 0 is that of the bending angle at the root, direction 1 is across.
         """
@@ -213,13 +213,13 @@ class SteadyResponse(StatesModelError):
         return np.real(np.tensordot(self._lines(direction), np.exp(1j * phase), axes=1))
 
     def largest_tip(self, direction: int = 0) -> np.ndarray:
-        """Compute the largest |tip deflection| in a direction (see `tip`) over both phases [m]: (S,)."""
+        """Compute the largest |tip deflection| in a direction (see `tip`) over both phases [m]."""
         size, lines = np.full(len(self.speeds), np.nan), self._lines(direction)
         size[self.stable] = largest_over_phases(lines[self.stable, None], self.harmonics)
         return size
 
     def _lines(self, direction: int) -> np.ndarray:
-        """Return the complex amplitudes of the lines (S, l) in a direction."""
+        """Return the complex amplitudes of the spectral lines (speeds, lines) in a direction."""
         return self.line_amplitude_across if check_direction(direction) else self.line_amplitude
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -408,7 +408,7 @@ def _warnings(
     error: np.ndarray,
     undecided: np.ndarray,
 ) -> Iterator[Statement]:
-    """Yield warnings about the response, from its status, vibration and errors at speeds (S,)."""
+    """Yield warnings about the response, from its status, vibration and errors at speeds."""
     scene, speeds, tolerance = request.scene, request.speeds, request.tolerance
     yield from validity.warn_of_left_out(scene)
     yield from warn_of_peak(scene, float(np.nanmax(vibration, initial=0.0)))

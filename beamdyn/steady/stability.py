@@ -83,7 +83,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     error[singular] = np.inf
     rows = np.flatnonzero(~singular)
     if len(rows):
-        R, n = R[rows], system.size  # modal scales that make |V| symmetric
+        R, n = R[rows], system.size  # modes scaled so that |V| is symmetric
         R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma[rows])))[:, None, :]
         V = _balance(sigma[rows], [(f[rows], np.linalg.solve(R, B[rows] @ R)) for f, B in periodic])
         free = _MeanMotion(system.rates[rows], system.coupling, sigma[rows], V)
@@ -96,7 +96,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
 
 
 def fastest_growth(parts: Sequence[PeriodicSystem]) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the largest growth rate (S,) of free motion among uncoupled parts, and its error [1/s]."""
+    """Compute the largest growth rate of free motion among uncoupled parts, and its error [1/s]."""
     rates, errors = np.swapaxes([growth_rate(part) for part in parts], 0, 1)
     largest = rates.max(axis=0)
     above, below = errors + (rates - largest), errors + (largest - rates)
@@ -115,7 +115,7 @@ def _combine(sigma: np.ndarray, shift: np.ndarray, resonances: list[_Resonance])
 
 
 def _largest_real_part(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
-    """Return the largest real part of exponents s (..., m), or 0 where it is within rounding."""
+    """Return the largest real part of exponents s, or 0 where it is within rounding."""
     largest = np.real(s).max(axis=-1)
     return np.where(np.abs(largest) <= _ROUNDING * scale, 0.0, largest)
 
@@ -148,7 +148,10 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
 
 
 def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute eigenvalues (S, 2 n) and eigenvectors of A; without damping, from mass and stiffness."""
+    """Compute eigenvalues and eigenvectors of A, the first-order form of the mean equations at each speed.
+
+    Without damping, they are computed from mass and stiffness.
+    """
     if system.mean[1].any():
         return np.linalg.eig(A)
     modes, n = MeanModes.of_system(system), system.size
@@ -187,10 +190,10 @@ class _MeanMotion:
         Rates of the phases [rad/s].
     coupling : set of pair
         Harmonics of the periodic coefficients.
-    sigma : ndarray of complex, shape (S, m)
+    sigma : ndarray of complex, shape (S, modes)
         Eigenvalues of the mean equations [1/s].
     V : list of (ndarray, ndarray)
-        Periodic coefficients: a spectrum (S, N, N), and its matrix in the modes (S, m, m).
+        Periodic coefficients: a spectrum (S, N, N), and its matrix in the modes (S, modes, modes).
     """
 
     rates: np.ndarray
@@ -205,18 +208,18 @@ class _MeanMotion:
 
     @property
     def radius(self) -> np.ndarray:
-        """Radius of the Gershgorin disc of each mode, shape (S, m)."""
+        """Radius of the Gershgorin disc of each mode, (rates, modes)."""
         parts = (np.abs(f).sum(axis=(1, 2))[:, None] * np.abs(v).sum(axis=2) for f, v in self.V)
         return reduce(np.add, parts)
 
     def gap(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute eigenvalue a minus b, plus i times the rate of harmonic h [1/s]: (S, m, m, H)."""
+        """Compute eigenvalue a minus b, plus i times the rate of harmonic h [1/s], for all modes a, b."""
         omega = self.rates @ np.array(harmonics).T
         difference = self.sigma[:, :, None] - self.sigma[:, None, :]
         return difference[..., None] + 1j * omega[:, None, None, :]
 
     def second_order_shift(self) -> np.ndarray:
-        """Compute second-order shifts (S, m) of eigenvalues by the periodic coefficients."""
+        """Compute second-order shifts (rates, modes) of eigenvalues by the periodic coefficients."""
         harmonics = sorted(self.coupling)
         h, coupling = np.array(harmonics), self._couple(harmonics)
         opposite = (h[:, None] == -h[None]).all(axis=2).argmax(axis=1)
@@ -229,13 +232,13 @@ class _MeanMotion:
         return np.minimum(shift, self.radius)
 
     def _couple(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute the periodic coefficients between modes in H harmonics: shape (S, m, m, H)."""
+        """Compute the periodic coefficients between all pairs of modes, harmonic by harmonic."""
         spectra = (convolution_matrix(f, [(0, 0), *harmonics])[:, 1:, 0] for f, _ in self.V)
         parts = (f[:, None, None] * v[..., None] for f, (_, v) in zip(spectra, self.V, strict=True))
         return reduce(np.add, parts)
 
     def shrunk_radius(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute the radii (S, m) of Gershgorin discs, made smaller where other discs are far away.
+        """Compute the radii (rates, modes) of Gershgorin discs, made smaller where other discs are far away.
 
         Scaling the coordinates of far discs by t < 1 keeps the terms of a row that couple it with discs
         close by, and multiplies its rest by t; far discs grow by 1/t, to half their distance.
@@ -249,7 +252,7 @@ class _MeanMotion:
         return np.where(between[:, None], radius, np.minimum(radius, scaled))
 
     def resonances(self, considered: np.ndarray) -> Iterator[tuple[int, list[_Resonance]]]:
-        """Yield each index of rates with overlapping discs of opposite energy, and its resonances."""
+        """Yield index and resonances of each pair of rates at which discs of opposite energy overlap."""
         levels = generate_harmonics([(0, 0)], self.coupling, _TONGUE_ORDER)
         harmonics = [h for level in levels for h in level]
         overlap = self._overlap(harmonics, self.radius) & considered[:, None, None, None]
@@ -272,7 +275,7 @@ class _MeanMotion:
             yield int(i), found
 
     def _overlap(self, harmonics: list[Pair], radius: np.ndarray) -> np.ndarray:
-        """Return which Gershgorin discs of modes of opposite energy overlap at a harmonic: (S, m, m, H).
+        """Return which Gershgorin discs of modes of opposite energy overlap at a harmonic, by pair of modes.
 
         If all discs lie left of the imaginary axis, none counts as overlapping.
         """
@@ -374,7 +377,7 @@ class _Resonance:
         return j - turns * a, k - turns * b
 
     def _folded_convolution(self, spectrum: np.ndarray, harmonics: list[Pair], phase: float) -> np.ndarray:
-        """Build the matrix (H, H) of the product with a spectrum, summed over merged harmonics."""
+        """Build the matrix of the product with a spectrum; harmonics of equal rate are added."""
         if self.stationary is None:
             return convolution_matrix(spectrum, harmonics)[0]
         most = 1 + (np.ptp(harmonics, axis=0).max() + spectrum.shape[-1] // 2) // max(

@@ -51,7 +51,7 @@ class Vibration:
     ----------
     parts : list of (PeriodicSystem, ndarray)
         Equations that no term couples, each with its coordinates.
-    tips : ndarray, shape (S, d, n)
+    tips : ndarray, shape (S, d, coordinates)
         Deflection of the tip per coordinate, in each of d directions.
     static : ndarray, shape (S, d)
         Deflection of the tip in the equilibrium about which the beam vibrates [m].
@@ -68,7 +68,7 @@ class Vibration:
     lost: dict[str, np.ndarray]
 
     def stability(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Compute growth rates of free motion, errors, status, and if stability is undecided: (S,) each."""
+        """Compute, at each speed, growth rate of free motion, its error, status, and if that is undecided."""
         rate, error = np.full((2, len(self.static)), np.nan)
         if (known := ~self.without_rate).any():
             rate[known], error[known] = fastest_growth([part[known] for part, _ in self.parts])
@@ -146,7 +146,7 @@ def _about_equilibria(
 
 
 def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
-    """Find coordinates (S, n) in equilibrium at each speed; nan where the branch has none.
+    """Find coordinates in equilibrium at each speed, in rows; nan where the branch has none.
 
     The branch that begins at rest is followed to rising speeds, the other branch to falling ones from the
     fastest speed that has it; the search ends where a branch ends.
@@ -198,7 +198,7 @@ def solve_parts(
     ----------
     parts : list of (PeriodicSystem, ndarray)
         Equations at S speeds, each with its coordinates.
-    tips : ndarray, shape (S, d, n)
+    tips : ndarray, shape (S, d, coordinates)
         Tip deflection per coordinate in d directions.
     interactions : int, optional
         Number of interactions with the periodic coefficients; as many as the tolerance needs if not given.
@@ -258,7 +258,7 @@ def _solve_harmonics(
 
 
 def sizes_of(c: np.ndarray) -> np.ndarray:
-    """Compute the largest magnitudes (S, H) of vectors Re(c exp(i phi)) over phi, c of shape (S, d, H)."""
+    """Compute the largest magnitudes of vectors Re(c exp(i phi)) over phi; components of c are its axis 1."""
     return longer_semi_axis(np.moveaxis(c, 1, 0))
 
 
@@ -276,8 +276,8 @@ def combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple
 
     Returns
     -------
-    harmonics : ndarray of int, shape (l, 2)
-    amplitudes : ndarray of complex, shape (..., l)
+    harmonics : ndarray of int, shape (lines, 2)
+    amplitudes : ndarray of complex, shape (..., lines)
     """
     kappa = motion.road_multiple or 0.0
     forward = [i for i, h in enumerate(harmonics) if (h[0] + h[1] * kappa, h) >= (0.0, (0, 0))]
@@ -292,18 +292,18 @@ def add_static(
 
     Parameters
     ----------
-    line : ndarray of complex, shape (S, d, l)
+    line : ndarray of complex, shape (S, directions, lines)
         Amplitudes of the lines.
-    harmonics : ndarray of int, shape (l, 2)
+    harmonics : ndarray of int, shape (lines, 2)
         Harmonic of each line.
-    static : ndarray, shape (S, d)
+    static : ndarray, shape (S, directions)
         Deflection in equilibrium [m].
     directions : int
         Number of directions to keep, those of the modelled planes.
 
     Returns
     -------
-    total : ndarray of complex, shape (S, directions, l)
+    total : ndarray of complex, shape (S, directions, lines)
     share : ndarray, shape (S,)
         Sum of all lines' magnitudes before, over the sum after (at most 1): factor on relative errors.
     """

@@ -77,7 +77,7 @@ class AnswerArrays:
 
     Attributes
     ----------
-    value, error : ndarray, shape (N, S, k)
+    value, error : ndarray, shape (N, S, results)
         Results and their estimated relative errors, as in `DesignAnswers`.
     """
 
@@ -132,7 +132,7 @@ class AnswerArrays:
 
 
 def caution_where(which: Any, kind: str, size: np.ndarray | float, said: str) -> Iterable[Caution]:
-    """Build a warning about the selected designs and speeds (R, S), with the largest `size` among them.
+    """Build a warning about the selected designs and speeds, with the largest `size` among them.
 
     Nothing is yielded if no design is selected.
     """

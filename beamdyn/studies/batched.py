@@ -104,7 +104,7 @@ class Refinement:
 
         Returns
         -------
-        answers : list of ndarray, shape (N, ...)
+        answers : list of ndarray, shape (designs, ...)
             Results of each design in the last basis that gives any; nan if none does.
         functions : int
             Largest number of functions that was needed.
@@ -168,9 +168,9 @@ class SolvedDesigns:
 
     Parameters
     ----------
-    eigenvalue : ndarray of complex, shape (R, S, k)
+    eigenvalue : ndarray of complex, shape (R, S, results)
         Exponent s of the motion exp(s t) [1/s]; nan where there is none.
-    error : ndarray, shape (R, S, k)
+    error : ndarray, shape (R, S, results)
         Estimated relative error of the frequencies.
     deflection : ndarray, shape (R, S)
         Magnitude of the static tip deflection by rotation, over the length; nan at and above the critical
@@ -196,7 +196,7 @@ def solve_frequencies(
         N designs.
     refinement : Refinement
         The bases, and the number of modes.
-    speeds : ndarray, shape (N, S)
+    speeds : ndarray, shape (N, speeds)
         Speeds of each design [rad/s].
     ratio : ndarray, shape (N,), optional
         Damping ratio of each design; undamped if not given.
@@ -262,7 +262,7 @@ def _cautions_of_theory(
 
 
 def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
-    """Build a warning about designs of which a result is missing, status (R, S, k), because of rounding.
+    """Build a warning about designs of which a result is missing, by `status`, because of rounding.
 
     Nothing is yielded if all designs have a result.
     """
@@ -271,7 +271,7 @@ def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
 
 
 def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Caution]:
-    """Yield a warning about errors (R, S, k) above the tolerance, or above 1e-6 if none is given."""
+    """Yield a warning about errors above the tolerance, or above 1e-6 if none is given."""
     worst, limit = error.max(axis=2), _LARGE_ERROR if tolerance is None else tolerance
     said: str = Statement(f" the estimated relative error is above {limit:g}: see error", kind=TOLERANCE)
     if tolerance is not None and worst.max() > tolerance:
@@ -336,7 +336,7 @@ def critical_speeds_of(
 def _search(
     designs: SimilarDesigns, refinement: Refinement, rows: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return critical speeds, their errors, and whether these meet the target, (R,), for given designs.
+    """Return critical speeds, their errors, and whether these meet the target, for given designs.
 
     Each basis is compared with a basis of about half the size, as for a single design.
     """
@@ -359,7 +359,7 @@ def _search(
 
 
 def _stiffened(designs: SimilarDesigns) -> np.ndarray:
-    """Return for which designs (N,) a proof exists that rotation stiffens them against every deflection."""
+    """Return for which designs a proof exists that rotation stiffens them against every deflection."""
     two = designs.reference.physics.planes == 2
     with_inertia = [designs.tip[name] != 0 for name in ("transverse_inertia", "axial_inertia")]
     if designs.reference.beam.point_masses:

@@ -44,7 +44,7 @@ _FAILURES = (ValueError, ArithmeticError)
 
 
 class SpeedAnswer(NamedTuple):
-    """Result of one design at S speeds: values, errors and statuses (S, k), and warnings.
+    """Result of one design at S speeds: values, errors and statuses (S, results), and warnings.
 
     `warned` marks the speeds of the warnings; None means all speeds.  `refusals` state why there is no
     result; `effects` returns the changes of the result at the first speed by neglected effects.
@@ -60,7 +60,7 @@ class SpeedAnswer(NamedTuple):
 
     @property
     def is_warned(self) -> np.ndarray:
-        """Whether a warning applies at each speed, (S,)."""
+        """Whether a warning applies at each speed."""
         everywhere = np.full(len(self.value), bool(self.warnings))
         return everywhere if self.warned is None else self.warned
 
@@ -75,7 +75,7 @@ class SingleDesigns(FieldsOnly):
         Question that the study asks of each design.
     columns : mapping of str to ndarray, shape (N,)
         Inputs of the designs, except the speed.
-    speeds : ndarray, shape (N, S)
+    speeds : ndarray, shape (N, speeds)
         Speeds of each design [rad/s]; (N, 1), and not used, if the result does not depend on a speed.
     """
 

@@ -168,7 +168,7 @@ def crossings_of(
 def _excited(
     designs: SimilarDesigns, scene: Scene, resonances: Sequence[PossibleCrossing], top: float
 ) -> np.ndarray:
-    """Decide which of the resonances (N, c) have an excitation line in each design.
+    """Decide which of the resonances have an excitation line in each design: (designs, resonances).
 
     That depends on gravity, and on whether the load has a component in the direction of bending.
     """

@@ -130,7 +130,7 @@ class SimilarDesigns(FieldsOnly):
     # Similarity -----------------------------------------------------------------------------------
 
     def _scale(self, which: int) -> np.ndarray:
-        """Compute ratios (N,) of mass per length (0) or a stiffness (1, 2, 3) to the first: see `POWERS`."""
+        """Compute ratios of mass per length (0) or a stiffness (1, 2, 3) to the first: see `POWERS`."""
         scale = np.ones(self.count)
         for name, powers in POWERS.items():
             if name in self.columns:
@@ -139,13 +139,13 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def length(self) -> np.ndarray:
-        """Ratio of the length of each design to that of the reference, (N,)."""
+        """Ratio of the length of each design to that of the reference."""
         given = self.columns.get("beam.length")
         return np.ones(self.count) if given is None else given / self.first["beam.length"]
 
     @cached_property
     def time(self) -> np.ndarray:
-        """Ratio of the time unit of each design to that of the reference, (N,).
+        """Ratio of the time unit of each design to that of the reference.
 
         The reference rotates at the speed of a design times this ratio.
         """
@@ -153,7 +153,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def strain(self) -> np.ndarray:
-        """Ratio of each design's axial strain to the reference's at the corresponding speed, (N,)."""
+        """Ratio of each design's axial strain to the reference's at the speed that corresponds to it."""
         return self._scale(1) / (self.length**2 * self._scale(2))
 
     # Quantities on which the matrices depend as polynomials -------------------------------------------
@@ -166,7 +166,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def tip(self) -> dict[str, np.ndarray]:
-        """Properties (N,), by name, of the tip body on the reference beam that represents each design."""
+        """Properties, by name, of the tip body on the reference beam that represents each design."""
         tip, mass = self.reference.beam.tip or TipMass(0.0), self._scale(0) * self.length
         given = {name: self._given(f"beam.tip.{name}", getattr(tip, name) or 0.0) for name in _OF_TIP}
         if tip.transverse_inertia is None:
@@ -176,7 +176,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def _springs(self) -> dict[str, np.ndarray]:
-        """Root springs (N,) of the reference beam that represents each design [N m/rad].
+        """Root springs of the reference beam that represents each design [N m/rad].
 
         They are inf if the root is clamped.
         """
@@ -189,12 +189,12 @@ class SimilarDesigns(FieldsOnly):
 
     @property
     def axial(self) -> np.ndarray:
-        """Distance of the root from the rotation axis, against the direction of the beam [m], (N,)."""
+        """Distance of the root from the rotation axis, against the direction of the beam [m]."""
         return self._radius * _cos(self._of_mount("setting_angle"), ROUNDED_ANGLE)
 
     @cached_property
     def quantities(self) -> dict[str, np.ndarray]:
-        """Values (N,) of the quantities on which the matrices depend, by name."""
+        """Values of the quantities on which the matrices depend, by name."""
         tip, springs = self.tip, self._springs
         common = {"mass": tip["mass"], "offset": tip["offset"], "axial": self.axial}
         if np.isfinite(spring := springs["root_stiffness"]).all():
@@ -212,7 +212,7 @@ class SimilarDesigns(FieldsOnly):
 
     @property
     def tilt(self) -> np.ndarray:
-        """Transverse minus axial moment of inertia of the tip body over its `inertia`, (N,), -1 to 1."""
+        """Transverse minus axial moment of inertia of the tip body over its `inertia`, -1 to 1."""
         inertia = self.tip["inertia"]
         difference = self.tip["transverse_inertia"] - self.tip["axial_inertia"]
         tilt = np.where(inertia == 0, 0.0, difference / np.where(inertia == 0, 1.0, inertia))
@@ -220,7 +220,7 @@ class SimilarDesigns(FieldsOnly):
 
     @property
     def in_plane(self) -> np.ndarray:
-        """Squared cosine of the bending angle, (N,)."""
+        """Squared cosine of the bending angle."""
         return _cos(self._of_mount("bending_angle")) ** 2
 
     @cached_property
@@ -271,7 +271,7 @@ class SimilarDesigns(FieldsOnly):
         return weights
 
     def strains(self, speeds: np.ndarray) -> np.ndarray:
-        """Compute the largest axial strain of each design at its speeds (N, S) [rad/s].
+        """Compute the largest axial strain of each design at its speeds (designs, speeds) [rad/s].
 
         The strain is nan if it is not known.
         """
@@ -297,13 +297,13 @@ class PencilFamily:
 
     Parameters
     ----------
-    K0 : ndarray, shape (n, n) or (T, n, n)
+    K0 : ndarray, shape (coordinates, coordinates) or (T, coordinates, coordinates)
         Stiffness at rest, common to all node scenes or one for each.
-    M, K2 : ndarray, shape (T, n, n)
+    M, K2 : ndarray, shape (T, coordinates, coordinates)
         Mass, and stiffness divided by the squared speed.
-    loads : ndarray, shape (T, d, n)
+    loads : ndarray, shape (T, d, coordinates)
         Loads under a unit acceleration of the root in the d directions of bending.
-    tips : ndarray, shape (d, n)
+    tips : ndarray, shape (d, coordinates)
         Tip deflections in the directions of bending, per unit of each coordinate.
     coarse : ndarray of int, optional
         Indices of the coordinates that the coarser basis also has; None if it has different functions.
@@ -317,7 +317,7 @@ class PencilFamily:
     coarse: np.ndarray | None
 
     def stack(self, weights: np.ndarray) -> PencilStack:
-        """Interpolate the matrices of designs with weights (R, T)."""
+        """Interpolate the matrices of designs between node scenes, with weights (designs, node scenes)."""
         M, K2 = (np.tensordot(weights, A, axes=1) for A in (self.M, self.K2))
         K0 = self.K0 if self.K0.ndim == 2 else np.tensordot(weights, self.K0, axes=1)
         return PencilStack(K0, M, K2)
@@ -399,7 +399,7 @@ def _nodes_between(name: str, low: float, high: float) -> tuple[float, ...]:
 
 
 def _weights_of(name: str, nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Compute interpolation weights (R, p) at x (R,): functions that are 1 at one of p nodes, else 0."""
+    """Compute interpolation weights at x, in rows: functions that are 1 at one of p nodes, else 0."""
     if name == "angle" and len(nodes) > 1:
         return (1 + 2 * np.cos(2 * (x[:, None] - nodes))) / 3
     values = np.ones((len(x), len(nodes)))

@@ -269,7 +269,7 @@ class SimilarTask:
         N designs.
     columns : mapping of str to ndarray, shape (N,)
         Inputs of the designs, except the speed.
-    speeds : ndarray, shape (N, S)
+    speeds : ndarray, shape (N, speeds)
         Speeds of each design [rad/s].
     """
 

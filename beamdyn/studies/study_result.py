@@ -140,7 +140,7 @@ class Study(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the result by neglected effects, at the designs of `left_out_places`: shape (p, m)."""
+        """Changes of the result by neglected effects, at the designs of `left_out_places` (first axis)."""
         return join_effects([self.left_out_at(*place) for place in self.left_out_places], self._numbers)
 
     @cached_property
@@ -162,7 +162,7 @@ class Study(StatesModelError):
         return tuple(tuple(map(int, np.unravel_index(i, self.shape))) for i in at)
 
     def left_out_at(self, *place: int) -> LeftOutEffects | None:
-        """Compute changes of the result (m,) of a design by neglected effects; None if it has no result."""
+        """Compute changes of the result of a design by neglected effects; None if it has no result."""
         design = self.design(*place)
         return left_out_of_design(self.question, with_numbers(self.scene, design), design)
 

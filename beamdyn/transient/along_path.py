@@ -102,26 +102,26 @@ class _Residual:
         return cls(larger, tuple(stiffness), matrices, C, factors - factors @ X @ X.T, X)
 
     def mean_modes(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute squared frequencies (n,) and modes (n, n) of the mean stiffness.
+        """Compute squared frequencies and modes (columns) of the mean stiffness.
 
-        The argument `values` (N, k) samples the functions of time that multiply the stiffness matrices.
+        The rows of `values` are samples of the functions of time that multiply the stiffness matrices.
         """
         flat = self.stiffness.reshape(len(self.stiffness), -1)
         return np.linalg.eigh((values.mean(axis=0) @ flat).reshape(self.larger.size, -1))
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Evaluate the residual (N, n), for the root's motion, coordinates and velocities (N, m) of a run."""
+        """Evaluate the residual (times, coordinates), for the motion of the root and that of the run."""
         loads = [getattr(root, name)[:, None] for name in self.larger.equations.vectors]
         parts = [*loads, *(k[:, None] * q for k in self.values(root).T), v]
         return np.concatenate(parts, axis=1) @ self.factors
 
     def load(self, root: RootMotion) -> np.ndarray:
-        """Evaluate the residual (N, n) of the undeflected beam in the larger model, for the root's motion."""
+        """Evaluate the residual of the undeflected beam in the larger model, for the root's motion."""
         loads = np.stack([getattr(root, name) for name in self.larger.equations.vectors], axis=1)
         return loads @ self.factors[: loads.shape[1]]
 
     def values(self, root: RootMotion) -> np.ndarray:
-        """Evaluate the functions of time that multiply the stiffness matrices at N times: shape (N, k)."""
+        """Evaluate the functions of time that multiply the stiffness matrices: (times, functions)."""
         return np.stack([getattr(root, name) for name in self.quantities], axis=1)
 
 
@@ -213,7 +213,7 @@ def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_sta
 
 
 class _Followed(NamedTuple):
-    """Difference from the larger model in a stretch: largest at the tip, final coordinates and rates (n,).
+    """Difference from the larger model in a stretch: largest at the tip, final coordinates and rates.
 
     `ringing` is the tip's amplitude [m] by the fast modes, if the stretch begins with a jump.
     """
@@ -296,17 +296,17 @@ class _Oscillators:
         return cls(t, values, modes, coupled, stiff, decay, slow, np.sqrt(w), turn)
 
     def coupling(self, y: np.ndarray) -> np.ndarray:
-        """Compute the force on each mode by the motion y (N, n) of the other modes: shape (N, n)."""
+        """Compute the force on each mode by the motion y (times, modes) of the other modes."""
         each = (k[:, None] * (y @ K) for k, K in zip(self.values.T, self.coupled, strict=True))
         return sum(each, np.zeros_like(y))
 
     def respond(
         self, force: np.ndarray, y0: np.ndarray, v0: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute the motion (N, n) of the modes under forces (N, n), and their velocities (n,) at the end.
+        """Compute the motion (times, modes) under forces of this shape, and the velocities at the end.
 
-        Fast modes are computed quasi-statically: the third result (n,) is the size of their jumps from y0
-        at the start.
+        Fast modes are computed quasi-statically: the third result, a number for each mode, is the size of its
+        jump from y0 at the start.
         """
         y, slow = force / self.stiff, self.slow
         end = (y[-1] - y[-2]) / (self.t[-1] - self.t[-2])
@@ -321,6 +321,6 @@ class _Oscillators:
 
 
 def _cumulative(values: np.ndarray, dt: np.ndarray) -> np.ndarray:
-    """Integrate values from the first to each later time by trapezoids of widths dt (N - 1, 1): (N, j)."""
+    """Integrate values from the first to each later time by trapezoids of widths dt, column by column."""
     parts = (values[1:] + values[:-1]) * (dt / 2)
     return np.concatenate([np.zeros_like(values[:1]), np.cumsum(parts, axis=0)])

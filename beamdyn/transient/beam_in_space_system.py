@@ -70,7 +70,7 @@ class BeamInSpaceSystem:
         return self.equations.root(self.motion.at(t))
 
     def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Compute the deflection [m] of a strip at xi = x/L (k,) and eta = 2 y/width (l,): (T, k, l)."""
+        """Compute the deflection [m] of a strip at xi = x/L and eta = 2 y/width: (times, along, across)."""
         return np.repeat(self.shape(q, xi)[:, :, None], len(eta), axis=2)
 
     def carrier(self, root: RootMotion) -> Carrier:
@@ -82,14 +82,14 @@ class BeamInSpaceSystem:
         return np.concatenate([y[self.size :], self._acceleration(t, y)])
 
     def _acceleration(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Solve the equations of motion at a time [s] for the accelerations (n,), which enter linearly."""
+        """Solve the equations of motion at a time [s] for the accelerations, which enter linearly."""
         q, v = np.split(y[None], 2, axis=1)
         a = self._steps(q)[2] * np.eye(self.size + 1, self.size, -1)
         still, *moved = self.residual(self.carrier(self.root(np.array([t]))), q, v + 0 * a, a)
         return a[1, 0] * np.linalg.solve((np.array(moved) - still).T, -still)
 
     def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Compute the Jacobian of y' with respect to y, shape (2 n, 2 n)."""
+        """Compute the derivatives of y' with respect to y = (coordinates, velocities): a matrix."""
         q, v = np.split(y[None], 2, axis=1)
         motion = self.carrier(self.root(np.array([t]))), q, v, self._acceleration(t, y)[None]
         K, C, M = self.tangents(*motion, self.residual(*motion))[:, 0]
@@ -99,21 +99,21 @@ class BeamInSpaceSystem:
 
     @cached_property
     def _unloaded(self) -> np.ndarray:
-        """Derivatives (3, N) of the undeformed axis' position with respect to the arc length."""
+        """Derivatives (3, points) of the undeformed axis' position with respect to the arc length."""
         return self.elastica.beam.at(np.zeros(self.size)).tangents
 
     def deflections(self, q: np.ndarray) -> np.ndarray:
-        """Compute the deflection of the tip [m] at coordinates q (..., n): shape (..., 1 or 2)."""
+        """Compute the deflection of the tip [m] at coordinates q: shape (..., 1 or 2)."""
         moved, stations = self.elastica.beam.at(q).tangents - self._unloaded, self.elastica.beam.stations
         return stations.length * (moved @ stations.quadrature.weights)[..., 1 : 1 + self.equations.planes]
 
     def shape(self, q: np.ndarray, xi: np.ndarray, direction: int = 0) -> np.ndarray:
-        """Compute the deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
+        """Compute the deflection [m] at positions xi = x/L, for coordinates q at T times: (T, positions)."""
         moved = (self.elastica.beam.at(q).tangents - self._unloaded)[..., 1 + check_direction(direction), :]
         return self.elastica.beam.stations.to_places(np.asarray(xi), moved)
 
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Compute the energy [J] at times t (T,): kinetic in the rotating frame, elastic, and root potential.
+        """Compute the energy [J] at times t: kinetic in the rotating frame, elastic, and root potential.
 
         The root potential is that of the centrifugal forces and of the root's linear acceleration (an angular
         acceleration has no potential); it is 0 for the undeformed beam.
@@ -124,13 +124,13 @@ class BeamInSpaceSystem:
     # Evaluation of the equations ----------------------------------------------------------------------
 
     def _moving(self, carrier: Carrier, q: np.ndarray, v: np.ndarray) -> MovingBeam:
-        """Build the beam with coordinates and rates (..., n) on its moving carrier."""
+        """Build the beam with coordinates and rates on its moving carrier."""
         return MovingBeam(self.elastica.beam.at(q), v, carrier, self.elastica.load)
 
     def residual(self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-        """Compute the residual of the equations of motion at s times: shape (..., s, n).
+        """Compute the residual of the equations of motion at s times: shape (..., s, coordinates).
 
-        Rates v and accelerations a have the shape (..., s, n), coordinates q that or (s, n).
+        Rates v and accelerations a have this shape, coordinates q may lack the first axes.
         """
         return self._moving(carrier, q, v).residual(a)
 
@@ -144,12 +144,11 @@ class BeamInSpaceSystem:
     def tangents(
         self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray
     ) -> np.ndarray:
-        """Compute derivatives of a residual (s, n) with respect to coordinates, rates and accelerations.
+        """Compute derivatives of the residual at s times by coordinates, rates and accelerations.
 
-        Their shape is (3, s, n, n).  They are computed by finite differences, which are exact for rates and
-        accelerations: the residual is
-        quadratic in the rates and linear in the accelerations.  For coordinates they are approximate, which
-        suffices for Newton's method.
+        Their shape is (3, s, n, n) for n coordinates.  They are computed by finite differences, which are
+        exact for rates and accelerations: the residual is quadratic in the rates and linear in the
+        accelerations.  For coordinates they are approximate, which suffices for Newton's method.
         """
         dq, dv, da = self._steps(q)[:, None, None, None] * np.eye(self.size)[:, None]
         still = np.zeros_like(dq)

@@ -36,7 +36,7 @@ class Polynomials:
         return replace(self, values=values.astype(np.float32) if rough else values, size=self.size[:count])
 
     def over(self, local: np.ndarray) -> np.ndarray:
-        """Compute coefficients (q, ...), q <= p, over a part of [-1, 1] by the matrix of `to_part`."""
+        """Compute the coefficients over a part of [-1, 1] by the matrix of `to_part`, without small terms."""
         p = len(self.values)
         if p == 1:
             return self.values

@@ -23,10 +23,10 @@ from beamdyn.transient.weakly_modulated import ModulatedSystem
 
 _WORTH_IT = 200  # number of steps of a segment below which time steps cost no more than the closed form
 _ORDERS = (3, 5)  # highest powers of the stiffness variation e that are tried in turn
-_FIT_TIMES = 8  # number of times, for each harmonic of e and g, at which these are fitted
+_FIT_TIMES = 8  # number of times, for each harmonic, at which stiffness and load factors are fitted
 # Reciprocal of the golden ratio: spacing the sample times by it avoids coincidence with a period.
 _GOLDEN = 0.6180339887498949
-_FIT_ERROR = 1e-3  # error of e and g, relative to the accuracy
+_FIT_ERROR = 1e-3  # error of the fitted stiffness and load factors, relative to the accuracy
 _SAME = 1e-9  # relative difference of frequencies that count as equal
 _ABSENT = 1e-12  # factor of a harmonic, over the largest, below which it is a rounding error of the fit
 _MOST_HARMONICS = 400
@@ -48,11 +48,11 @@ class _Harmonics:
     ----------
     frequency : ndarray, shape (f,)
         Angular frequencies [rad/s], ascending, with their negatives.
-    stiffness : ndarray, shape (f, n, n)
+    stiffness : ndarray, shape (f, coordinates, coordinates)
         Complex amplitudes of the varying stiffness; its constant part is in `mean`.
-    load : ndarray, shape (f, n)
+    load : ndarray, shape (f, coordinates)
         Complex amplitudes of the loads.
-    mean : ndarray, shape (n, n)
+    mean : ndarray, shape (coordinates, coordinates)
         Mean of the varying stiffness.
     """
 
@@ -84,7 +84,7 @@ class _Harmonics:
         return cls(lines, np.tensordot(found[:, :m], system.G, axes=1), load, mean)
 
     def sums(self, order: int) -> np.ndarray:
-        """List all sums of up to `order` frequencies of the varying stiffness, ascending: shape (k,)."""
+        """List all sums of up to `order` frequencies of the varying stiffness, ascending."""
         varying = self.frequency[np.abs(self.stiffness).any(axis=(1, 2))]
         found = np.zeros(1)
         for _ in range(order):
@@ -94,7 +94,7 @@ class _Harmonics:
     def coupling(self, sums: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
         """Build the function from a motion q at k frequencies to forces of the varying stiffness.
 
-        Motion and forces have the shape (..., k, n).
+        Motion and forces have the shape (..., k, coordinates).
         """
         varying = np.abs(self.stiffness).any(axis=(1, 2))
         # Index in `sums` of each sum minus each frequency of the stiffness; k if the difference is not in
@@ -131,7 +131,7 @@ class _Exponentials:
     ----------
     s : ndarray of complex, shape (k,)
         Exponents s_k [1/s].
-    b : ndarray of complex, shape (k, n)
+    b : ndarray of complex, shape (k, coordinates)
         Complex amplitudes b_k of the exponentials.
     """
 
@@ -139,7 +139,7 @@ class _Exponentials:
     b: np.ndarray
 
     def at(self, tau: np.ndarray, derivatives: int = 0) -> np.ndarray:
-        """Evaluate the motion and its derivatives at times tau (N,) [s] after t0: (derivatives + 1, N, n)."""
+        """Evaluate the motion and its derivatives at times tau [s] after t0: (order, times, coordinates)."""
         powers = self.s ** np.arange(derivatives + 1)[:, None]
         return np.real(np.exp(np.outer(tau, self.s)) @ (powers[:, :, None] * self.b))
 
@@ -169,7 +169,7 @@ def _forced(harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int) -> 
 
 
 def _stiffness(s: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Compute the dynamic stiffness s^2 + s C + K at exponents s (...): shape (..., n, n)."""
+    """Compute the dynamic stiffness s^2 + s C + K at exponents s: one matrix each."""
     s = s[..., None, None]
     return s**2 * np.eye(len(K)) + s * C + K
 
@@ -310,7 +310,7 @@ def _sample(
 
 
 def _evaluate(motion: _Exponentials, h: float, steps: int, stages: int) -> tuple[np.ndarray, np.ndarray]:
-    """Evaluate augmented states (N + 1, 2 n + 1) at step ends, and accelerations (N, s, n) at nodes."""
+    """Evaluate augmented states at step ends, and accelerations (steps, nodes, coordinates) at nodes."""
     s, n = motion.s, motion.b.shape[1]
     nodes = np.exp(np.multiply.outer(s, h * tableau(stages).c))[:, :, None] * (s**2)[:, None, None]
     at_nodes = (nodes * motion.b[:, None]).reshape(len(s), stages * n)

@@ -206,7 +206,7 @@ def propagate_elastica(
 
 
 def _at_nodes(stages: int, values: np.ndarray) -> np.ndarray:
-    """Interpolate values (N, s, n) from s Gauss nodes in each of N steps to a rule with `stages` nodes."""
+    """Interpolate values (steps, nodes, coordinates) from Gauss nodes to a rule with `stages` nodes."""
     given = values.shape[1]
     return legendre.legvander(gauss_rule(stages)[0], given - 1) @ legendre_series(given) @ values
 
@@ -244,7 +244,7 @@ class _Step:
     def _solve(
         self, carrier: Carrier, drifted: np.ndarray, v: np.ndarray, a: np.ndarray, factors: Factors | None
     ) -> np.ndarray:
-        """Solve for accelerations (s, n) by Newton's method, reusing LU factors while it converges fast."""
+        """Solve for accelerations at the nodes by Newton's method; LU factors are reused while it is fast."""
         start, last = np.stack([drifted, np.broadcast_to(v, a.shape), np.zeros_like(a)]), np.inf
         for iteration in range(_ITERATIONS):
             motion = start + self.to_motion.dot(a).reshape(start.shape)
@@ -269,7 +269,7 @@ class _Step:
         raise StepNotSolved("the equations of a step were not solved: take shorter steps")
 
     def _balances(self, residual: np.ndarray, motion: np.ndarray) -> bool:
-        """Return whether a residual (s, n) is only rounding error of the elastic forces."""
+        """Return whether a residual is only rounding error of the elastic forces."""
         return _norm(residual) <= _BALANCED * _norm(motion[0] @ self.system.elastica.beam.stiffness)
 
     def _factorize(self, tangents: np.ndarray) -> Factors:

@@ -29,7 +29,7 @@ class ElasticaSystem(BeamInSpaceSystem):
 
     @cached_property
     def kernel_and_moments(self) -> np.ndarray:
-        """Matrix (N + 2, N + 1): minus the mass matrix of the slope angles, and below it a row of moments.
+        """Matrix with minus the mass matrix of the slope angles, and below it a row of moments.
 
         The row of moments [kg m] has the generalized force on each slope angle by a unit acceleration of the
         root.
@@ -50,9 +50,10 @@ class ElasticaSystem(BeamInSpaceSystem):
     def residual(self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """Compute the residual of the equations of motion, with arguments as for the beam in space.
 
-        If bending is in the plane of rotation, an absolute angular rate w and acceleration w' give X = -w^2
-        cos theta - w' sin theta and Y = -w^2 sin theta + w' cos theta; if it is out of this plane, X contains
-        -omega^2 cos theta in addition.
+        X and Y are the second time derivatives of the cosine and sine of a slope angle theta.  If bending is
+        in the plane of rotation, an absolute angular rate w and acceleration w' give X = -w^2 cos theta - w'
+        sin theta and Y = -w^2 sin theta + w' cos theta; if it is out of this plane, X contains -omega^2 cos
+        theta in addition.
         """
         beam, (has_inertia, is_damped, is_tilted) = self.elastica.beam, self.conditions
         angles, of_mass, inertia = beam.angles, self.kernel_and_moments, beam.masses.inertia

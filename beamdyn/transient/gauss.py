@@ -37,7 +37,7 @@ class LinearSystem(Protocol):
     def coefficients(self, t: np.ndarray) -> tuple[np.ndarray | None, np.ndarray, np.ndarray]:
         """Evaluate damping C (None if zero), stiffness K and load f at times t [s] of any shape.
 
-        The shapes are (..., n, n) for C and K, and (..., n) for f.
+        The axes of t precede those of the matrices and of the load.
         """
         ...
 
@@ -73,7 +73,7 @@ class Tableau:
 
     @property
     def b2(self) -> np.ndarray:
-        """Weights of the accelerations in the displacement at the end of the step, shape (s,)."""
+        """Weights of the accelerations in the displacement at the end of the step."""
         return self.b @ self.A
 
 
@@ -171,12 +171,12 @@ def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, ta
 
 
 def _maps_to_end(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Compute maps (N, 2 n, 2 n + 1) to (q, v) at step ends from maps `a` to accelerations at nodes."""
+    """Compute the maps to the state at step ends from the maps `a` to accelerations at nodes."""
     return add_drift(increment(a, h, table), h, first=1)
 
 
 def increment(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Compute the increment (N, 2 n, m) of (q, v) over N steps from accelerations at s nodes (N, s n, m)."""
+    """Compute the increments of coordinates and velocities over steps from the accelerations at nodes."""
     N, rows, columns = a.shape
     weights = np.stack([h**2 * table.b2, h * table.b])
     n = rows // len(table.c)
@@ -184,7 +184,7 @@ def increment(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
 
 
 def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
-    """Add the state without acceleration, (q + h v, v), to maps whose columns from `first` on are q, v."""
+    """Add the motion without acceleration to maps; coordinates and velocities begin at column `first`."""
     n = step.shape[1] // 2
     step[:, np.arange(2 * n), first + np.arange(2 * n)] += 1
     step[:, np.arange(n), first + n + np.arange(n)] += h
@@ -192,7 +192,7 @@ def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
 
 
 def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Build the matrix of the collocation equations, (N, s n, s n), for the accelerations at all nodes."""
+    """Build the matrix of the collocation equations of each step, for the accelerations at all nodes."""
     N, s, n, _ = K.shape
     matrix = np.empty((N, s, n, s, n))
     np.multiply((h**2 * table.A2)[:, None, :, None], K[:, :, :, None, :], out=matrix)
@@ -204,7 +204,7 @@ def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> 
 
 
 def right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Build the collocation equations' right-hand sides for the augmented state: (N, s n, 2 n + 1)."""
+    """Build the collocation equations' right-hand sides for the augmented state of each step."""
     N, s, n = f.shape
     right = np.empty((N, s, n, 2 * n + 1))
     right[..., 0] = f
@@ -216,12 +216,12 @@ def right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, tab
 
 
 def components(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Evaluate linear functions with coefficients `outputs` (d, n) of coordinates q (..., n): (..., d)."""
+    """Evaluate linear functions with coefficients `outputs` (rows) of coordinates q (last axis)."""
     return np.stack([q @ output for output in outputs], axis=-1)
 
 
 def project(state: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Project augmented states (..., 2 n + 1) on linear functions (d, n) of coordinates: (..., 2 d + 1)."""
+    """Project augmented states on linear functions of the coordinates, and of the velocities."""
     n = outputs.shape[1]
     q, v = state[..., 1 : n + 1], state[..., n + 1 :]
     return np.concatenate([state[..., :1], components(q, outputs), components(v, outputs)], axis=-1)
@@ -274,7 +274,7 @@ class Segment:
 def interpolate_each(
     h: float | np.ndarray, state: np.ndarray, acceleration: np.ndarray, theta: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolate displacement and velocity, each (k, n), at a fraction theta (k,) of each of k steps."""
+    """Interpolate displacement and velocity at one fraction `theta` of each of k steps: (k, coordinates)."""
     _, s, n = acceleration.shape
     table = tableau(s)
     weights = legendre.legvander(2 * theta - 1, s) @ table.integrals

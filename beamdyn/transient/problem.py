@@ -209,8 +209,9 @@ class TransientProblem(FieldsOnly):
         return replace(finer, discretization=own) if same else finer
 
     def follow_with_more_modes(self, path: Trajectory) -> tuple[AnySystem, Path] | None:
-        """Integrate with the modes of `refined` in the time steps of a path: equations and motion, or None.
+        """Integrate with the modes of `refined` in the time steps of a path; return equations and motion.
 
+        None if there are no further modes, or the motion is unbounded or nonlinear.
         Two runs in the same steps differ only by the additional modes; neither needs an error estimate.
         If the steps are too long for the motion of the further modes, the steps of `refined` are used.
         """

@@ -30,7 +30,7 @@ from beamdyn.transient.weakly_modulated import propagate_modulated
 
 # Number of stretches of a run; each stretch has one step size, which suits the motion in it.
 _STRETCHES = 16
-# Smallest number of sample intervals for these steps: fewer intervals are integrated one after the other.
+# Smallest number of sample intervals for steps across samples: fewer are integrated one after the other.
 _FEWEST_PIECES = 16
 # Mean number of steps per sample interval above which sample intervals are integrated one after the other.
 _MOST_STEPS_IN_PIECE = 16
@@ -105,7 +105,7 @@ class RecordSteps:
 
     @cached_property
     def counts(self) -> np.ndarray:
-        """Number of pieces of each step, shape (N,)."""
+        """Number of pieces of each step."""
         return np.diff([*self.first, len(self.piece_start)])
 
     @cached_property
@@ -140,7 +140,7 @@ class RecordSteps:
         return RecordSteps(self.piece_start, self.piece_width, self.piece_start, self.piece_width, index)
 
     def root(self, system: ModalSystem, table: gauss.Tableau) -> RootMotion:
-        """Compute the root's motion at nodes of steps, (N, s), by the nearest polynomial of each quantity."""
+        """Compute the root's motion at the nodes of all steps, by the nearest polynomial of each quantity."""
         within = gauss.tableau(self.nodes_in_piece(len(table.c)))
         root = system.root(self.piece_start[:, None] + self.piece_width[:, None] * within.c)
         if len(self.piece_start) == len(self):
@@ -176,7 +176,7 @@ def most_steps_in_piece(system: ModalSystem, t_end: float, step_size: StepCounte
 
 
 def _are_same(lengths: np.ndarray) -> np.ndarray:
-    """Tell whether each length (N,) equals the next: shape (N - 1,)."""
+    """Tell whether each length equals the next: one entry less."""
     return np.abs(np.diff(lengths)) <= _SAME_LENGTH * lengths[:-1]
 
 

@@ -52,7 +52,7 @@ class SolveIvpPath:
 
     @property
     def samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Times (k,) [s], coordinates and velocities (k, n), several in each step."""
+        """Times [s], coordinates and velocities (times, coordinates); several in each step."""
         return self.times, *self.at(self.times)
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -204,7 +204,7 @@ class GaussCollocation(OdeSolver):
         return True, None
 
     def augmented(self) -> np.ndarray:
-        """Return the augmented state (1, q, v) at the current time."""
+        """Return the augmented state (1, coordinates, velocities) at the current time."""
         return np.concatenate([[1.0], self.y])
 
     def _solve_block(self) -> None:

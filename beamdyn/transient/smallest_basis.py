@@ -20,7 +20,7 @@ from beamdyn.transient.transient import Transient, TransientRequest, warn_of_mis
 # Largest computing work of a run, its steps times its squared number of coordinates (some seconds), for which
 # "auto" adds further modes.
 _MOST_WORK = 5e7
-# The same limit, if the last added modes have divided the truncation error by less than _FAST.
+# Largest work if the last added modes have divided the truncation error by less than _FAST.
 _SLOW_WORK = 5e6
 _FAST = 4.0
 # Up to the first number of modes, one more mode may divide the truncation error by the second number.

@@ -45,28 +45,28 @@ class ModalSystem:
 
     @cached_property
     def tips(self) -> np.ndarray:
-        """Tip deflection per unit of each coordinate [kg^-1/2] in each direction, shape (1 or 2, n)."""
+        """Tip deflection per unit of each coordinate [kg^-1/2] in each direction, (1 or 2, coordinates)."""
         return self.equations.tips
 
     @property
     def tip(self) -> np.ndarray:
-        """Tip deflection per unit of each coordinate [kg^-1/2] in the direction of bending, shape (n,)."""
+        """Tip deflection per unit of each coordinate [kg^-1/2] in the direction of bending."""
         return self.tips[0]
 
     def deflections(self, q: np.ndarray) -> np.ndarray:
-        """Compute the tip's deflection in each direction [m] at coordinates q (..., n): (..., 1 or 2)."""
+        """Compute the tip's deflection in each direction [m] at coordinates q: (..., 1 or 2)."""
         return components(q, self.tips)
 
     def shape(self, q: np.ndarray, xi: np.ndarray, direction: int = 0) -> np.ndarray:
-        """Compute the deflection [m] at positions xi = x/L (k,) and coordinates q (T, n): shape (T, k)."""
+        """Compute the deflection [m] at positions xi = x/L, for coordinates q at T times: (T, positions)."""
         return q @ self.equations.deflection(xi, direction=direction)
 
     def surface(self, q: np.ndarray, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Compute the deflection [m] of a strip at xi = x/L (k,) and eta = 2 y/width (l,): (T, k, l)."""
+        """Compute the deflection [m] of a strip at xi = x/L and eta = 2 y/width: (times, along, across)."""
         return np.tensordot(q, self.equations.surface(xi, eta), 1)
 
     def energy(self, t: np.ndarray, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Compute the energy of the vibration [J] at times t (T,): q' q' / 2 + q K q / 2 - f q."""
+        """Compute the energy of the vibration [J] at times t: q' q' / 2 + q K q / 2 - f q."""
         _, K, f = self.coefficients(t)
         return (v**2).sum(axis=1) / 2 + np.einsum("ti,tij,tj->t", q, K, q) / 2 - (f * q).sum(axis=1)
 
@@ -160,7 +160,7 @@ class ModalSystem:
         excess: Callable[[MotionSample, RootMotion], list[np.ndarray]],
         lines: np.ndarray,
     ) -> ModulatedSystem:
-        """Build equations with a slow stiffness and a varying rest: quantities minus their slow values."""
+        """Build equations with a slowly varying stiffness, and varying quantities minus their slow values."""
         stiffness, loads = self.equations.matrices[0], self.equations.vectors
 
         def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -186,7 +186,7 @@ class ModalSystem:
         return np.concatenate([v, f - K @ q - (0 if C is None else C @ v)])
 
     def jacobian(self, t: float, y: np.ndarray) -> np.ndarray:
-        """Compute the Jacobian of y' with respect to y, shape (2 n, 2 n)."""
+        """Compute the derivatives of y' with respect to y = (coordinates, velocities): a matrix."""
         C, K, _ = self.coefficients(np.asarray(t))
         n = self.size
         J = np.zeros((2 * n, 2 * n))

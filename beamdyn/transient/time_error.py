@@ -56,7 +56,7 @@ class SegmentError:
     ----------
     coordinates : ndarray, shape (n,)
         Largest error of each coordinate at the ends of the steps.
-    interpolation : ndarray, shape (k, n)
+    interpolation : ndarray, shape (steps, n)
         Interpolation errors at some times.
     unresolved : ndarray of bool, shape (n,)
         Whether the steps are too long to follow the free vibration of a coordinate.
@@ -123,7 +123,7 @@ def estimate_time_error(
         The equations.
     segments : sequence of Segment, or of one RecordSegment
         The segments of a trajectory.
-    outputs : ndarray, shape (d, n)
+    outputs : ndarray, shape (components, coordinates)
         Quantity whose error is estimated, such as the tip deflection, per unit of each coordinate: d
         components of a vector; the result is the magnitude of the vector's error.
 
@@ -178,12 +178,12 @@ def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarr
 
 
 def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
-    """Compute the magnitude of a vector per unit of each coordinate, (n,), from d components (d, n)."""
+    """Compute the magnitude of a vector by a unit of each coordinate, from its components (rows)."""
     return np.hypot.reduce(np.abs(outputs))
 
 
 def _total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
-    """Bound each coordinate's error after some steps by local (k, n) and largest phase errors delta (n,).
+    """Bound each coordinate's error after some steps by local errors and the largest phase error of a step.
 
     The bound is the sum of all local errors, or of the largest ones until the phase is lost, if that is less.
     """
@@ -198,18 +198,18 @@ def local_errors(
 
     Parameters
     ----------
-    step, fine : ndarray, shape (k, 2 n, 2 n + 1)
+    step, fine : ndarray, shape (steps, 2 n, 2 n + 1)
         Maps of the steps, and maps with more stages, which are more accurate.
-    state : ndarray, shape (k, 2 n + 1)
+    state : ndarray, shape (steps, 2 n + 1)
         Augmented states at the beginnings of the steps.
-    end_state : ndarray, shape (k, 2 n)
+    end_state : ndarray, shape (steps, 2 n)
         Computed coordinates and velocities at the ends of the steps.
     frequencies : ndarray, shape (n,)
         Angular frequencies of the coordinates, of `vibration_frequencies` [rad/s].
 
     Returns
     -------
-    ndarray, shape (k, n)
+    ndarray, shape (steps, n)
     """
     n = len(frequencies)
     residual = np.einsum("kij,kj->ki", step, state) - end_state

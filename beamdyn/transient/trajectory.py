@@ -54,7 +54,7 @@ class Path(Protocol):
 
     @property
     def samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Times (k,) [s], coordinates and velocities (k, n), several in each step."""
+        """Times [s], coordinates and velocities (times, coordinates); several in each step."""
         ...
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -85,7 +85,7 @@ class Trajectory:
 
     @property
     def samples(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Times (k,) [s], coordinates and velocities (k, n), several in each step."""
+        """Times [s], coordinates and velocities (times, coordinates); several in each step."""
         return self._samples
 
     @cached_property
@@ -117,9 +117,9 @@ def magnitude(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
 
     Parameters
     ----------
-    q : ndarray, shape (..., n)
+    q : ndarray, shape (..., coordinates)
         Coordinates.
-    outputs : ndarray, shape (d, n)
+    outputs : ndarray, shape (d, coordinates)
         The components per unit of each coordinate, such as the tip's deflections in two directions.
 
     Returns
@@ -200,7 +200,7 @@ def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -
 
 
 def sample_tip(system: AnySystem, path: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Sample the tip's deflection on a path: times (k,) [s] and deflections (k, 1 or 2) [m]."""
+    """Sample the tip's deflection on a path: times [s] and deflections [m], in 1 or 2 columns."""
     if isinstance(system, ModalSystem) and isinstance(path, Trajectory):
         # The tip deflection alone needs far less memory than all coordinates.
         t, deflections, _ = path.projected(system.tips).samples

@@ -57,7 +57,7 @@ class Transient(StatesModelError):
         Tip deflection [m] in the direction of bending at the root.
     tip_across : ndarray, shape (n,)
         Tip deflection [m] in the direction across; zeros where one plane is modelled.
-    coordinates, velocities : ndarray, shape (n, m)
+    coordinates, velocities : ndarray, shape (n, modes)
         Modal coordinates [kg^1/2 m] and their rates.
     time_error : float
         Largest estimated time-integration error of the tip deflection [m]; nan for the methods

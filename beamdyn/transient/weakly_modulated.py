@@ -114,7 +114,7 @@ class _StepMapSeries:
 
     @classmethod
     def at(cls, system: ModulatedSystem, times: np.ndarray, h: float, table: gauss.Tableau) -> _StepMapSeries:
-        """Expand the accelerations of steps of length h [s] that begin at given times (P,) [s]."""
+        """Expand the accelerations of steps of length h [s] that begin at given times [s]."""
         C, K = system.slow(times[:, None] + h * table.c)
         P, s, n, _ = K.shape
         Y = np.linalg.inv(gauss.left_side(C, K, h, table))
@@ -137,30 +137,27 @@ class _StepMapSeries:
         return self.Y.shape[1] // len(self.table.c)
 
     def constant(self) -> np.ndarray:
-        """Compute the maps, with e = 0, from z to the state at the end of a step: (P, 1, 2 n, :)."""
+        """Compute the maps from z to the state at the end of a step, for stiffness factors of 0."""
         return gauss.add_drift(gauss.increment(self.X0, self.h, self.table), self.h, first=0)[:, None]
 
     def _parts(self) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the maps from loads at the nodes to (q, v), and W = R - Z X0 in the notation of the class.
-
-        The shapes are (P, s, 2 n, n) and (P, m, s, n, :).
-        """
+        """Compute the maps from loads at nodes to the state at the end, and W = R - Z X0 as in the class."""
         P, s, n = len(self.Y), len(self.table.c), self.size
         ends = gauss.increment(self.Y, self.h, self.table).reshape(P, 2 * n, s, n)
         W = self.R - self.Z @ self.X0[:, None]
         return np.moveaxis(ends, 2, 1), W.reshape(P, len(self.Z), s, n, W.shape[-1])
 
     def first(self) -> np.ndarray:
-        """Compute the terms of first order in e in the maps to the end of a step.
+        """Compute the terms of first order in the stiffness factors in the maps to the end of a step.
 
-        The shape is (P, m s, 2 n, :): a term for each factor m and node.
+        There is one for each factor and node (second axis).
         """
         ends, W = self._parts()
         found = ends[:, None] @ W
         return found.reshape(len(found), -1, *found.shape[3:])
 
     def second(self) -> np.ndarray:
-        """Compute the terms of second order in e in the maps to the end of a step.
+        """Compute the terms of second order in the stiffness factors in the maps to the end of a step.
 
         The m factors e have m s values at the s nodes of a step.  The shape is
         (P, m s (m s + 1) / 2, 2 n, :): a term for each pair e_k, e_l with k <= l of these values.
@@ -176,7 +173,7 @@ class _StepMapSeries:
         return -(pairs[:, rows, cols] + pairs[:, cols, rows]) * twice
 
     def ratio(self) -> np.ndarray:
-        """Bound the ratio of successive terms of the series, per unit of each factor e: shape (m,)."""
+        """Bound the ratio of successive terms of the series, per unit of each factor e."""
         A = self.Z @ self.Y[:, None]
         norm = np.linalg.norm(A, axis=(2, 3)) + 1e-300
         A = A / norm[:, :, None, None]
@@ -261,11 +258,11 @@ class _Block:
     point: _StepMapSeries
 
     def polynomials(self, x: np.ndarray) -> np.ndarray:
-        """Evaluate the p Chebyshev polynomials that the block needs at x (N,) in [-1, 1]: shape (N, p)."""
+        """Evaluate the p Chebyshev polynomials that the block needs, at x in [-1, 1]: p columns."""
         return polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
-        """Compute maps of steps (N, 2 n, 2 n + s l) for polynomials (N, p) at step starts, e (N, m s)."""
+        """Compute maps of steps from the polynomials' values T at their starts, and from their factors e."""
         rows, columns = self.maps[0].shape[2:]
         # Sums grouped by precision: single precision where that suffices.
         sums: dict[np.dtype, np.ndarray] = {}
@@ -277,11 +274,11 @@ class _Block:
         return reduce(np.add, sums.values()).reshape(len(e), rows, columns)
 
     def accelerations(self, T: np.ndarray, e: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Compute accelerations at the nodes (N, s n) for polynomials, e, and z (N, 2 n + s l)."""
+        """Compute accelerations at the nodes of steps from T and e, as for `steps`, and vectors z (rows)."""
         R, Z, n = self.point.R, self.point.Z, self.point.size
         factor = np.repeat(
             e.reshape(len(e), len(Z), len(self.point.table.c)).swapaxes(0, 1), n, axis=2
-        )  # shape (m, N, s n)
+        )  # shape (factors, steps, nodes x coordinates)
         total = _evaluate(self.X0, T, z)
         more = (factor * (z @ R.swapaxes(1, 2) - total @ Z.swapaxes(1, 2))).sum(axis=0)
         kind = self.Y.dtype
@@ -292,12 +289,12 @@ class _Block:
 
 
 def _products(T: np.ndarray, monomials: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Multiply polynomials T (N, :) with monomials (N, k), as weights of values (p, k, ...): (N, p k)."""
+    """Multiply each polynomial T with each monomial, row by row: these are the weights of `values`."""
     return (T[:, : len(values), None] * monomials[:, None, :]).reshape(len(T), -1)
 
 
 def _evaluate(coefficients: np.ndarray, T: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Multiply vectors z (N, c) by matrices of Chebyshev coefficients (p, r, c), at T (N, p): (N, r)."""
+    """Evaluate a series of matrices with Chebyshev polynomials T (rows), and multiply them with z (rows)."""
     p, rows, columns = coefficients.shape
     return _products(T, z, coefficients) @ coefficients.swapaxes(1, 2).reshape(p * columns, rows)
 
@@ -311,7 +308,7 @@ def _pairs(d: int) -> tuple[np.ndarray, np.ndarray]:
 def _scales(
     system: ModulatedSystem, constant: np.ndarray, t: float, table: gauss.Tableau
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute factors of rows (2 n,) and columns (2 n + s l,) that make the entries of maps comparable.
+    """Compute factors of rows and of columns that make the entries of maps comparable.
 
     Errors of velocity are divided by the angular frequency, errors of loads by each load's largest effect in
     a step.
@@ -384,7 +381,7 @@ def _advance_block(
     """Compute the states state[1:] of a block of N steps from state[0], and accelerations at their nodes."""
     N, columns = len(e), state.shape[1]
     T = local.polynomials(2 * np.arange(N) / max(N - 1, 1) - 1)
-    # As one row per step: e of length m s.
+    # One row per step: the factors at all of its nodes.
     e, g = np.moveaxis(e, 2, 1).reshape(N, -1), g.reshape(N, -1)
     maps = local.steps(T, e)
     affine = np.empty((N, columns - 1, columns))

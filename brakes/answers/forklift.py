@@ -242,7 +242,7 @@ class ForkliftAnswer(Answer):
         return figure_of(self._drawn(place))
 
     def drawings(self, place: float) -> Rows:
-        """Make the drawings of the figure; titles leave out slope and speed, which the form shows."""
+        """Make the drawings of truck and brake; titles leave out slope and speed, which the form shows."""
         if self.stop is None:
             return self._drawn(place)
         (first, *others), *below = self._drawn(place)

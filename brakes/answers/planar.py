@@ -142,7 +142,10 @@ class MechanismFriction(Result):
         return self.over or self.drawn
 
     def locking(self, answered: bool) -> list[str]:
-        """Return sentences on undetermined directions of motion: those with an answer, or those without."""
+        """Return a sentence on each direction of motion whose forces statics does not determine.
+
+        These are the directions that have an answer nevertheless, or else those that have none.
+        """
         return [
             Words(name, ": ", way.message)
             for name, way in self._moving(self.last)

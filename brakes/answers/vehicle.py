@@ -70,7 +70,7 @@ class OneDirection:
 
 
 def _of_one_way(design: VehicleInput) -> tuple[Output, ...]:
-    """Describe the outputs of one direction."""
+    """Describe the outputs for one direction of motion."""
     names = ["friction_to_hold"] if design.lever is None else [*_WORDS]
     asked = (
         Output(name, _WORDS[name][0], lambda way, name=name: way.needs[name].value, _WORDS[name][1])

@@ -259,7 +259,7 @@ class Caliper:
         return replace(self, mechanism=replace(self.mechanism, loads=loads), clearance=self.clearance + lost)
 
     def wear(self, lost: Sequence[float] | np.ndarray) -> PadWear:
-        """Compute the travel to contact, and the advantage there, for pads worn by thicknesses (W,) [m]."""
+        """Compute the travel to contact, and the advantage there, for pads worn by thicknesses [m]."""
         lost = real_array("lost", lost)
         worn = [self.worn(thickness) for thickness in lost]
         runs = [caliper.stroke([caliper.contact]) for caliper in worn]

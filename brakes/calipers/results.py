@@ -106,17 +106,17 @@ class CaliperStroke(Result):
 
     @property
     def total_advantage(self) -> np.ndarray:
-        """Sum of both pads' forces over the force of the finger, shape (S,)."""
+        """Sum of both pads' forces over the force of the finger."""
         return self.advantage.sum(axis=1)
 
     @property
     def travel_symmetry(self) -> np.ndarray:
-        """Velocity of the left pad over the velocity of the right pad, shape (S,)."""
+        """Velocity of the left pad over the velocity of the right pad."""
         return self.pad_ratio[:, 1] / self.pad_ratio[:, 0]
 
     @property
     def force_symmetry(self) -> np.ndarray:
-        """Force of the left pad over the force of the right pad, shape (S,)."""
+        """Force of the left pad over the force of the right pad."""
         return self.pad_force[:, 1] / self.pad_force[:, 0]
 
     def to_dict(self) -> dict[str, Any]:

@@ -57,7 +57,7 @@ def _add_forces(
 
 
 def _places(block: Block) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return points of the block's face (k, 2), the fulcrum and the force, for a block above the drum."""
+    """Return points (rows of x, y) of the block's face, the fulcrum and the force; the drum is below."""
     half, r = float(block.block_angle) / 2, float(block.drum_radius)
     face = arc((0, 0), r, np.pi / 2 + half, np.pi / 2 - half)
     fulcrum = np.array([-float(block.block_arm), float(block.height)])

@@ -108,7 +108,7 @@ def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str
 
 
 def _on_rim(r: float, alpha: np.ndarray) -> np.ndarray:
-    """Compute points (k, 2) on the drum at angles from straight down [rad]."""
+    """Compute points (rows of x, y) on the drum at angles from straight down [rad]."""
     return r * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1)
 
 

@@ -84,7 +84,7 @@ def moved(
 
     Parameters
     ----------
-    points : ndarray, shape (n, 2)
+    points : ndarray, shape (points, 2)
         Points of the right shoe at rest [m].
     geometry, motion, progress
         Arguments of `duo_servo`.
@@ -93,7 +93,7 @@ def moved(
 
     Returns
     -------
-    ndarray, shape (n, 2)
+    ndarray, shape (points, 2)
         Moved points [m].
     """
     first, second = min(progress, 1.0), max(progress - 1.0, 0.0)
@@ -113,7 +113,7 @@ def lining(geometry: DuoServo, motion: ShoeMotion) -> np.ndarray:
 
 
 def _turned(points: np.ndarray, angle: float) -> np.ndarray:
-    """Rotate points (n, 2) anticlockwise by an angle [rad]."""
+    """Rotate points (rows of x, y) anticlockwise by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return np.asarray(points) @ np.array([[c, s], [-s, c]])
 

@@ -57,7 +57,10 @@ def _shape(result: MachineResult, index: int, at: np.ndarray) -> np.ndarray:
 
 
 def factor_chart(result: MachineResult) -> Chart:
-    """Make the chart of the brake factor C* over friction, both ways, with a mark where the brake locks."""
+    """Make the chart of the brake factor C* over friction, for both directions of rotation.
+
+    A mark shows the friction at which the brake locks.
+    """
     mu, limit = float(result.friction), float(result.locking_friction)
     top = 0.995 * limit if 0 < limit < LIMIT_SHOWN else max(FRICTION_SHOWN, 1.3 * mu)
     at = np.linspace(1e-3 * top, top, _POINTS)

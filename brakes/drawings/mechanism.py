@@ -114,7 +114,7 @@ def _add_member(sketch: _Sketch, member: parts.Member, width: float, dash: tuple
 
 
 def _faces(position: Position) -> Iterator[np.ndarray]:
-    """Yield short lines (k, 2) along slots and contact faces [mm]."""
+    """Yield points (rows of x, y) of short lines along slots and contact faces [mm]."""
     half = 0.06 * _size(position) * _MM
     for _, shape, points in parts.shapes(position, "face"):
         if len(points) > 1:

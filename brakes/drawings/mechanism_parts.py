@@ -13,7 +13,7 @@ _FLAT = 1e-12  # triangle area over the square of the size, below which three po
 
 
 class Member(NamedTuple):
-    """A bar or cable: name, points (k, 2) [m], and force [N], positive in tension, nan if unknown."""
+    """A bar or cable: name, points (rows of x, y) [m], and force [N], positive in tension, nan if unknown."""
 
     name: str
     ends: np.ndarray
@@ -31,21 +31,21 @@ class OuterForce(NamedTuple):
 
 
 def shapes(position: Position, style: str) -> Iterator[tuple[str, Shape, np.ndarray]]:
-    """Yield the drawn shapes of one style: name of joint or load, shape, and points (k, 2) [m]."""
+    """Yield the drawn shapes of one style: name of joint or load, shape, and points (rows of x, y) [m]."""
     for name, shape in position.mechanism.shapes:
         if shape.style == style:
             yield name, shape, np.array([position.point(*end) for end in shape.ends])
 
 
 def outline(position: Position, body: str) -> np.ndarray:
-    """Return corners of the convex hull of a body's points at a position, anticlockwise, (k, 2) [m]."""
+    """Return corners (rows) of the convex hull of a body's points at a position, anticlockwise [m]."""
     drawn = position.mechanism.points[body]
     now = np.array([position.point(body, at) for at in drawn]).reshape(-1, 2)
     return now if len(now) < 3 else _hull(now)
 
 
 def _hull(points: np.ndarray) -> np.ndarray:
-    """Find the convex hull of points (k, 2), or return the sorted points if they are in line.
+    """Find the convex hull of points (rows of x, y), or return the sorted points if they are in line.
 
     The method is Andrew's monotone chain (Inf. Process. Lett. 9, 1979). It is written out here so that a
     drawing of a few points does not wait for a geometry library to be loaded.

@@ -220,7 +220,7 @@ def brake_torque(
     sides = [*zip(brake.shoes, (leads is not reverse for leads in brake.leading), strict=True)]
     at_unit_force = [solve_shoe(shoe, mu, leads, 1.0) for shoe, leads in sides]
     if name == "torque":
-        refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
+        refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque", "give a force")
         bound = "a shoe locks: no torque can be demanded of the brake"
         locked = _over(np.logical_or, [shoe.locked for shoe in at_unit_force])
         refuse(locked, "friction", mu, "", bound, "give a force to see which one, or less friction")

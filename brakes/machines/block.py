@@ -160,9 +160,9 @@ class Block(Machine):
         return b * even / peak, h * odd / peak, b * chord / peak
 
     def _peak(self) -> Numbers:
-        """Compute the largest value of b cos x + h sin x over the block [m], x the angle from its middle.
+        """Compute the largest b cos x + h sin x over the block [m], with the angle x from its middle.
 
-        Under wear the pressure is in proportion to this.
+        Here b is `block_arm` and h the `height`. Under wear the pressure is in proportion to this.
         """
         towards = np.abs(np.arctan2(self.height, self.block_arm))  # angle of the maximum of b cos x + h sin x
         past = np.maximum(towards - np.asarray(self.block_angle) / 2, 0.0)

@@ -283,7 +283,7 @@ def solve_brake(
     gain, slope = _torque_per_force(brake, mu, reverse, locked)
     pressures = {key: each.share / np.where(locked, np.nan, each.force) for key, each in linings.items()}
     if name == "torque":
-        refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque")
+        refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque", "give a force")
         bound = "the brake locks: no torque can be demanded of it"
         refuse(locked, "friction", mu, "", bound, "give a force, or less friction")
     made = {"force": 1.0, "torque": gain, "peak_pressure": reduce(np.maximum, pressures.values())}[name]

@@ -203,7 +203,7 @@ class Sliding(Machine):
         return np.where(free.all(axis=0), np.inf, high)
 
     def _force(self, mu: np.ndarray, leads: bool) -> np.ndarray:
-        """Compute the actuating force divided by w r p0, with the pressure scale p0; nan without equilibrium.
+        """Compute the actuating force over width, radius and pressure scale p0; nan without equilibrium.
 
         There is no balance where no distribution of pressure keeps the shoe in equilibrium.
         """

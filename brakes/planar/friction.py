@@ -171,7 +171,7 @@ def _branch(
 def _jams_when_disturbed(
     system: System, balance: Balance, start: np.ndarray, law: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Find joints with friction (S, F) that press with no force, and positions (S,) that disturbances jam.
+    """Find joints with friction that press with no force, and positions at which disturbances jam.
 
     If loads act exactly in line, a joint may press with no force, whose direction is then only rounding.
     There can be two equilibria: without pressure, and jammed.  The jammed one needs a disturbance, however
@@ -198,7 +198,7 @@ def _jams_when_disturbed(
 
 
 def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:
-    """Compute the pressing force at F joints with friction, relative to the largest force of all: (S, F)."""
+    """Compute the pressing force at joints with friction, relative to the largest of all, by position."""
     force = np.zeros((len(multiplier), len(system.pressing)))
     for k, rows in enumerate(system.pressing):
         force[:, k] = np.linalg.norm(multiplier[:, rows], axis=1)
@@ -211,7 +211,7 @@ def _rounding(system: System) -> float:
 
 
 def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarray) -> Statement:
-    """Compose a warning: at positions (S,) offsets jam the joints (S, F), which press with no force."""
+    """Warn that any offset of a load jams the joints marked in `unpressed` at the positions `jams`."""
     names = [name for k, name in enumerate(mechanism.friction) if unpressed[jams, k].any()]
     press = "press" if len(names) > 1 else "presses"
     remedy = "reduce friction, or guide it over a greater length"
@@ -228,9 +228,10 @@ def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarr
 def _newton(
     system: System, balance: Balance, start: np.ndarray, full: np.ndarray, offset: np.ndarray | float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Solve for the multipliers (S, R) of R rows with friction; mark positions (S,) where it jams.
+    """Solve for the multipliers (positions, rows) with friction; mark the positions where it jams.
 
-    Friction is `full` (S, F) times the pressing force; `offset` (S, 3 n) are additional forces on the bodies.
+    Friction is `full` times the pressing force of each joint; `offset` contains additional forces on the
+    bodies.
     """
     multiplier = start.copy()
     sign = np.linalg.slogdet(balance.matrix).sign

@@ -393,7 +393,7 @@ def _reach(mechanism: Mechanism, start: Node, k: int, value: float, driver: str)
 
 
 def _finish(mechanism: Mechanism, k: int, start: Node, nodes: list[Node], y: np.ndarray) -> Stroke:
-    """Make the stroke from coordinates of n bodies, y (S, 3 n); k is the driver's index among the loads."""
+    """Make the stroke from coordinates of the bodies, in rows of y; k is the driver's index among loads."""
     system = mechanism.system
     rows, m, unit = system.rows(y), system.constraints, _units(system)
     constraints = decompose(rows.gradient[:, :m], system.rounding)

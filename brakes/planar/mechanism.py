@@ -161,7 +161,7 @@ class Position:
 
     @property
     def batch(self) -> np.ndarray:
-        """Coordinates of shape (S, 3 n), with S = 1 for one instant."""
+        """Coordinates in one row for each instant, 3 for each body."""
         return np.atleast_2d(self.coordinates)
 
     def __getitem__(self, index: int | slice) -> Position:
@@ -184,12 +184,12 @@ class Position:
         return Position(mechanism, np.stack(parts, axis=-1).reshape(self.coordinates.shape))
 
     def point(self, body: str, at: Point) -> np.ndarray:
-        """Position [m], (2,) or (S, 2), of a body's point that is given by its position in the drawing."""
+        """Position [m] of a body's point given by its position in the drawing; one row for each instant."""
         place = self.mechanism.system.place(self.batch, body, at)
         return place.reshape(*self.coordinates.shape[:-1], 2)
 
     def angle(self, body: str) -> np.ndarray:
-        """Return the angle by which a body has turned from the drawing [rad], shape () or (S,)."""
+        """Return the angle by which a body has turned from the drawing [rad], at each instant."""
         angle = self.mechanism.system.angle(self.batch, body)
         return angle.reshape(self.coordinates.shape[:-1])
 
@@ -275,7 +275,7 @@ def _advance(system: System, node: Node, step: float) -> Node | None:
 def close_joints(
     system: System, y: np.ndarray, tangent: np.ndarray, last_step: float = _SMALL_STEP
 ) -> np.ndarray:
-    """Close the joints of positions (S, 3 n) by motions normal to each position's tangent (S, 3 n)."""
+    """Close the joints of positions (rows of y) by motions normal to the tangent at each position."""
     return newton(system, y, lambda v, g, moved: (((moved - y) * tangent).sum(axis=1), tangent), last_step)
 
 
@@ -283,11 +283,12 @@ Equation = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.n
 
 
 def newton(system: System, y: np.ndarray, equation: Equation, last_step: float = _SMALL_STEP) -> np.ndarray:
-    """Solve the joints' constraints and one more equation by Newton's method, for positions (S, 3 n) at once.
+    """Solve the joints' constraints and one more equation by Newton's method, for many positions at once.
 
-    `equation` takes the values (S, loads) and gradients (S, loads, 3 n) of the loads, and y; it returns a
-    residual (S,) and its gradient (S, 3 n).  The iteration ends after a step below `last_step`; the remaining
-    error is about the square of the last step.
+    Coordinates y have a row for each position.  `equation` takes the values (positions, loads) and gradients
+    (positions, loads, coordinates) of the loads, and y; it returns a residual of each position and its
+    gradient.  The iteration ends after a step below `last_step`; the remaining error is about the square of
+    the last step.
     """
     m, loads = system.constraints, list(system.loads.values())
     for tries in range(20):
@@ -330,7 +331,7 @@ def find_zero(system: System, a: Node, b: Node, function: Callable[[Node], float
 
 
 def solve_at_values(system: System, nodes: list[Node], k: int, target: np.ndarray) -> np.ndarray:
-    """Find positions (S, 3 n) on a curve at which the k-th load's growing coordinate has target values."""
+    """Find positions (rows of coordinates) at which the k-th load's growing coordinate has target values."""
     if len(nodes) == 1:
         return np.tile(nodes[0].y, (len(target), 1))
     value, slope = (np.array([getattr(node, key)[k] for node in nodes]) for key in ("value", "rate"))
@@ -347,14 +348,14 @@ def solve_at_values(system: System, nodes: list[Node], k: int, target: np.ndarra
 
 
 def solve_at_sum(system: System, a: Node, b: Node, weight: np.ndarray, target: float) -> np.ndarray:
-    """Find the position (3 n,) between two nodes at which a weighted sum of load coordinates has a value."""
+    """Find the position between two nodes at which a weighted sum of load coordinates has a value."""
     low, high = a.value @ weight, b.value @ weight
     start = a.y + (target - low) / (high - low) * (b.y - a.y)
     return newton(system, start[None], lambda v, g, _: (v @ weight - target, weight @ g))[0]
 
 
 def solve_at_arc_lengths(system: System, nodes: list[Node], target: np.ndarray) -> np.ndarray:
-    """Find coordinates (S, 3 n) at given arc lengths along the curve from the first node."""
+    """Find coordinates (one row each) at given arc lengths along the curve from the first node."""
     half = np.array([_angle(a, b) / 2 for a, b in pairwise(nodes)])
     # Between the nodes the curve is approximated by circles.
     arc = np.append(0.0, np.cumsum(_chords(nodes) / np.sinc(half / np.pi)))

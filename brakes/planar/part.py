@@ -319,12 +319,12 @@ class Joint(Part):
         return ()
 
     def size(self, multiplier: np.ndarray) -> np.ndarray:
-        """Compute the magnitude (S,) of the joint's force for multipliers (S, rows) [N, N m]."""
+        """Compute the magnitude of the joint's force for multipliers (positions, rows) [N, N m]."""
         single = multiplier.shape[1] == 1
         return multiplier[:, 0] if single else np.hypot.reduce(multiplier, axis=1)
 
     def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:
-        """Yield warnings of doubtful inputs, given the angles (S,) of the bodies over a stroke [rad]."""
+        """Yield warnings of doubtful inputs, given the angles of the bodies over a stroke [rad]."""
         return iter(())
 
     def with_pivot(self, radius: float, friction: float) -> Joint:
@@ -368,7 +368,7 @@ class Load(Part):
         return True
 
     def amplitude(self, coordinate: np.ndarray) -> np.ndarray | float | None:
-        """Compute the load [N, N m] at values (S,) of the load's coordinate [m, rad]; None if unknown."""
+        """Compute the load [N, N m] at values of the load's coordinate [m, rad]; None if unknown."""
         raise NotImplementedError
 
     def with_magnitude(self, magnitude: float | None) -> Load:

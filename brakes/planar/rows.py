@@ -80,7 +80,7 @@ _TINY = 1e-200  # least length, so that a direction is finite where two points o
 
 
 class Pose(NamedTuple):
-    """Positions of all bodies and of the ground (last), arrays of shape (n + 1, S).
+    """Positions of all bodies and of the ground (last): arrays (bodies, positions).
 
     centre : complex, centres of the bodies' points.
     angle, spin : angles by which the bodies have turned [rad], and exp(i angle).
@@ -92,7 +92,7 @@ class Pose(NamedTuple):
 
 
 class Totals(NamedTuple):
-    """Value (R, S) of each row, and its force (complex) and couple on each body, both (R, n + 1, S)."""
+    """Value (rows, positions) of each row; its force (complex) and couple (rows, bodies, positions)."""
 
     value: np.ndarray
     force: np.ndarray

@@ -86,7 +86,7 @@ class Equilibrium:
     warnings : tuple of str
         Reasons to doubt the forces: positions close to a toggle position or to indeterminacy, and joints
         with friction that jam when disturbed.
-    multiplier : ndarray, shape (..., R)
+    multiplier : ndarray, shape (..., rows)
         Multiplier of every row of joints, loads and friction [N, N m].
 
     Examples
@@ -151,7 +151,7 @@ class Balance(NamedTuple):
     matrix: np.ndarray
 
     def forces_on_bodies(self, multiplier: np.ndarray) -> np.ndarray:
-        """Compute the generalised forces (S, 3 n) on the bodies from multipliers (S, R)."""
+        """Compute the generalised forces on the bodies at each position from all rows' multipliers."""
         return times(self.rows.gradient.swapaxes(1, 2), multiplier)
 
 
@@ -225,7 +225,7 @@ def collect_result(
     jammed: np.ndarray | bool = False,
     regularity: np.ndarray | None = None,
 ) -> Equilibrium:
-    """Make the result from the scaled multipliers (S, R) of all rows; forces at `jammed` positions are nan.
+    """Make the result from the scaled multipliers of all rows; forces at `jammed` positions are nan.
 
     `regularity` (S,) is the smallest singular value of the equations with friction, over the largest.
     """
@@ -282,7 +282,7 @@ def collect_result(
 
 
 def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
-    """Collect reactions, magnitudes, amplitudes and friction by name, from scaled multipliers (S, R)."""
+    """Collect reactions, magnitudes, amplitudes and friction by name, from scaled multipliers."""
     system, physical = mechanism.system, multiplier * mechanism.system.unit
     reactions, magnitudes = {}, {}
     for joint in mechanism.joints:
@@ -345,7 +345,7 @@ def find_wrong_way(
 
 
 def tell_where(positions: np.ndarray) -> str:
-    """State the number of positions (S,) that are marked, as " at 2 of 9 positions"; empty if S is 1."""
+    """State how many positions are marked, as " at 2 of 9 positions"; empty for a single position."""
     return f" at {positions.sum()} of {len(positions)} positions" if len(positions) > 1 else ""
 
 
@@ -399,7 +399,7 @@ def _verdict(
 
 
 def _is_held_beside(position: Position, index: int, motion: np.ndarray, rank: int) -> bool:
-    """Return whether the equilibrium matrix has a higher rank a little along a free motion (3 n,)."""
+    """Return whether the equilibrium matrix has a higher rank after a small step of a free motion."""
     system, y = position.mechanism.system, position.batch[[index]]
     try:
         beside = close_joints(system, y + _BESIDE * motion, motion[None])

@@ -29,7 +29,7 @@ RANK_TOLERANCE = 1e-7  # relative singular value that counts as 0; toggle positi
 
 
 class Decomposition(NamedTuple):
-    """Singular value decompositions of matrices (S, m, n): u (S, m, m), s (S, k), vt (S, n, n), rank (S,).
+    """Singular value decompositions u s vt of a batch of matrices, and the rank of each.
 
     `kept` and `dropped` (S,) are the smallest singular value within the rank and the largest beyond it, over
     the largest of all: a wide gap makes the rank certain.
@@ -51,12 +51,12 @@ class Decomposition(NamedTuple):
         return self.u[index, :, self.rank[index] :]
 
     def null_rows(self) -> np.ndarray:
-        """Return the matrices vt (S, n, n) with all rows outside of the null space set to zero."""
+        """Return the matrices vt with all rows outside of the null space set to zero."""
         outside = np.arange(self.vt.shape[1]) < self.rank[:, None]
         return np.where(outside[:, :, None], 0.0, self.vt)
 
     def solve(self, b: np.ndarray) -> np.ndarray:
-        """Compute the least-squares solutions of least norm for right-hand sides b (S, m)."""
+        """Compute the least-squares solutions of least norm for right-hand sides b, one for each matrix."""
         k = self.s.shape[1]
         keep = np.arange(k) < self.rank[:, None]
         inverse = np.divide(1.0, self.s, out=np.zeros_like(self.s), where=keep)
@@ -65,7 +65,7 @@ class Decomposition(NamedTuple):
 
 
 def times(a: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Multiply matrices (S, m, n) by vectors (S, n) or (n,)."""
+    """Multiply a batch of matrices by one vector each, or all by the same vector."""
     return (a @ x[..., None])[..., 0]
 
 
@@ -75,7 +75,7 @@ def rank_tolerance(rounding: float) -> float:
 
 
 def decompose(a: np.ndarray, rounding: float) -> Decomposition:
-    """Decompose matrices (S, m, n) whose entries have a relative rounding error, and find their ranks."""
+    """Decompose a batch of matrices whose entries have a relative rounding error, and find their ranks."""
     u, s, vt = np.linalg.svd(a)
     padded = np.concatenate((s, np.zeros((len(s), 1))), axis=1)
     largest = np.maximum(padded[:, :1], np.finfo(float).tiny)
@@ -199,7 +199,7 @@ class System:
         return (complex(*at) - self.origin) / self.length - self.centre[self.bodies[body]]
 
     def rows(self, y: np.ndarray) -> Rows:
-        """Evaluate all rows, values and gradients, at coordinates y of shape (S, 3 n)."""
+        """Evaluate all rows, values and gradients, at coordinates y (one row for each position)."""
         moved = np.zeros((len(self.bodies), 3, len(y)))
         moved[:-1] = y.T.reshape(-1, 3, len(y))
         angle = moved[:, 2] / self.radius[:, None]
@@ -214,7 +214,7 @@ class System:
         return Rows(value.T, force.transpose(2, 0, 1), couple.transpose(2, 0, 1), gradient)
 
     def place(self, y: np.ndarray, body: str, at: Point) -> np.ndarray:
-        """Compute the position [m], shape (S, 2), of a body's point at coordinates y."""
+        """Compute the position [m] of a body's point for each row of coordinates y."""
         k = self.bodies[body]
         if 3 * k == self.size:  # index of the ground, which does not move
             return np.tile(np.array(at, dtype=float), (len(y), 1))
@@ -224,7 +224,7 @@ class System:
         return np.array(at) + moved.view(float).reshape(-1, 2)
 
     def angle(self, y: np.ndarray, body: str) -> np.ndarray:
-        """Compute the angle of a body [rad], shape (S,), at coordinates y."""
+        """Compute the angle of a body [rad], at coordinates y."""
         k = self.bodies[body]
         return y[:, 3 * k + 2] / self.radius[k] if 3 * k < self.size else np.zeros(len(y))
 
@@ -274,14 +274,14 @@ class OutOfReachError(ValueError):
 
 
 def names_of_moving(system: System, motions: np.ndarray) -> tuple[str, ...]:
-    """Return the names of the bodies that move in motions of shape (3 n, k)."""
+    """Return the names of the bodies that move in given motions (columns)."""
     size = np.linalg.norm(motions.reshape(len(motions) // 3, 3 * motions.shape[1]), axis=1)
     moves = size > _STILL * max(size.max(initial=0.0), 1e-300)
     return tuple(name for name, moving in zip(system.bodies, moves, strict=False) if moving)
 
 
 def describe(system: System, y: np.ndarray, motions: np.ndarray) -> Words:
-    """Describe motions (3 n, k) in words; bodies without relative motion are named together."""
+    """Describe motions (columns) in words; bodies without relative motion are named together."""
     parts, pose = motions.reshape(len(motions) // 3, 3, motions.shape[1]), y.reshape(-1, 3)
     centre = system.centre[:-1] + pose[:, 0] + 1j * pose[:, 1]
     rate = parts[:, 2] / system.radius[:-1, None]
@@ -300,7 +300,7 @@ def describe(system: System, y: np.ndarray, motions: np.ndarray) -> Words:
 
 
 def _motion(system: System, bodies: int, twist: np.ndarray) -> str:
-    """Describe the motions (2, k) of bodies in words: a single motion by its centre or direction."""
+    """Describe the motions of bodies in words: a single motion by its centre or direction."""
     real = np.stack((twist[0].real, twist[0].imag, twist[1].real))
     left, size, _ = np.linalg.svd(real, full_matrices=False)
     ways = int((size > 1e-7 * size[0]).sum())

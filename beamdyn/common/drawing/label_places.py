@@ -40,7 +40,7 @@ class LabelRequest:
     ----------
     size : tuple of float
         Width and height of the label's text.
-    anchors : ndarray, shape (k, 2)
+    anchors : ndarray, shape (points, 2)
         Points beside which the label may stand, the best first.
     towards : tuple of float
         Preferred direction from the anchor to the label; (0, 0) to put the label on the anchor.
@@ -71,9 +71,9 @@ class Obstacles:
     ----------
     frame : tuple of float
         Left, top, right and bottom edge of the area in which labels must stand.
-    lines : ndarray, shape (n, 4)
+    lines : ndarray, shape (lines, 4)
         Line segments (x, y, x, y) that labels should not cover.
-    points : ndarray, shape (m, 2)
+    points : ndarray, shape (points, 2)
         Centres of symbols, and ends of lines, that labels must not cover.
     reach : float
         Radius around the points that must stay free.
@@ -120,18 +120,18 @@ class Obstacles:
         return cells.cumsum(axis=0, out=cells).cumsum(axis=1, out=cells)
 
     def judge(self, boxes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the fraction of each box (k, 4) covered by lines, and whether it is clear of symbols."""
+        """Return the fraction of each box (row) covered by lines, and whether it is clear of symbols."""
         x0, y0, x1, y1 = boxes.T
         return self._over(self._covered, boxes) * _CELL**2 / ((x1 - x0) * (y1 - y0)), self.is_free(boxes)
 
     def is_free(self, boxes: np.ndarray) -> np.ndarray:
-        """Return whether each box (k, 4) lies within the frame and covers no symbol."""
+        """Return whether each of the boxes (rows) lies within the frame and covers no symbol."""
         (left, top, right, bottom), (x0, y0, x1, y1) = self.frame, boxes.T
         inside = (x0 >= left) & (y0 >= top) & (x1 <= right) & (y1 <= bottom)
         return inside & (self._over(self._forbidden, boxes) == 0)
 
     def _over(self, sums: np.ndarray, boxes: np.ndarray) -> np.ndarray:
-        """Sum over the cells within each box (k, 4), by the summed-area table's values at its corners."""
+        """Sum over the cells in each of the boxes (rows), by the summed-area table at their corners."""
         low = np.clip(((boxes[:, :2] - self.frame[:2]) / _CELL).astype(np.intp), 0, self._cells)
         high = np.clip(((boxes[:, 2:] - self.frame[:2]) / _CELL).astype(np.intp) + 1, 0, self._cells)
         (c0, r0), (c1, r1) = low.T, high.T
@@ -140,7 +140,7 @@ class Obstacles:
 
 @dataclass(eq=False)
 class _Candidates:
-    """Candidate places of a label, cheapest first: boxes (k, 4), anchors (k, 2), distances and costs (k,).
+    """Candidate places of a label, cheapest first: boxes, anchors, distances and costs.
 
     Before sorting, one object holds the candidates of all labels, for n pairs of label and anchor: boxes (n,
     k, 4), anchors (n, 2), distances and costs (n, k).
@@ -153,7 +153,7 @@ class _Candidates:
 
     @cached_property
     def leaders(self) -> np.ndarray:
-        """Return the leader lines from the boxes to their anchors, shape (k, 4)."""
+        """Return the leader lines from the boxes to their anchors, in rows."""
         nearest = np.clip(self.anchors, self.boxes[:, :2], self.boxes[:, 2:])
         return np.concatenate([nearest, self.anchors], axis=1)
 
@@ -224,7 +224,7 @@ def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates:
-    """Select one label's free candidates, the cheapest first, from the candidates of all labels (n, k)."""
+    """Select one label's free candidates, the cheapest first, from the candidates of all labels."""
     which = np.flatnonzero(free[part])
     cost = every.costs[part].ravel()[which]
     order = np.argsort(cost, kind="stable")
@@ -254,7 +254,7 @@ class _Chosen:
         self._boxes[label] = self._leaders[label] = np.nan
 
     def in_the_way(self, label: int, count: int | None) -> np.ndarray:
-        """Return which labels (n,) collide with each of a label's first candidates (k,); shape (k, n)."""
+        """Return which of all labels collide with each of a label's first candidates (rows)."""
         of = self._of[label]
         boxes = of.boxes[:count]
         found = np.zeros((len(boxes), len(self._boxes)), dtype=bool)
@@ -278,14 +278,14 @@ class _Chosen:
 
 
 def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Return whether each box (k, 4) overlaps each of the other boxes (n, 4), shape (k, n)."""
+    """Return whether each box (k, 4) overlaps each of n others (n, 4), shape (k, n), for k boxes."""
     x0, y0, x1, y1 = boxes.T[..., None]
     left, top, right, bottom = others.T[:, None]
     return (x0 < right) & (left < x1) & (y0 < bottom) & (top < y1)
 
 
 def _crossing(segments: np.ndarray, boxes: np.ndarray) -> np.ndarray:
-    """Return whether each line segment (k, 4) crosses each box (n, 4), shape (k, n)."""
+    """Return whether each of k line segments (k, 4) crosses each of n boxes (n, 4), shape (k, n)."""
     ax, ay, bx, by = segments.T[..., None]
     left, top, right, bottom = boxes.T[:, None]
     across, down = (np.where(way == 0, 1e-12, way) for way in (bx - ax, by - ay))

@@ -23,7 +23,7 @@ class Outline:
 
     Parameters
     ----------
-    points : ndarray, shape (k, 2)
+    points : ndarray, shape (points, 2)
         The points; the line has a gap at points that are nan.
     role : str
         Role that determines the colour: a name in `beamdyn.common.drawing.strokes`.
@@ -121,7 +121,7 @@ class Label:
     ----------
     text : str
         The text, of one or more lines.
-    anchors : ndarray, shape (k, 2)
+    anchors : ndarray, shape (points, 2)
         Points beside which the text may stand, the best first.
     role : str
         Role that determines the colour.
@@ -174,7 +174,7 @@ class Drawing:
         Meaning of each colour role in words; the key lists only roles that occur in the drawing.
     points : mapping
         Points (x, y) that the user can drag, by name.
-    room : ndarray, shape (k, 2)
+    room : ndarray, shape (points, 2)
         Further points that must fit into the picture, such as points of other positions of the mechanism.
     own_scale : bool
         Whether the drawing has its own scale, different from other drawings in its row, as a detail does.

@@ -97,7 +97,7 @@ class Pen(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Polylines:
-    """Lines through points, each line an array of shape (k, 2); a closed line returns to its first point."""
+    """Lines through points, each an array with points in rows; a closed line returns to its first point."""
 
     runs: Sequence[np.ndarray]
     pen: Pen

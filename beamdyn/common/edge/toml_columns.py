@@ -49,7 +49,7 @@ def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[s
     for c, head in enumerate(rows[0]):
         name, unit = _read_head(f"{place}[0][{c}]", head, known)
         if name in units:
-            raise InvalidInput(f"{place}[0][{c}]", head, "a second column of this name")
+            raise InvalidInput(f"{place}[0][{c}]", head, "a second column of this name", "drop one")
         units[name] = unit
     columns: dict[str, list[Any]] = {name: [] for name in units}
     for r, row in enumerate(rows[1:], 1):

@@ -304,7 +304,7 @@ class Designs:
         return math.prod(self.shape)
 
     def columns(self, rows: slice | np.ndarray = slice(None)) -> dict[str, np.ndarray]:
-        """Return the values (R,) of each input in R of the designs, by name of the input."""
+        """Return the values of each input in some of the designs, by name of the input."""
         places = np.arange(*rows.indices(self.count)) if isinstance(rows, slice) else rows
         if self.combine == "zip":
             return {each.name: each.values[places] for each in self.inputs}
@@ -341,7 +341,7 @@ class Designs:
 
 
 def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
-    """Convert columns of values (R,), by name, to R designs: a mapping of values by name for each."""
+    """Convert columns of values, by name, to designs: a mapping of values by name for each."""
     return [
         dict(zip(columns, row, strict=True))
         for row in zip(*(c.tolist() for c in columns.values()), strict=True)

@@ -112,7 +112,7 @@ def _named(name: str, unit: str) -> str:
 
 
 def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -> Axes:
-    """Draw curves (m, n) in different colours and styles; of many curves, only some evenly spaced ones.
+    """Draw curves (curves, n) in different colours and styles; of many curves, only some evenly spaced ones.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def curves(ax: Axes, x: np.ndarray, values: np.ndarray, labels: Sequence[str]) -
         Axes on which to draw.
     x : ndarray, shape (n,)
         Positions on the horizontal axis.
-    values : ndarray, shape (m, n)
+    values : ndarray, shape (curves, n)
         Values of the curves; a value that is not finite leaves a gap.
     labels : sequence of str
         Names of the curves.
@@ -249,7 +249,7 @@ def plot_along_span(
 
 
 def _alike(values: np.ndarray, labels: Sequence[str]) -> list[tuple[int, str]]:
-    """Return the index of one component (..., k) for each set of equal ones, with all their names.
+    """Return the index of one component (last axis) for each set of equal ones, with all their names.
 
     Curves of equal components would cover one another.
     """
@@ -323,10 +323,10 @@ def plot_work_precision(
 
     Parameters
     ----------
-    families : mapping of str to ndarray, shape (n, 2)
+    families : mapping of str to ndarray, shape (settings, 2)
         Computing times [s] and relative errors, by name of the family; an error above 1 (no correct digit) is
         drawn as 1.
-    front : ndarray, shape (k, 2)
+    front : ndarray, shape (settings, 2)
         Computing times [s] and relative errors of the Pareto-optimal measurements.
     title : str
         Title above the axes.

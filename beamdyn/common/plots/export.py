@@ -172,7 +172,7 @@ def animate(
     """
     x, t, deflection = _check_history(x, t, deflection)
     figure = note_below(new_figure(6.4, 3.6), notes)
-    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # of the whole motion
+    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # for the whole motion
     ax.set(xlim=(0, 1e3 * x[-1]), ylim=(-reach, reach))
     ax.set(xlabel="position along the beam [mm]", ylabel="deflection [mm]")
     ax.grid(color="0.85", linewidth=0.7)
@@ -262,7 +262,7 @@ def _scale(field: np.ndarray, largest: float) -> np.ndarray:
 
 
 def _displacement(deflection: np.ndarray, points: int, across: np.ndarray) -> np.ndarray:
-    """Return displacement vectors of a strip: z from a deflection (n, k), -y from one across (n,).
+    """Return displacement vectors of a strip: z from a deflection (n, k), -y from one across.
 
     Rows of points along the beam follow one another from the lowest y; if k is 1, all rows have the same
     deflection.

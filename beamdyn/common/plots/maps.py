@@ -63,7 +63,7 @@ class PlacedLabels(Artist):
         ----------
         text : str
             The text.
-        places : ndarray, shape (n, 2)
+        places : ndarray, shape (places, 2)
             Possible positions of the text's centre, in the units of the axes, the best first.
         beside : bool
             Whether the text is placed beside the given positions, which are marked points that no text may

@@ -66,7 +66,7 @@ def plot_growth(
     ----------
     speeds, ax, labels, critical_speed, units
         As for `plot_locus`.
-    growth_rate : ndarray, shape (S, m)
+    growth_rate : ndarray, shape (speeds, modes)
         Growth rates [1/s]: positive where a mode is unstable, negative where it is damped.
 
     Returns
@@ -187,7 +187,7 @@ def plot_locus_by_plane(
     ----------
     speeds, frequency, ax, labels, units
         As for `beamdyn.common.plots.plots.plot_locus`.
-    share : ndarray, shape (S, m)
+    share : ndarray, shape (speeds, modes)
         Fraction of each mode's energy in the first direction; a curve is solid where it is 1/2 or more.
     directions : tuple of str
         The two directions in words, for the legend.

@@ -108,7 +108,7 @@ class LinkedDesign:
         """
         packed = fragment.removeprefix("#").removeprefix("design=")
         if len(packed) > _LONGEST_LINK:
-            raise ConfigError(_SOURCE, [f"it is longer than {_LONGEST_LINK} characters"])
+            raise ConfigError(_SOURCE, [f"it is longer than {_LONGEST_LINK} characters: use a file"])
         broken = ConfigError(
             _SOURCE, ["it holds no design, or a part of it is missing: copy it again, whole"]
         )

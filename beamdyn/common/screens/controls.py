@@ -46,7 +46,7 @@ class DragSlider(ui.slider, component="drag_slider.js"):
         self.on("drag", lambda e: dragged(*e.args), throttle=_OFTEN)
 
     def put(self, place: float, writer: PageWriter) -> None:
-        """Move the slider to a position; directly in the browser while the writer is ahead of NiceGUI."""
+        """Move the slider to a position, directly in the browser too if NiceGUI lags behind."""
         with writer.writing(self):
             self.set_value(place)
         if writer.is_ahead:

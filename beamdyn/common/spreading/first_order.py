@@ -62,9 +62,9 @@ def slopes_from(
     ----------
     nominal : ndarray, shape (k,)
         Results of the nominal design.
-    beside : ndarray, shape (d, 4, k)
+    beside : ndarray, shape (inputs, 4, k)
         Results of the designs in which one input differs from its nominal value by one of the steps.
-    steps : ndarray, shape (d, 4)
+    steps : ndarray, shape (inputs, 4)
         Steps of each input from its nominal value, in the input's unit.
     error : ndarray, shape (k,)
         Absolute error of each result.

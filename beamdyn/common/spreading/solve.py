@@ -57,7 +57,7 @@ class SpreadAnswers:
 
     @property
     def absolute_error(self) -> np.ndarray:
-        """Return the absolute errors (N, k); nan if unknown."""
+        """Return the absolute errors of designs (rows); nan if unknown."""
         with np.errstate(invalid="ignore"):
             size = np.abs(self.value) * self.error
         size = np.where(np.isinf(self.error), np.inf, size)  # inf * 0 is nan, but the error is inf
@@ -65,7 +65,7 @@ class SpreadAnswers:
 
     @property
     def size_of_error(self) -> np.ndarray:
-        """Return the absolute errors (N, k); 0 if unknown."""
+        """Return the absolute errors of designs (rows); 0 if unknown."""
         return np.nan_to_num(self.absolute_error, nan=0.0, posinf=np.inf)
 
 
@@ -158,7 +158,7 @@ class _FurtherAnswers:
     _said: list[str] = field(default_factory=list)
 
     def __call__(self, designs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return results (N, k) of designs (N, d), and their absolute errors."""
+        """Return results of designs (rows), and their absolute errors."""
         self._count += len(designs)
         value, error = zip(*self._parts(designs), strict=True)
         return np.concatenate(value), np.concatenate(error)
@@ -204,7 +204,7 @@ def _subject(sentence: str) -> tuple[str, ...]:
 
 
 def _largest_error(found: SpreadAnswers) -> np.ndarray:
-    """Return the largest relative error of each result (k,); nan if unknown."""
+    """Return the largest relative error of each result; nan if unknown."""
     known = np.where(np.isfinite(found.value), found.error, np.nan)
     largest = np.where(np.isnan(known), -np.inf, known).max(axis=0)
     return np.where(largest < 0, np.nan, largest)

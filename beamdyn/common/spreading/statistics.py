@@ -48,7 +48,7 @@ def check_samples(samples: object) -> tuple[int, list[str]]:
 
 
 def count_designs(inputs: int, samples: int) -> int:
-    """Compute the number of designs that are computed at first, for d inputs."""
+    """Compute the number of designs that a spread of a number of inputs evaluates to begin with."""
     return 1 + 4 * inputs + (2 + inputs) * samples
 
 
@@ -95,12 +95,12 @@ class SpreadDesigns:
 
     @property
     def nominal(self) -> np.ndarray:
-        """Return the nominal design, shape (d,)."""
+        """Return the nominal design."""
         return np.array([each.nominal for each in self.inputs])
 
     @cached_property
     def steps(self) -> np.ndarray:
-        """Return the steps from the nominal values of the designs for derivatives, shape (d, 4).
+        """Return the steps from the nominal values of the designs for derivatives, (inputs, 4).
 
         The largest steps are an eighth of the distance to either end of the tolerance; if the nominal value
         is at an end, all steps are towards the other end.
@@ -109,7 +109,7 @@ class SpreadDesigns:
 
     @property
     def _beside(self) -> np.ndarray:
-        """Return the designs in which one input differs from its nominal value, shape (4 d, d)."""
+        """Return the designs in which one input differs from its nominal value, (4 inputs, inputs)."""
         beside = np.tile(self.nominal, (self.count, 4, 1))
         each = np.arange(self.count)
         beside[each, :, each] += self.steps
@@ -117,7 +117,7 @@ class SpreadDesigns:
 
     @cached_property
     def _random(self) -> np.ndarray:
-        """Return the random samples A and B, shape (2, n, d)."""
+        """Return the random samples A and B, (2, samples, inputs)."""
         blocks = np.random.SeedSequence(self.seed).spawn(BLOCKS)
         shares = np.stack([_sobol_points(2 * self.count, self.samples // BLOCKS, each) for each in blocks])
         shares = shares.reshape(self.samples, 2, self.count).transpose(1, 0, 2)
@@ -130,7 +130,7 @@ class SpreadDesigns:
         -------
         nominal : ndarray, shape (k,)
         beside : ndarray, shape (d, 4, k)
-        random : ndarray, shape (2 + d, n, k)
+        random : ndarray, shape (2 + d, samples, k)
             Results of the samples A, B, and A with each input in turn from B.
         """
         k, slopes = answers.shape[1], 1 + 4 * self.count
@@ -150,7 +150,7 @@ def _sobol_points(columns: int, rows: int, seed: np.random.SeedSequence) -> np.n
     from scipy.stats import qmc  # imported here, because the import takes long
 
     if columns > qmc.Sobol.MAXDIM:
-        raise InvalidValue("spread", columns // 2, f"at most {qmc.Sobol.MAXDIM // 2} inputs have a spread")
+        raise InvalidValue("spread", columns // 2, f"give at most {qmc.Sobol.MAXDIM // 2} inputs a spread")
     return np.clip(seeded(qmc.Sobol, columns, seed).random(rows), 2.0**-40, 1 - 2.0**-40)
 
 
@@ -211,7 +211,7 @@ def scatter_of(random: np.ndarray) -> Scatter:
 
     Parameters
     ----------
-    random : ndarray, shape (2, n, k)
+    random : ndarray, shape (2, samples, results)
         Results of the samples A and B; not finite where there is none.
     """
     blocks = _in_blocks(random)
@@ -226,7 +226,7 @@ def _in_blocks(random: np.ndarray) -> np.ndarray:
 
 
 def _scatter_of_one(values: np.ndarray) -> tuple[np.ndarray | float, ...]:
-    """Compute the fields of `Scatter` for one result, from its values (BLOCKS, m)."""
+    """Compute the fields of `Scatter` for one result, from its values in `BLOCKS` rows."""
     known = np.isfinite(values)
     none, none_error = mean_of_blocks(~known, np.ones(values.shape))
     if not known.any():
@@ -244,7 +244,7 @@ def _scatter_of_one(values: np.ndarray) -> tuple[np.ndarray | float, ...]:
 
 
 def mean_of_blocks(values: np.ndarray, weights: np.ndarray) -> tuple[float, float]:
-    """Compute the weighted mean of values (BLOCKS, m), and its standard error from the scatter of blocks."""
+    """Compute the weighted mean of values in `BLOCKS` rows, and its standard error from their scatter."""
     total = weights.sum()
     mean = float((weights * values).sum() / total)
     parts = (weights * (values - mean)).sum(axis=1) * (len(values) / total)
@@ -304,7 +304,7 @@ def indices_of(random: np.ndarray, error: np.ndarray | float = 0.0) -> SobolIndi
 
     Parameters
     ----------
-    random : ndarray, shape (2 + d, n, k)
+    random : ndarray, shape (2 + d, samples, k)
         Results of the samples A, B, and A with each input in turn from B.
     error : ndarray, shape (k,)
         Largest absolute error of each result.
@@ -339,7 +339,7 @@ def _indices(random: np.ndarray) -> np.ndarray:
 
 
 def _errors_of_indices(random: np.ndarray, indices: np.ndarray) -> np.ndarray:
-    """Compute standard errors (2, d, k) of Sobol' indices, which are ratios of two means, by linearization.
+    """Compute standard errors of Sobol' indices, which are ratios of two means, by linearization.
 
     As in `scipy.stats.sobol_indices`, the numerators are the means of f_B (f_AB - f_A) and (f_A - f_AB)^2 /
     2, where f is a result minus its mean; the denominator is the variance.

@@ -36,16 +36,16 @@ def trends_of(random: np.ndarray, error: np.ndarray, first: np.ndarray, second: 
 
     Parameters
     ----------
-    random : ndarray, shape (2 + d, n, k)
+    random : ndarray, shape (2 + d, designs, results)
         Results of the samples A, B, and A with each input in turn from B.
-    error : ndarray, shape (2 + d, n, k)
+    error : ndarray, shape (2 + d, designs, results)
         Absolute errors of these results.
-    first, second : ndarray, shape (n, d)
+    first, second : ndarray, shape (designs, d)
         The designs of the samples A and B.
 
     Returns
     -------
-    ndarray of str, shape (d, k)
+    ndarray of str, shape (d, results)
         "rises", "falls", "rises and falls" or "does not change"; "no answer" if no pair has two results.
     """
     with np.errstate(invalid="ignore"):
@@ -69,7 +69,7 @@ class WorstCases:
     smallest_error, largest_error : ndarray, shape (k,)
         Absolute errors [unit of the result]: numerical error, plus the distance by which any random design
         lies beyond the value; nan if unknown.
-    smallest_at, largest_at : ndarray, shape (k, d)
+    smallest_at, largest_at : ndarray, shape (k, inputs)
         Inputs of the designs with these values [SI units of the inputs].
     searched : ndarray of bool, shape (k,)
         Whether the values come from a search, so that worse designs may exist; others are at corners of the
@@ -103,7 +103,7 @@ class WorstCases:
 
 
 class _Case(NamedTuple):
-    """A design (d,), its result, and the absolute error of the result; or S such cases."""
+    """A design, its result, and the absolute error of the result; or several such cases."""
 
     at: np.ndarray
     value: float | np.ndarray
@@ -124,11 +124,11 @@ def worst_cases(
     ----------
     inputs : sequence of SpreadInput
         The d inputs.
-    trends : ndarray of str, shape (d, k)
+    trends : ndarray of str, shape (d, results)
         Trends of the results, as returned by `trends_of`.
-    designs, answers : ndarray, shapes (N, d) and (N, k)
+    designs, answers : ndarray, shapes (designs, d) and (designs, results)
         Designs with known results; designs outside the tolerances are ignored.
-    error : ndarray, shape (N, k)
+    error : ndarray, shape (designs, results)
         Absolute errors of the results, nan if unknown; a result counts as better only if the difference
         exceeds the errors.
     answer : callable
@@ -165,7 +165,7 @@ def worst_cases(
 def _corners(
     trends: np.ndarray, sense: int, low: np.ndarray, high: np.ndarray, nominal: np.ndarray
 ) -> np.ndarray:
-    """Return corners (c, d) at which a result may be smallest (sense -1) or largest (sense 1)."""
+    """Return corners (rows) at which a result may be smallest (sense -1) or largest (sense 1)."""
     rises, falls = trends == RISES, trends == FALLS
     up = rises if sense > 0 else falls
     at = np.where(up, high, np.where(rises | falls, low, nominal))
@@ -190,10 +190,10 @@ def _ends(
 
 
 def _best(cases: Iterable[np.ndarray], end: int) -> _Case:
-    """Return the design with the smallest or the largest value of a result, of designs (n, d).
+    """Return the design with the smallest or the largest value of a result, among designs (rows).
 
     The number `end` is 2 i for the smallest value of result i, and 2 i + 1 for the largest.  Results and
-    their errors have the shape (n, k).
+    their errors have the shape (designs, results).
     """
     at, answers, errors = cases
     value, error = answers[:, end // 2], errors[:, end // 2]

@@ -64,20 +64,20 @@ class BeamInSpace(FieldsOnly):
         Masses at the stations.
     initial : ndarray, shape (6, N)
         Strains of the unloaded beam, in the order of `STRAINS`; curvatures in 1/m.
-    functions : ndarray, shape (n, 6, N)
+    functions : ndarray, shape (coordinates, 6, N)
         Strains per unit of each coordinate.
-    stiffness, damping : ndarray, shape (n, n)
+    stiffness, damping : ndarray, shape (coordinates, coordinates)
         Elastic stiffness and damping of the coordinates.
     fibres : ndarray, shape (N,)
         Mean squared distance i^2 of the fibres from the axis [m2]; 0 neglects the shortening by twist.
     pretwist : ndarray, shape (N,)
         Pretwist t of the unloaded sections relative to the axes of the strains [1/m].
-    kinks : ndarray, shape (c, 4)
+    kinks : ndarray, shape (kinks, 4)
         Unit quaternions of the axes' rotation at the beginning of each cell; needed if the beam's axis has
         kinks, or does not begin along e1.
-    hinges : ndarray, shape (n, 3), optional
+    hinges : ndarray, shape (coordinates, 3), optional
         Rotation vector of the root per unit of each coordinate [rad]; None if the root is clamped.
-    slopes : ndarray, shape (n, N + 1), optional
+    slopes : ndarray, shape (coordinates, sections), optional
         Bending slopes at the Gauss points and the tip per unit of each coordinate, more exact than integrals
         of the curvature over Gauss points; None if not known.
     """
@@ -101,18 +101,18 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def flat_functions(self) -> np.ndarray:
-        """Strains per unit of each coordinate, flattened over components and points: shape (n, 6 N)."""
+        """Strains per unit of each coordinate, flattened over components and Gauss points: one row each."""
         return self.functions.reshape(self.size, -1)
 
     def strained(self, q: np.ndarray) -> np.ndarray:
-        """Compute the changes of strain (..., 6, N) from the unloaded beam, at coordinates (..., n)."""
+        """Compute the changes of strain (..., 6, points) from the unloaded beam, at coordinates q."""
         return (q @ self.flat_functions).reshape(*q.shape[:-1], *self.initial.shape)
 
     @cached_property
     def angles(self) -> np.ndarray:
-        """Measure of shape changes per unit of each coordinate, (n, k): strains integrated from the root.
+        """Measure of shape changes per unit of each coordinate: strains integrated from the root.
 
-        The k columns are the components of strain that are not 0, at each Gauss point and at the tip.
+        The columns are the components of strain that are not 0, at each Gauss point and at the tip.
         """
         if self.is_planar and self.slopes is not None:
             return self.slopes
@@ -132,7 +132,7 @@ class BeamInSpace(FieldsOnly):
         return bool(self.fibres.any() and self.functions[:, 3].any())
 
     def reduced(self, basis: np.ndarray) -> BeamInSpace:
-        """Transform the beam to other coordinates: q = basis @ q_reduced, basis of shape (n, m)."""
+        """Transform the beam to other coordinates: q = basis @ q_reduced, one column for each of these."""
         given = {name: getattr(self, name) for name in ("functions", "hinges", "slopes")}
         rows = {k: np.tensordot(basis.T, values, 1) for k, values in given.items() if values is not None}
         K, C = (basis.T @ matrix @ basis for matrix in (self.stiffness, self.damping))
@@ -158,7 +158,7 @@ class BeamInSpace(FieldsOnly):
         return BeamInSpace(stations, self.masses, 0 * functions[0], functions, *law, none, none, UNIT[None])
 
     def at(self, q: np.ndarray) -> BentBeam:
-        """Return the beam deformed by coordinates q (..., n)."""
+        """Return the beam deformed by coordinates q."""
         return BentInPlane(self, q) if self.is_planar else BentBeam(self, q)
 
 
@@ -180,7 +180,7 @@ def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.nda
 
 
 class Work(NamedTuple):
-    """Virtual work (n,) of forces at the stations per unit of each coordinate, and its derivatives (n, n)."""
+    """Virtual work of forces at the stations per unit of each coordinate, and its derivatives."""
 
     work: np.ndarray
     change: np.ndarray
@@ -190,13 +190,13 @@ class Work(NamedTuple):
 class BentBeam(FieldsOnly):
     """Beam deformed by given coordinates.
 
-    All properties except the matrices can be computed for several sets of coordinates (..., n) at once.
+    All properties except the matrices can be computed for several sets of coordinates at once.
 
     Parameters
     ----------
     beam : BeamInSpace
         The beam.
-    q : ndarray, shape (..., n)
+    q : ndarray, shape (..., coordinates)
         Coordinates.
     """
 
@@ -205,17 +205,17 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def strains(self) -> np.ndarray:
-        """Strains of the deformed beam (..., 6, N), in the order of `STRAINS`."""
+        """Strains of the deformed beam (..., 6, points), in the order of `STRAINS`."""
         return self.beam.initial + self.beam.strained(self.q)
 
     @property
     def _shortening(self) -> np.ndarray:
-        """Derivative of the axial stretch with respect to the twist rate (..., N), by the trapeze effect."""
+        """Derivative of the axial stretch at each Gauss point by the twist rate (trapeze effect)."""
         return -self.beam.fibres * (self.strains[..., 3, :] + self.beam.pretwist)
 
     @cached_property
     def rotations(self) -> np.ndarray:
-        """Rotation matrices (..., 3, 3, N + 1) with the section axes as columns, at Gauss points and tip."""
+        """Rotation matrices (..., 3, 3, points), section axes as columns, at Gauss points and tip."""
         beam, stations = self.beam, self.beam.stations
         curvature = stations.length * self.strains[..., 3:, :]
         turned = integrate_curvature(stations.quadrature.cells, curvature, beam.kinks)
@@ -225,12 +225,12 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _within(self) -> np.ndarray:
-        """Rotation matrices (..., 3, 3, N) of the sections at the Gauss points, without the tip."""
+        """Rotation matrices (..., 3, 3, points) of the sections at the Gauss points, without the tip."""
         return self.rotations[..., :-1]
 
     @cached_property
     def tangents(self) -> np.ndarray:
-        """Derivative r' (..., 3, N) of the axis' position with respect to arc length."""
+        """Derivative r' (..., 3, points) of the axis' position with respect to arc length."""
         if not (self.beam.shears or self.beam.initial[:3].any()):
             return self._within[..., :, 0, :]
         extended, beam, twist = self.strains[..., :3, :].copy(), self.beam, self.strains[..., 3, :]
@@ -240,7 +240,7 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def positions(self) -> np.ndarray:
-        """Positions of the axis at the stations (..., 3, N + 1 + k) [m]."""
+        """Positions (..., 3, stations) of the axis at the stations [m]."""
         return self.beam.stations.to_all(self.tangents)
 
     @property
@@ -254,7 +254,7 @@ class BentBeam(FieldsOnly):
         return self.beam.masses.turned(self.rotations, self.positions)
 
     def strain_rates(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute rates of stretch and shears, and of curvatures, in space-fixed axes: (..., 3, N) each."""
+        """Compute rates of stretch and shears, and of curvatures, in fixed axes: (..., 3, points) each."""
         stretch, bending = np.split(self.beam.strained(rates), 2, axis=-2)
         if self.beam.shears:
             stretch[..., 0, :] += self._shortening * bending[..., 0, :]
@@ -262,7 +262,7 @@ class BentBeam(FieldsOnly):
         return stretch, turn(self._within, bending)
 
     def shortening_rate(self, rates: np.ndarray) -> np.ndarray:
-        """Compute the stretch's second rate (..., 3, N) due to squared twist rates (trapeze effect)."""
+        """Compute the stretch's second rate (..., 3, points) due to squared twist rates (trapeze effect)."""
         twist_rate = rates @ self.beam.functions[:, 3]
         return -(self.beam.fibres * twist_rate**2)[..., None, :] * self._within[..., 0, :]
 
@@ -279,12 +279,12 @@ class BentBeam(FieldsOnly):
         return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Compute angular velocities (..., 3, N + 1) of sections from rates of coordinates and curvatures."""
+        """Compute angular velocities (..., 3, sections) from rates of coordinates and curvatures."""
         turning, hinges = self.beam.stations.to_sections(bending), self.beam.hinges
         return turning if hinges is None else turning + self._mean_of_arc @ (rates @ hinges)[..., None]
 
     def turning_of_root(self, rates: np.ndarray) -> np.ndarray | float:
-        """Compute the angular acceleration (..., 3, 1) of the root for constant coordinate rates (..., n)."""
+        """Compute the angular acceleration (..., 3, 1) of the root for constant rates of the coordinates."""
         if self.beam.hinges is None:
             return 0.0
         bending = self._root.strain_rates(rates)[1]
@@ -294,23 +294,23 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _strained(self) -> tuple[np.ndarray, np.ndarray]:
-        """Changes of stretch and shears, and of curvatures, per coordinate, space-fixed: (n, 3, N) each."""
+        """Changes of stretch and shears, and of curvatures, by unit coordinates, in space-fixed axes."""
         return self.strain_rates(np.eye(self.beam.size))
 
     @cached_property
     def _turned(self) -> np.ndarray:
-        """Rotation vectors of the sections per unit of each coordinate, space-fixed: shape (n, 3, N + 1)."""
+        """Rotation vectors of the sections by unit coordinates, in space-fixed axes."""
         return self.turning_rate(np.eye(self.beam.size), self._strained[1])
 
     @cached_property
     def displacement_rates(self) -> np.ndarray:
-        """Derivatives of the axis displacements along the axis, per unit coordinate: shape (n, 3, N)."""
+        """Derivatives of the axis displacements along the axis, per coordinate: (coordinates, 3, points)."""
         rates = cross(self._turned[..., :-1], self.tangents)
         return rates + self._strained[0] if self.beam.shears else rates
 
     @cached_property
     def motions(self) -> np.ndarray:
-        """Displacements and rotations of all stations per unit of each coordinate: (n, 6, N + 1 + k)."""
+        """Displacements and rotations of all stations by unit coordinates: (coordinates, 6, stations)."""
         stations = self.beam.stations
         motions = np.zeros((self.beam.size, 6, stations.count))
         motions[:, :3] = stations.to_all(self.displacement_rates)
@@ -319,7 +319,7 @@ class BentBeam(FieldsOnly):
 
     @property
     def tip_motions(self) -> np.ndarray:
-        """Displacements of the tip per unit of each coordinate: shape (n, 3)."""
+        """Displacements of the tip by unit coordinates: (coordinates, 3)."""
         return self.motions[:, :3, self.beam.stations.sections - 1]
 
     # Virtual work of forces at the stations -----------------------------------------------------------
@@ -331,13 +331,13 @@ class BentBeam(FieldsOnly):
         return Work(self._work_of(*resultants), change)
 
     def work(self, force: np.ndarray) -> np.ndarray:
-        """Compute the virtual work (..., n) per unit coordinate of forces (..., 6, N + 1 + k) at stations."""
+        """Compute the virtual work per unit of each coordinate of forces (..., 6, stations)."""
         return self._work_of(*self._resultants(force))
 
     def _resultants(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute the resultants n and moments m of all forces beyond each point, and the root moment.
+        """Compute resultants n and moments m of all forces beyond each point, and the moment at the root.
 
-        n and m (..., 3, N) are multiplied by the Gauss weights; the root moment has the shape (..., 3).
+        n and m (..., 3, points) are multiplied by the Gauss weights; the root moment has the shape (..., 3).
         """
         stations = self.beam.stations
         n = stations.from_all(force[..., :3, :])
@@ -346,7 +346,7 @@ class BentBeam(FieldsOnly):
         return n, stations.from_sections(moments), moments.sum(axis=-1)
 
     def _work_of(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Compute the virtual work (..., n) of resultants (..., 3, N) and of a root moment (..., 3)."""
+        """Compute the virtual work per coordinate of resultants (..., 3, points) and of a root moment."""
         beam, functions, back = self.beam, self.beam.flat_functions, self._within.swapaxes(-3, -2)
         stress = turn(back, m)
         if beam.shears:
@@ -359,7 +359,7 @@ class BentBeam(FieldsOnly):
         return work + (at_root[..., None, :] @ self._mean_of_arc)[..., 0, :] @ beam.hinges.T
 
     def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Compute the derivative (n, n) of the virtual work of resultants (3, N) with fixed directions."""
+        """Compute the derivative by the coordinates of the virtual work of fixed resultants (3, points)."""
         beam, W = self.beam, self._turned[..., :-1]
         change = self._change_by_moments(m) + _product(W, cross(self.displacement_rates, n))
         if beam.shears:
@@ -372,18 +372,18 @@ class BentBeam(FieldsOnly):
         return change
 
     def _change_by_moments(self, m: np.ndarray) -> np.ndarray:
-        """Compute the part (n, n) of `_change_by` due to moments (3, N), which work on section rotations."""
+        """Compute the part of `_change_by` due to moments (3, points), which work on section rotations."""
         return _product(self._strained[1], cross(m, self._turned[..., :-1]))
 
     def _of_stations(self, matrices: np.ndarray) -> np.ndarray:
-        """Transform matrices (6, 6, N + 1 + k) of the stations to one matrix (n, n) of the coordinates."""
+        """Transform matrices (6, 6, stations) of the stations to one matrix of the coordinates."""
         acting = np.flatnonzero(matrices.any(axis=(1, 2)) | matrices.any(axis=(0, 2)))
         motions = self.motions[:, acting]
         return _product(motions, np.einsum("abj,nbj->naj", matrices[np.ix_(acting, acting)], motions))
 
     @cached_property
     def mass(self) -> np.ndarray:
-        """Mass matrix (n, n)."""
+        """Mass matrix of the coordinates."""
         return self._of_stations(self.masses.matrix)
 
 
@@ -392,7 +392,7 @@ class BentInPlane(BentBeam):
 
     @cached_property
     def rotations(self) -> np.ndarray:
-        """Rotation matrices (..., 3, 3, N + 1) with the section axes as columns, at Gauss points and tip."""
+        """Rotation matrices (..., 3, 3, points), section axes as columns, at Gauss points and tip."""
         angle = self.q @ self.beam.angles
         axes = np.zeros((*angle.shape[:-1], 3, 3, angle.shape[-1]))
         axes[..., 0, 0, :] = axes[..., 1, 1, :] = np.cos(angle)
@@ -402,15 +402,15 @@ class BentInPlane(BentBeam):
 
     @cached_property
     def _turned(self) -> np.ndarray:
-        """Rotation vectors of the sections per unit of each coordinate, space-fixed: shape (n, 3, N + 1)."""
+        """Rotation vectors of the sections by unit coordinates, in space-fixed axes."""
         return self.beam.angles[:, None] * np.array([0.0, 0.0, 1.0])[:, None]
 
     def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Compute the derivative (n, n) of the virtual work of resultants (3, N) with fixed directions."""
+        """Compute the derivative by the coordinates of the virtual work of fixed resultants (3, points)."""
         angles, along = self.beam.angles[:, :-1], (self.tangents[:2] * n[:2]).sum(axis=0)
         return (angles * -along) @ angles.T
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Compute the inner products (n, n) of vectors (n, ..., N), summed over components and points."""
+    """Compute the inner products of all pairs of n vectors (n, ...), summed over components and points."""
     return a.reshape(len(a), -1) @ b.reshape(len(b), -1).T

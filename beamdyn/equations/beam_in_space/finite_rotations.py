@@ -1,6 +1,6 @@
 """Finite rotations: integration of a curvature along a curve, and rotation of vectors at many points.
 
-In arrays of vectors and matrices, the last axis counts the points: (..., 3, N) and (..., 3, 3, N).
+In arrays of vectors and matrices, the last axis counts the points.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _CONVERGED = 4 * float(np.finfo(float).eps)  # change of a quaternion below whic
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Compute the cross products of vectors (..., 3, N); the shapes are broadcast."""
+    """Compute the cross products of vectors (..., 3, points); the shapes are broadcast."""
     return (a * b.take(_NEXT, axis=-2) - a.take(_NEXT, axis=-2) * b).take(_NEXT, axis=-2)
 
 
@@ -39,18 +39,18 @@ _TURNING = np.einsum("ajc,b,cbi->abij", _PRODUCT[:, 1:], [1.0, -1.0, -1.0, -1.0]
 
 
 def turn(R: np.ndarray, a: np.ndarray) -> np.ndarray:
-    """Multiply matrices (..., 3, 3, N) with vectors (..., 3, N); the shapes are broadcast."""
+    """Multiply matrices (..., 3, 3, points) with vectors (..., 3, points); the shapes are broadcast."""
     return np.einsum("...abj,...bj->...aj", R, a)
 
 
 def turn_tensors(R: np.ndarray, tensors: np.ndarray) -> np.ndarray:
-    """Rotate tensors: R tensor R^T for rotations and tensors (..., 3, 3, N), which are broadcast."""
+    """Rotate tensors: R tensor R^T for rotations and tensors (..., 3, 3, points), which are broadcast."""
     half = np.einsum("...abj,...bcj->...acj", R, tensors)
     return np.einsum("...acj,...dcj->...adj", half, R)
 
 
 def turn_law(R: np.ndarray, law: np.ndarray) -> np.ndarray:
-    """Rotate section stiffness or mass matrices (6, 6, N) by rotations (3, 3, N)."""
+    """Rotate section stiffness or mass matrices (6, 6, points) by rotations (3, 3, points)."""
     blocks = law.reshape(2, 3, 2, 3, -1).swapaxes(1, 2)
     return turn_tensors(R, blocks).swapaxes(1, 2).reshape(law.shape)
 
@@ -66,14 +66,14 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
     ----------
     cells : Cells
         Cells and their Gauss points.
-    curvature : ndarray, shape (..., 3, N)
+    curvature : ndarray, shape (..., 3, points)
         Twist rate and curvatures in the rotated axes, per unit of x/L, at the Gauss points.
     kinks : ndarray, shape (c, 4)
         Unit quaternions of the axes' rotation at the beginning of each of the c cells.
 
     Returns
     -------
-    ndarray, shape (..., 3, 3, N + 1)
+    ndarray, shape (..., 3, 3, sections)
         Rotation matrices, whose columns are the rotated axes.
 
     References

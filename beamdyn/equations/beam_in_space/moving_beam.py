@@ -67,7 +67,7 @@ class MovingBeam(FieldsOnly):
     ----------
     bent : BentBeam
         The beam deformed by the coordinates.
-    rates : ndarray, shape (..., n)
+    rates : ndarray, shape (..., coordinates)
         Rates of the coordinates.
     carrier : Carrier
         Motion of the carrier.
@@ -82,26 +82,26 @@ class MovingBeam(FieldsOnly):
 
     @cached_property
     def _strain_rates(self) -> tuple[np.ndarray, np.ndarray]:
-        """Rates of stretch and shears, and of the curvatures, in carrier-fixed axes: (..., 3, N) each."""
+        """Rates of stretch and shears, and of curvatures, in carrier-fixed axes: (..., 3, points) each."""
         return self.bent.strain_rates(self.rates)
 
     @cached_property
     def _turning(self) -> np.ndarray:
-        """Angular velocities (..., 3, N + 1) of the sections relative to the carrier [rad/s]."""
+        """Angular velocities (..., 3, sections) of the sections relative to the carrier [rad/s]."""
         return self.bent.turning_rate(self.rates, self._strain_rates[1])
 
     @cached_property
     def _tangent_rate(self) -> np.ndarray:
-        """Time derivative (..., 3, N) of r', which is the axis' position differentiated along its length."""
+        """Time derivative (..., 3, points) of r', the derivative of the axis' position along its length."""
         return cross(self._turning[..., :-1], self.bent.tangents) + self._strain_rates[0]
 
     @cached_property
     def velocity(self) -> np.ndarray:
-        """Velocities (..., 3, N + 1 + k) of the stations relative to the carrier [m/s]."""
+        """Velocities (..., 3, stations) of the stations relative to the carrier [m/s]."""
         return self.bent.beam.stations.to_all(self._tangent_rate)
 
     def forces(self, accelerations: np.ndarray) -> np.ndarray:
-        """Compute inertial forces and moments at stations (..., 6, N + 1 + k) for accelerations (..., n)."""
+        """Compute inertial forces and moments (..., 6, stations) for accelerations of the coordinates."""
         bent, stations, masses = self.bent, self.bent.beam.stations, self.bent.masses
         straining, bending = bent.strain_rates(accelerations)
         w, strained = self._turning[..., :-1], self._strain_rates
@@ -121,7 +121,7 @@ class MovingBeam(FieldsOnly):
         return np.concatenate([F, M + cross(masses.lever, F)], axis=-2)
 
     def residual(self, accelerations: np.ndarray) -> np.ndarray:
-        """Sum of elastic, damping and inertial forces, minus the tip load (..., n): 0 for the true motion."""
+        """Sum elastic, damping and inertial forces, minus the tip load: 0 for the true motion."""
         beam, forces = self.bent.beam, self.forces(accelerations)
         elastic = self.bent.q @ beam.stiffness + self.rates @ beam.damping
         return elastic + self.bent.work(forces if self.load is None else forces - self.load.forces(self.bent))

@@ -76,7 +76,7 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         component, order, conditions = known[name]
         of_field, sign = spaces.functions(conditions), _SIGNS[component]
         functions[place, component] = sign * of_field.evaluate(xi, order) / beam.length**order
-        if order == 2:  # functions of such a field rotate the root
+        if order == 2:  # functions of a field of bending may rotate the root
             at_root, *turned = of_field.evaluate(np.array([0.0, *xi, 1.0]), 1).T / beam.length
             hinges[place, component - 3] = sign * at_root
             slopes[place] += (sign > 0) * np.array(turned).T
@@ -128,7 +128,7 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
 
 
 def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
-    """Compute strains (6, n, 6, N) by six forces and moments, each varying along x as one of n polynomials.
+    """Compute strains (6, n, 6, points) by six forces and moments, each varying along x as n polynomials do.
 
     The polynomials describe components in the axes at the root, which are smooth over the beam; components in
     section axes rotate with the axis of the beam.
@@ -142,7 +142,7 @@ def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int
 def terms_of_blocks(
     equations: Equations, name: str, matrix: np.ndarray, order: int, quantity: Quantity = "unity"
 ) -> Iterator[Term]:
-    """Split a matrix (n, n) into terms of the equations of motion, one for each pair of coordinate blocks."""
+    """Split a matrix into terms of the equations of motion, one for each pair of coordinate blocks."""
     for row, i in equations.blocks.items():
         for column, j in equations.blocks.items():
             if matrix[i, j].any():
@@ -163,7 +163,7 @@ def _masses(scene: Scene, stations: BeamStations) -> Masses:
 
 
 def _masses_of_sections(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate mass per length (N,), mass centres (3, N) and inertia (3, 3, N) in section axes, at x/L."""
+    """Evaluate mass per length, mass centres (3, points) and inertia (3, 3, points), in section axes."""
     if beam.matrices is not None:
         return split_mass(beam.matrices.at("mass", xi))
     none = np.zeros_like(xi)
@@ -174,7 +174,7 @@ def _masses_of_sections(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def _tension(beam: Beam, xi: np.ndarray) -> np.ndarray:
-    """Evaluate offsets (2, N) of tension centres [m] in the direction of bending and across, at xi = x/L."""
+    """Evaluate offsets of tension centres [m] in the direction of bending and across (rows), at xi = x/L."""
     if beam.matrices is not None:
         K = beam.matrices.at("stiffness", xi)
         return np.stack([-K[0, 5], K[0, 4]]) / K[0, 0]
@@ -182,7 +182,7 @@ def _tension(beam: Beam, xi: np.ndarray) -> np.ndarray:
 
 
 def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Evaluate the mean squared distance (N,) of fibres from the axis [m2] and the pretwist (N,) at xi = x/L.
+    """Evaluate the mean squared distance of fibres from the axis [m2] and the pretwist at xi = x/L.
 
     The distribution of stiffness about the centre of tension is assumed to equal that of mass about the
     centre of mass; without torsion it has no effect.
@@ -197,7 +197,7 @@ def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _turned_sections(beam: Beam, xi: np.ndarray) -> np.ndarray:
-    """Compute the section axes (3, 3, N + 1) of the unloaded, pretwisted beam at xi (N,) and at the tip."""
+    """Compute the section axes (3, 3, points) of the unloaded, pretwisted beam at xi and at the tip."""
     twist = np.zeros(len(xi) + 1) if beam.twist is None else np.append(beam.twist(xi), beam.tip_twist)
     axes = np.zeros((3, 3, len(twist)))
     axes[0, 0] = 1.0
@@ -248,7 +248,7 @@ class RotatingBeam(FieldsOnly):
         return replace(self, beam=self.beam.reduced(self.basis_of(modal)), linear=modal)
 
     def basis_of(self, modal: Equations) -> np.ndarray:
-        """Compute the basis (n, m) of a reduced model, expressed in the coordinates of the beam."""
+        """Compute the basis of a reduced model, in columns, expressed in the coordinates of the beam."""
         basis = np.zeros((self.beam.size, modal.size))
         for name, place in self.linear.blocks.items():
             shape = modal.shapes[name if name in modal.shapes else f"{name}, {_DIRECTIONS[0]}"]
@@ -256,7 +256,7 @@ class RotatingBeam(FieldsOnly):
         return basis
 
     def nearest(self, other: RotatingBeam, q: np.ndarray) -> np.ndarray:
-        """Find coordinates (n,) whose strains are nearest to those of another discretization's beam at q."""
+        """Find coordinates whose strains are nearest to those of another discretization's beam at q."""
         own, rule = self.beam, self.beam.stations.quadrature
         between = other.beam.stations.quadrature.interpolate_to(rule.xi)
         strains = np.tensordot(q, other.beam.functions, 1) @ between.T * np.sqrt(rule.weights)
@@ -266,7 +266,7 @@ class RotatingBeam(FieldsOnly):
         return np.linalg.lstsq(matrix.T, strains.ravel())[0]
 
     def at(self, q: np.ndarray) -> BentState:
-        """Return the state of the beam with coordinates q (..., n); recent states are cached."""
+        """Return the state of the beam with coordinates q; recent states are cached."""
         return self._states(q.tobytes(), q.shape)
 
     @cached_property
@@ -274,11 +274,11 @@ class RotatingBeam(FieldsOnly):
         return lru_cache(_KEPT)(lambda q, n: BentState(self, self.beam.at(np.frombuffer(q).reshape(n))))
 
     def curvature(self, q: np.ndarray, xi: np.ndarray) -> np.ndarray:
-        """Compute the curvature (..., k) [1/m] in the direction of bending, at q (..., n) and xi (k,)."""
+        """Compute the curvature [1/m] in the direction of bending, at coordinates q and at xi = x/L."""
         return q @ self.beam.functions[:, -1] @ self.beam.stations.quadrature.interpolate_to(xi).T
 
     def tip_angle(self, q: np.ndarray) -> float:
-        """Compute the angle between the tip and e1 [rad] at q (n,); signed only for bending in one plane."""
+        """Compute the angle between the tip and e1 [rad] at q; signed only for bending in one plane."""
         if self.beam.is_planar:
             return float(q @ self.beam.angles[:, -1])
         along = self.beam.at(q).rotations[:, 0, -1]
@@ -325,13 +325,13 @@ class BentState(FieldsOnly):
         return self.bent.masses.carried(self.of.axis, *turning, root)
 
     def work(self, rates: np.ndarray, accelerations: np.ndarray, root: RootMotion) -> np.ndarray:
-        """Compute the residual (..., n) of the equations of motion; all arguments have the shape of q."""
+        """Compute the residuals of the equations of motion; all arguments have the shape of q."""
         carrier = Carrier.of_root(self.of.axis, root)
         return MovingBeam(self.bent, rates, carrier, self.of.load).residual(accelerations)
 
     @cached_property
     def gyroscopic(self) -> np.ndarray:
-        """Gyroscopic matrix at this state, divided by the speed, shape (n, n)."""
+        """Gyroscopic matrix at this state, divided by the speed."""
         euler = self.under({"acceleration": 1.0}).change
         return euler - euler.T
 
@@ -367,7 +367,7 @@ class BentState(FieldsOnly):
         return replace(linear, deflections=deflections, shapes=shapes, coarse=None, **given)
 
     def _loads(self, name: str, vector: np.ndarray, quantity: Quantity) -> Iterator[Load]:
-        """Split a left-hand-side force (n,) into right-hand-side loads, one for each coordinate block."""
+        """Split a left-hand-side force into right-hand-side loads, one for each coordinate block."""
         for row, i in self.of.linear.blocks.items():
             yield Load(name, row, vector[i], quantity, -1.0)
 
@@ -409,7 +409,7 @@ class DeflectedFunctions(FieldsOnly):
         return self.evaluate(np.ones(1), order)[:, 0] if order else at_tip
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate functions (order 0) or their derivatives with respect to x/L (order 1) at xi: (n, k)."""
+        """Evaluate functions (order 0) or their derivatives with respect to x/L (order 1), in rows, at xi."""
         if order > 1:
             raise ValueError("only the deflection and its slope follow a deflected beam")
         stations = self.bent.beam.stations

@@ -48,36 +48,36 @@ class BeamStations(FieldsOnly):
         return self.sections + len(self.lumps)
 
     def to_places(self, xi: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Integrate values per length (..., N) from the root to positions x/L = xi (k,): shape (..., k)."""
+        """Integrate values per length at the Gauss points from the root to k positions x/L = xi: (..., k)."""
         return self.length * values @ self.quadrature.integrate_to(xi).T
 
     @cached_property
     def _to_lumps(self) -> np.ndarray:
-        """Weights (k, N) of the integrals from the root to the point masses."""
+        """Weights (point masses, Gauss points) of the integrals from the root to the point masses."""
         return self.quadrature.integrate_to(self.lumps)
 
     def to_sections(self, values: np.ndarray) -> np.ndarray:
-        """Integrate values per length (..., N) from the root to Gauss points and tip: shape (..., N + 1)."""
+        """Integrate values per length at the Gauss points from the root to each of them and to the tip."""
         return self.length * self.quadrature.integrate(values)
 
     def to_all(self, values: np.ndarray) -> np.ndarray:
-        """Integrate values per length (..., N) from the root to all stations: shape (..., N + 1 + k)."""
+        """Integrate values per length at the Gauss points from the root to all stations: (..., stations)."""
         to_sections = self.to_sections(values)
         if not self.lumps.size:
             return to_sections
         return np.concatenate([to_sections, self.length * values @ self._to_lumps.T], axis=-1)
 
     def of_all(self, of_sections: np.ndarray) -> np.ndarray:
-        """Append zeros for the point masses to section values (..., N + 1): shape (..., N + 1 + k)."""
+        """Append zeros for the point masses to values at Gauss points and tip: shape (..., stations)."""
         none = np.zeros((*of_sections.shape[:-1], len(self.lumps)))
         return np.concatenate([of_sections, none], axis=-1) if self.lumps.size else of_sections
 
     def from_sections(self, forces: np.ndarray) -> np.ndarray:
-        """Apply the transpose of `to_sections`: sums (..., N) of forces (..., N + 1) beyond each point."""
+        """Apply the transpose of `to_sections`: sum the forces at sections beyond each Gauss point."""
         return self.length * self.quadrature.transposed(forces)
 
     def from_all(self, forces: np.ndarray) -> np.ndarray:
-        """Apply the transpose of `to_all`: sums (..., N) of forces (..., N + 1 + k) beyond each point."""
+        """Apply the transpose of `to_all`: sum the forces (..., stations) beyond each Gauss point."""
         total = self.from_sections(forces[..., : self.sections])
         if self.lumps.size:
             total += self.length * forces[..., self.sections :] @ self._to_lumps
@@ -90,11 +90,11 @@ class Masses:
 
     Parameters
     ----------
-    mass : ndarray, shape (N + 1 + k,)
+    mass : ndarray, shape (stations,)
         Masses [kg].
-    centre : ndarray, shape (3, N + 1)
+    centre : ndarray, shape (3, sections)
         Vectors from the axis to the centres of mass [m].
-    inertia : ndarray, shape (3, 3, N + 1)
+    inertia : ndarray, shape (3, 3, sections)
         Inertia tensors about the centres of mass [kg m2].
     """
 
@@ -103,7 +103,7 @@ class Masses:
     inertia: np.ndarray
 
     def turned(self, R: np.ndarray, positions: np.ndarray) -> MassesInSpace:
-        """Move the masses to positions (..., 3, N + 1 + k) of the axis, rotated by R (..., 3, 3, N + 1)."""
+        """Move the masses to positions (..., 3, stations) of the axis, with the sections rotated by R."""
         levers = np.zeros_like(positions)
         levers[..., : self.centre.shape[1]] = turn(R, self.centre)
         inertia = np.zeros((*R.shape[:-1], len(self.mass)))
@@ -117,9 +117,9 @@ class StationForces(NamedTuple):
 
     Parameters
     ----------
-    force : ndarray, shape (6, N + 1 + k)
+    force : ndarray, shape (6, stations)
         Forces [N] and moments [N m].
-    tangent : ndarray, shape (6, 6, N + 1 + k)
+    tangent : ndarray, shape (6, 6, stations)
         Derivatives of forces and moments with respect to displacements and rotations of the stations.
     """
 
@@ -136,11 +136,11 @@ class MassesInSpace:
 
     Parameters
     ----------
-    mass : ndarray, shape (N + 1 + k,)
+    mass : ndarray, shape (stations,)
         Masses [kg].
-    centre, lever : ndarray, shape (3, N + 1 + k)
+    centre, lever : ndarray, shape (3, stations)
         Vectors to the centres of mass from the root, and from the beam's axis [m].
-    inertia : ndarray, shape (3, 3, N + 1 + k)
+    inertia : ndarray, shape (3, 3, stations)
         Inertia tensors [kg m2].
     """
 
@@ -151,7 +151,7 @@ class MassesInSpace:
 
     @property
     def matrix(self) -> np.ndarray:
-        """Compute the mass matrices (6, 6, N + 1 + k) of the stations."""
+        """Compute the mass matrices (6, 6, stations) of the stations."""
         matrix = self._of_centre(np.eye(3))
         matrix[3:, 3:] += self.inertia
         return matrix
@@ -182,7 +182,7 @@ class MassesInSpace:
         return StationForces(np.concatenate([F, M]), tangent)
 
     def _of_centre(self, A: np.ndarray) -> np.ndarray:
-        """Build matrices (6, 6, N + 1 + k) from small motions to forces and moments about the beam's axis.
+        """Build matrices (6, 6, stations) from small motions to forces and moments about the beam's axis.
 
         The force is the mass times A times the displacement X + W x lever of the mass centre.
         """

@@ -34,7 +34,7 @@ class TipForces(NamedTuple):
     follows: bool = False
 
     def forces(self, bent: BentBeam) -> np.ndarray:
-        """Compute force and moment (..., 6, N + 1 + k) at each station, which are 0 except at the tip."""
+        """Compute force and moment (..., 6, stations) at each station, which are 0 except at the tip."""
         stations, both = bent.beam.stations, np.stack([self.force, self.couple])
         if self.follows:
             both = np.einsum("...ab,kb->...ka", bent.rotations[..., -1], both)

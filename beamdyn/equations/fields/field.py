@@ -30,7 +30,7 @@ class Term:
         Field whose equations contain the term, and field whose coordinates it multiplies.
     order : int
         Order of the time derivative: 0 stiffness, 1 damping and gyroscopic, 2 mass.
-    matrix : ndarray, shape (n, m)
+    matrix : ndarray, shape (coordinates, coordinates)
         Matrix over the coordinates of the two fields.
     quantity : str
         Quantity of `RootMotion` that multiplies the matrix.
@@ -99,15 +99,15 @@ class SectionFunctions(Protocol):
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection per coordinate (n,) of the tip's corner in the direction across, up to a factor."""
+        """Deflection per coordinate of the tip's corner in the direction across, up to a factor."""
         ...
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Evaluate the functions at x/L (k,) along and 2 y/b (l,) across: shape (n, k, l)."""
+        """Evaluate the functions at k positions x/L along and l positions 2 y/b across: (functions, k, l)."""
         ...
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate width means of second derivatives with respect to 2 y/b at x/L (k,): shape (n, k)."""
+        """Evaluate second derivatives with respect to 2 y/b, averaged over the width, at positions x/L."""
         ...
 
 

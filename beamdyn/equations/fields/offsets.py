@@ -192,7 +192,7 @@ class Offsets:
 
     @cached_property
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
-        """Matrices of Coriolis and Euler acceleration (B), and of centrifugal (P), along b1, e1, e2."""
+        """Matrices along b1, e1, e2: B of Coriolis and Euler acceleration, P of centrifugal acceleration."""
         a = np.array([exact_cos_sin(self.scene.mount.precone)[1], *axis_in_section(self.scene)])
         return -np.cross(a, np.eye(3)).T, np.eye(3) - np.outer(a, a)
 
@@ -219,7 +219,7 @@ class Offsets:
 
     @cached_property
     def _beside_axis(self) -> list[tuple[Quantity, np.ndarray]]:
-        """Accelerations (3, 4) of the mass centre relative to the axis, per component of the offsets c, t."""
+        """Accelerations of the mass centre relative to the axis, by offsets of mass and tension centre."""
         (B, P), none = self.frame, np.zeros((3, 2))
         return [
             ("acceleration", np.hstack([B[:, 1:], none])),
@@ -257,7 +257,7 @@ class Offsets:
                 yield value, moment
 
     def _outboard(self, coefficients: np.ndarray, power: int) -> Profile | None:
-        """Sum the moments of masses beyond each section, with coefficients of offsets (4,); None if 0."""
+        """Integrate mass times x^power times a linear function of offsets beyond each section; None if 0."""
         of_tip, length = self._of_tip(coefficients, power), self.scene.beam.length
         parts = [moment.scaled(value * length) for value, moment in self._of_sections(coefficients, power)]
         outboard = [part.outboard_integral() for part in parts] + [ONE.scaled(of_tip)] * bool(of_tip)
@@ -325,7 +325,7 @@ class Offsets:
                         )
 
     def _carried(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of the axis' acceleration on second-order displacements by turning."""
+        """Yield matrices for the work of the axis' acceleration on second-order shifts by rotations."""
         rotations = [motion for motion in self.motions if motion.rotation is not None]
         for rows, columns in combinations_with_replacement(rotations, 2):
             for quantity, vector, power in self._parametric:
@@ -365,7 +365,7 @@ class Offsets:
                     yield _CoupledMatrix(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
 
     def _tightened(self) -> Iterator[_CoupledMatrix]:
-        """Yield the work of axial forces by masses off the axis on the slopes of the beam."""
+        """Yield matrices for the work of axial forces on masses off the axis, by slopes of the beam."""
         ahead = self._tip[0].offset
         parametric = [quantity for quantity, _, _ in self._parametric]
         for quantity, matrix in self._beside_axis:
@@ -404,7 +404,7 @@ class Offsets:
                 yield Load(NAMES_OF_LOADS[quantity], name, vector, quantity)
 
     def _accelerated(self, motion: SectionMotion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
-        """Yield coefficients of the offsets c and t (4,) in the work on a motion, each with the power of x.
+        """Yield coefficients of mass and tension offsets in the work on a motion, with powers of x.
 
         The work of the axial force, which acts at the centre of tension, is a separate load.
         """

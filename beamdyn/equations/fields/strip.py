@@ -99,7 +99,7 @@ class WidthFunctions:
 
 @lru_cache(maxsize=64)
 def _polynomials(numbers: tuple[int, ...], points: int) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Evaluate functions across at the corner, and their derivatives 0 to 2 at Gauss points across."""
+    """Evaluate functions of the width at its edge, and derivatives 0 to 2 at Gauss points over the width."""
     edge, series = np.sqrt(2 * np.array(numbers) + 1), np.eye(max(numbers) + 1)[:, [*numbers]]
     eta, _ = gauss_rule(points)
     return edge, [edge[:, None] * legendre.legval(eta, legendre.legder(series, order)) for order in range(3)]
@@ -289,11 +289,11 @@ class StackedSpace:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection per coordinate at the tip's corner in the direction across, shape (n,)."""
+        """Deflection per coordinate at the tip's corner in the direction across."""
         return np.kron(np.sqrt(2 * np.array(self.numbers) + 1), self.along.end(0))
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Evaluate the deflections at x/L (k,) along and 2 y/b (l,) across: shape (n, k, l)."""
+        """Evaluate the deflections at positions x/L along and 2 y/b across: (coordinates, along, across)."""
         numbers = np.array(self.numbers)
         places = np.multiply.outer(self.stretch(xi), eta)
         across = legendre.legvander(places, numbers.max())[:, :, numbers] * np.sqrt(2 * numbers + 1)
@@ -301,7 +301,7 @@ class StackedSpace:
         return values.reshape(self.size, len(xi), len(eta))
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate width means of second derivatives with respect to eta = 2 y/b at x/L (k,): shape (n, k).
+        """Evaluate second derivatives with respect to eta = 2 y/b, averaged over the width, at xi = x/L.
 
         An even Legendre polynomial's second derivative has the mean k(k + 1)/2, its slope at an edge.
         """

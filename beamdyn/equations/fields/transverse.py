@@ -143,7 +143,7 @@ class Pair:
         Directions in which the two fields deflect the beam.
     rotate : bool
         Whether both fields rotate the sections.
-    tilts : ndarray, shape (n, m)
+    tilts : ndarray, shape (functions, functions)
         Products of the two fields' rotations D at the tip [1/m2].
     """
 

@@ -72,18 +72,18 @@ class Loading:
 
     @property
     def angles(self) -> np.ndarray:
-        """Slope angles along the beam per unit coordinate (n, k), the measure of changes of coordinates."""
+        """Slope angles (rows) along the beam by unit coordinates, the measure of changes of coordinates."""
         return self.elastica.beam.angles
 
     def at(self, q: np.ndarray, p: float) -> Work:
-        """Compute the residual r (n,) at coordinates q (n,) and parameter p, and dr/dq (n, n)."""
+        """Compute the residual r at coordinates q and parameter p, and the matrix dr/dq."""
         state, K = self.elastica.at(q), self.elastica.beam.stiffness
         force, change = state.under(self.growing)
         sums = K @ q + p * force, K + p * change
         return Work(*map(np.add, sums, state.under(self.given)) if self.given else sums)
 
     def rate(self, q: np.ndarray) -> np.ndarray:
-        """Compute the derivative of the residual with respect to p, shape (n,)."""
+        """Compute the derivative of the residual with respect to p."""
         return self.elastica.at(q).under(self.growing).work
 
     @cached_property
@@ -231,7 +231,7 @@ def count_negative(load: Loading, q: np.ndarray, p: float) -> int:
 
 
 def scaled_eigenvalues(matrix: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
-    """Compute ascending eigenvalues of a matrix (n, n), scaled so that a given diagonal becomes +-1.
+    """Compute ascending eigenvalues of a square matrix, scaled so that a given diagonal becomes +-1.
 
     Scaling does not change their signs (Sylvester), but avoids rounding errors if coordinates have very
     different sizes, as with short elements.  If the matrix is not symmetric, as under a load without

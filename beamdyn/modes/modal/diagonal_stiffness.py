@@ -29,9 +29,9 @@ def solve_diagonal(
 
     Parameters
     ----------
-    mass : ndarray, shape (n, n) or (S, n, n)
+    mass : ndarray, shape (coordinates, coordinates) or (S, coordinates, coordinates)
         Mass matrix M, common to all problems or one for each.
-    stiffness : ndarray, shape (S, n)
+    stiffness : ndarray, shape (S, coordinates)
         Diagonal stiffness d of each problem.
     count : int
         Number of modes k.
@@ -40,11 +40,11 @@ def solve_diagonal(
 
     Returns
     -------
-    squared : ndarray, shape (S, k)
+    squared : ndarray, shape (S, modes)
         Squared frequencies w^2.
-    z : ndarray, shape (S, n, k)
+    z : ndarray, shape (S, coordinates, modes)
         Mass-normalised modes.
-    rounding : ndarray, shape (S, k)
+    rounding : ndarray, shape (S, modes)
         Relative error of w by the eigensolver.
     """
     stiff, lowest = stiffness.min(axis=1) >= LEAST_STIFFNESS, lowest_at_rest * np.ones(len(stiffness))
@@ -60,7 +60,7 @@ def solve_diagonal(
 
 
 def inverse_squares(mass: np.ndarray, stiffness: np.ndarray, count: int) -> np.ndarray:
-    """Compute 1/w^2 (S, k) as in `solve_diagonal`, for stiffnesses not below `LEAST_STIFFNESS`."""
+    """Compute the largest 1/w^2 as `solve_diagonal` does, for stiffnesses from `LEAST_STIFFNESS` on."""
     scale = 1 / np.sqrt(stiffness)
     mu = np.linalg.eigvalsh(scale[:, :, None] * mass * scale[:, None, :])
     return above_rounding(mu[:, : -count - 1 : -1])
@@ -69,7 +69,7 @@ def inverse_squares(mass: np.ndarray, stiffness: np.ndarray, count: int) -> np.n
 def _solve_scaled(
     M: np.ndarray, d: np.ndarray, count: int, lowest_at_rest: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Solve d z = w^2 M z for positive diagonal stiffness d (S, n) and mass M.
+    """Solve d z = w^2 M z for positive diagonal stiffness d and mass matrices M, for a batch of problems.
 
     Return squared angular frequencies w^2, vectors z, and relative rounding errors of w.
     """
@@ -110,12 +110,12 @@ def _solve_largest(A: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def above_rounding(mu: np.ndarray) -> np.ndarray:
-    """Raise eigenvalues (..., k), descending, to at least half their rounding error: none is negative."""
+    """Raise eigenvalues, descending, to at least half their rounding error: none is negative."""
     return np.maximum(mu, _FORWARD / 2 * mu[..., :1])
 
 
 def forward_error(mu: np.ndarray) -> np.ndarray:
-    """Estimate the relative error of 1/sqrt(mu) (..., k) by the eigensolver, for descending mu."""
+    """Estimate the relative error of 1/sqrt(mu) by the eigensolver, for descending mu."""
     return _FORWARD * mu[..., :1] / mu
 
 
@@ -144,10 +144,7 @@ def _find_shift(M: np.ndarray, d: np.ndarray, smallest: np.ndarray) -> np.ndarra
 
 
 def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray:
-    """Return for each of S problems whether diag(d) + shift M is positive definite beyond rounding errors.
-
-    M has the shape (S, n, n).
-    """
+    """Return for each problem whether diag(d) + shift M is positive definite beyond rounding errors."""
     n = d.shape[1]
     K = shift[:, None, None] * M
     K[:, np.arange(n), np.arange(n)] += d
@@ -158,17 +155,17 @@ def _are_definite(M: np.ndarray, d: np.ndarray, shift: np.ndarray) -> np.ndarray
 def rounding_of_matrices(
     terms: np.ndarray, squared: np.ndarray, z: np.ndarray, size: np.ndarray, mass: np.ndarray
 ) -> np.ndarray:
-    """Estimate relative errors (S, k) of frequencies by rounding of the matrices of conservative equations.
+    """Estimate relative errors of frequencies by rounding of the matrices of conservative equations.
 
     Parameters
     ----------
-    terms : ndarray, shape (S, n)
+    terms : ndarray, shape (problems, coordinates)
         The diagonal stiffness, summed over the absolute values of its terms.
-    squared, z : ndarray, shapes (S, k) and (S, n, k)
+    squared, z : ndarray, shapes (problems, modes) and (problems, coordinates, modes)
         Squared frequencies and modes, in coordinates in which the stiffness is diagonal.
-    size : ndarray, shape (S, n, k)
+    size : ndarray, shape (problems, coordinates, modes)
         Absolute values of the modes in the coordinates of the original equations.
-    mass : ndarray, shape (n, n) or (S, n, n)
+    mass : ndarray, shape (coordinates, coordinates) or (problems, coordinates, coordinates)
         Absolute values of the mass matrix of the original equations.
     """
     modal_terms = np.einsum("snk,sn->sk", z**2, terms)  # modal stiffness, if no terms cancelled
@@ -183,10 +180,10 @@ def rounding_of_matrices(
 def rounding_of_scene(
     pencil: SteadyPencil, speeds: np.ndarray, squared: np.ndarray, size: np.ndarray, rounding: np.ndarray
 ) -> np.ndarray:
-    """Estimate the relative rounding error (S, k) of frequencies from that of a clamped beam in one plane.
+    """Estimate the relative rounding errors of frequencies from those of a clamped beam in one plane.
 
     With two planes, cancellation of large stiffness entries of the stiffer plane increases the error.  The
-    absolute values `size` of the modes have shape (S, n, k).
+    absolute values `size` of the modes have shape (speeds, coordinates, modes).
     """
     if pencil.planes == 1:
         return _ON_SPRINGS * rounding if pencil.shift else rounding

@@ -56,7 +56,7 @@ class Eigen:
     eigenvalue : ndarray, shape (S, k)
         Eigenvalues s of q = v exp(s t) [1/s]: from each conjugate pair the one with Im s > 0, from each real
         pair the larger.
-    vector : ndarray, shape (S, n, k)
+    vector : ndarray, shape (S, coordinates, k)
         Mass-normalised eigenvectors v; real if the equations are conservative.
     rounding : ndarray, shape (S, k)
         Estimated relative rounding error of |s|.
@@ -91,7 +91,7 @@ class Eigensolver(ABC):
         return self.pencil.conservative
 
     def energies_at_rest(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the products v K v at rest and v M v of vectors v (S, n): shape (S,) each."""
+        """Compute the products v K v at rest and v M v of vectors v in rows: one number for each vector."""
         of_stiffness, of_mass = (
             np.real(v.conj() * (v @ A)).sum(axis=1) for A in (self.pencil.K0, self.pencil.M)
         )
@@ -139,12 +139,12 @@ class Eigensolver(ABC):
         ----------
         speeds : ndarray, shape (S,)
             Speeds [rad/s].
-        outputs : ndarray, shape (d, n)
+        outputs : ndarray, shape (outputs, coordinates)
             Coefficients of the functions, such as the tip deflections per unit coordinate.
 
         Returns
         -------
-        ndarray, shape (S, d)
+        ndarray, shape (S, outputs)
             Values of the functions; nan at and above the critical speed.
         """
 
@@ -160,14 +160,14 @@ class Solver(Eigensolver):
 
     @cached_property
     def _at_rest(self) -> np.ndarray:
-        """Cholesky factor (n, n) of the stiffness at rest, including the shift."""
+        """Cholesky factor of the stiffness at rest, including the shift."""
         K0, M, shift = self.pencil.K0, self.pencil.M, self.pencil.shift
         with explained():
             return np.linalg.cholesky(K0 + shift * M if shift else K0)
 
     @cached_property
     def _diagonal(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Growth (n,) of the diagonal stiffness, basis (n, n) and mass matrix of these coordinates."""
+        """Growth of the diagonal stiffness with squared speed, basis and mass matrix of its coordinates."""
         L = self._at_rest
         K2, M = (_symmetric(transformed(L, A)) for A in (self.pencil.K2, self.pencil.M))
         growth, Q = np.linalg.eigh(K2)
@@ -200,7 +200,7 @@ class Solver(Eigensolver):
         return (lowest, float(lost / lowest)) if lowest > lost else (0.0, np.inf)
 
     def factor(self, speeds: np.ndarray) -> Factored | None:
-        """Factor the stiffness of conservative equations at one speed [rad/s]: L and L^-1 M L^-T, (n, n).
+        """Factor the stiffness of conservative equations at one speed [rad/s]: matrices L and L^-1 M L^-T.
 
         Returns None for more speeds, or if the stiffness is below `LEAST_STIFFNESS` times that at rest.
         """
@@ -288,7 +288,7 @@ class Solver(Eigensolver):
         return has_massless(self._diagonal[2])
 
     def _solve_coupled(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute eigenvalues (k,), vectors (n, k), rounding errors (k,) of damped or gyroscopic beams."""
+        """Compute eigenvalues, vectors (in columns) and rounding errors of damped or gyroscopic beams."""
         pencil, n = self.pencil, self.size
         on_springs = pencil.shift and not pencil.C.any() and not self._has_massless
         if on_springs and (graded := springs.factor_graded(pencil, speed)):
@@ -368,7 +368,7 @@ class LoadedSolver(Solver):
         return Eigen(*(np.array(values) for values in zip(*modes, strict=True)))
 
     def _solve_loaded(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute eigenvalues (k,), vectors (n, k) and rounding errors (k,) at one speed."""
+        """Compute eigenvalues, vectors (in columns) and rounding errors at one speed."""
         M, K, C = self.pencil.M, *self._at(speed)
         by_mass = np.linalg.solve(K, M)
         mu, y = np.linalg.eig(by_mass)
@@ -421,7 +421,7 @@ def rounding_of_factored(
         The speed [rad/s].
     squared : ndarray, shape (k,)
         Squared frequencies.
-    v : ndarray, shape (n, k)
+    v : ndarray, shape (coordinates, k)
         Mass-normalised modes.
     """
     size = np.abs(v)

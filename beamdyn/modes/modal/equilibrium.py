@@ -215,13 +215,13 @@ class DeflectedSolver(Solver):
         return self.equilibria(speeds) @ outputs.T
 
     def tips(self, speeds: np.ndarray) -> np.ndarray:
-        """Compute the tip's transverse deflection in equilibrium [m], shape (S, 1), or (S, 2) in space."""
+        """Compute the tip's transverse deflection in equilibrium [m]: one column, or two in space."""
         beam = self.elastica.beam
         moved = beam.at(self.equilibria(speeds)).tip - beam.at(np.zeros(self.size)).tip
         return moved[:, 1 : 2 if beam.is_planar else 3]
 
     def equilibria(self, speeds: np.ndarray) -> np.ndarray:
-        """Compute the equilibrium coordinates (S, n) at each speed; results are cached."""
+        """Compute the equilibrium coordinates at each speed, in rows; results are cached."""
         missing = np.array([v for v in np.unique(np.abs(speeds)) if v not in self._found])
         if self.guide is not None and len(missing):
             self._find_near(self.guide, missing)

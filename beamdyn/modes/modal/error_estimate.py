@@ -37,8 +37,8 @@ _OF_NOISE = 4.0
 # values are for a beam with one segment, with several (whose functions converge at different rates), and for
 # irregular convergence.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
-# The same for a coarser basis with one function less, which may change a mode less than the next function
-# does: convergence always counts as slow.
+# Such fractions for a coarser basis with one function less, which may change a mode less than the next
+# function does: convergence always counts as slow.
 _BY_ONE = 1.0, 0.01, 0.0
 # Number of functions across plates up to which the margin was measured (convergence slows down above it), and
 # the fraction of the largest distance of all modes that counts as error.
@@ -62,7 +62,7 @@ class EstimatedModes:
         The model of the modes.
     eigen : Eigen
         Modes of `model`.
-    error : ndarray, shape (S, k)
+    error : ndarray, shape (speeds, modes)
         Estimated relative error of the eigenvalues: truncation and rounding error; inf where unresolved,
         where the coarser model has no such mode, and where the model does not exceed the coarser one.
     """
@@ -143,7 +143,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
 def _mesh_error(
     model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray, before: np.ndarray
 ) -> np.ndarray:
-    """Estimate the relative truncation error (S, k) of extrapolated squares by differences between meshes."""
+    """Estimate the relative truncation error of extrapolated squares by differences between meshes."""
     compared = squared.shape[1]
     noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
     K, v = np.abs(model.solver.pencil.K0) ** 2, np.abs(fine.vector[:, :, :compared]) ** 2
@@ -162,7 +162,7 @@ def _mesh_error(
 
 
 def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.ndarray | float:
-    """Estimate the relative truncation error (S, k) by the functions across the width, for any mesh."""
+    """Estimate the relative truncation error by the functions across the width, for any mesh."""
     if not model.scene.models_width:
         return 0.0
     kept = np.ones(model.equations.size, dtype=bool)
@@ -174,11 +174,11 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
 
 
 def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray) -> np.ndarray:
-    """Estimate the relative truncation error (S, k) of squared eigenvalues from a smaller basis."""
+    """Estimate the relative truncation error of squared eigenvalues from a smaller basis."""
     # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
     size, bound = np.abs(squared), (stiffness / mass).min() + model.equations.shift
-    # It matters only if a mode below it has the largest relative distance.
+    # The lowest square matters only if a mode below this bound has the largest relative distance.
     if is_needed := size.min() < _ABOVE * bound:
         relative, below = np.abs(distance) / size, size < bound
         of_below, of_others = (np.where(each, relative, 0.0).max(axis=1) for each in (below, ~below))
@@ -201,16 +201,16 @@ def extrapolation_error(
 
     Parameters
     ----------
-    distance, before : ndarray, shape (..., k)
+    distance, before : ndarray, shape (..., modes)
         Difference of the results of the two finest meshes, and of the second and third; nan if not known.
-    noise : ndarray, shape (..., k)
+    noise : ndarray, shape (..., modes)
         Rounding error of the differences.
     least : float
         Smallest ratio of the two that is used; it is larger if segments converge at different rates.
 
     Returns
     -------
-    ndarray, shape (..., k)
+    ndarray, shape (..., modes)
         Estimated error; inf if the differences do not decrease.
     """
     size = np.abs(distance)
@@ -249,11 +249,11 @@ def error_of_assumed_modes(
 
     Parameters
     ----------
-    squared : ndarray, shape (S, k)
+    squared : ndarray, shape (S, modes)
         Squares of the eigenvalues.
-    distance : ndarray, shape (S, k)
+    distance : ndarray, shape (S, modes)
         Distances of the squares from those of the coarser basis.
-    rounding : ndarray, shape (S, k)
+    rounding : ndarray, shape (S, modes)
         Relative error of the eigenvalues by rounding.
     lowest_at_rest : ndarray, shape (S,)
         Lowest squared frequency at rest of each problem.
@@ -264,7 +264,7 @@ def error_of_assumed_modes(
 
     Returns
     -------
-    ndarray, shape (S, k)
+    ndarray, shape (S, modes)
         Estimated relative error; inf where unresolved.
     """
     margin = SLOW_BASES.factor if is_slender else BASES_OF_FIELDS.factor
@@ -300,7 +300,7 @@ def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
 
 
 def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarray) -> np.ndarray:
-    """Return whether an unresolved higher mode may in truth be lower than each mode: shape (S, k)."""
+    """Return whether an unresolved higher mode may in truth be lower than each mode, at each speed."""
     reach = np.where(resolved, np.inf, -np.real(squared) - np.abs(distance))
     lowest = np.minimum.accumulate(reach[:, ::-1], axis=1)[:, ::-1]
     return -np.real(squared) > lowest
@@ -311,12 +311,13 @@ def _ritz_error(
 ) -> np.ndarray:
     """Estimate the relative truncation error of Ritz eigenvalues from the squares of a smaller basis.
 
-    Squares and distances have shape (S, k), as has the error; the lowest squared frequency at rest has shape
-    () or (S,). Usually further functions change an eigenvalue by less than the last ones did.  Exceptions are
-    modes that only every other function changes, and modes whose distance is small by chance.  If convergence
-    is slow, a margin is therefore added, which was measured on random scenes: a fraction of the distances of
-    all modes, relative to the higher mode of two.  The fraction is `of_few` if one field may have too few
-    functions.  If an eigenvalue vanishes, its error is relative to the lowest squared frequency at rest.
+    Squares, distances and error have shape (speeds, modes); the lowest squared frequency at rest is one
+    number, or one for each speed. Usually further functions change an eigenvalue by less than the last ones
+    did.  Exceptions are modes that only every other function changes, and modes whose distance is small by
+    chance.  If convergence is slow, a margin is therefore added, which was measured on random scenes: a
+    fraction of the distances of all modes, relative to the higher mode of two.  The fraction is `of_few` if
+    one field may have too few functions.  If an eigenvalue vanishes, its error is relative to the lowest
+    squared frequency at rest.
     """
     half, size = np.abs(distance) / 2, np.abs(squared)
     scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), lowest[..., None, None])

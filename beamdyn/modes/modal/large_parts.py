@@ -36,7 +36,7 @@ class LargeSolver(Eigensolver):
 
     @cached_property
     def _at_rest(self) -> np.ndarray:
-        """Cholesky factor (n, n) of the stiffness at rest, including the shift."""
+        """Cholesky factor of the stiffness at rest, including the shift."""
         with explained():
             return np.linalg.cholesky(self.pencil.K0 + self.pencil.shift * self.pencil.M)
 
@@ -75,7 +75,7 @@ class LargeSolver(Eigensolver):
         return np.array([solve_definite(self.pencil, speed) for speed in speeds]) @ outputs.T
 
     def _solve_at(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute eigenvalues (k,), vectors (n, k) and rounding (k,) at one speed."""
+        """Compute eigenvalues, vectors (in columns) and rounding errors at one speed."""
         with suppress(ArpackNoConvergence):
             found = None if self.pencil.shift else self._lowest(speed, count)
             if found is not None:
@@ -101,9 +101,9 @@ class LargeSolver(Eigensolver):
         return 1j / np.sqrt(mu), v, rounding
 
     def _largest(self, L: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the largest eigenvalues (k,) of the mass matrix in the stiffness' Cholesky coordinates.
+        """Compute the largest eigenvalues of the mass matrix in the stiffness' Cholesky coordinates.
 
-        The matrix is L^-1 M L^-T; eigenvalues descend, and the vectors have the shape (n, k).
+        The matrix is L^-1 M L^-T; eigenvalues descend, and the vectors are columns.
         """
 
         def product(x: np.ndarray) -> np.ndarray:

@@ -45,9 +45,9 @@ class PencilStack:
 
     Parameters
     ----------
-    K0 : ndarray, shape (n, n) or (N, n, n)
+    K0 : ndarray, shape (coordinates, coordinates) or (N, coordinates, coordinates)
         Stiffness at rest, common to all designs or one for each.
-    M, K2 : ndarray, shape (N, n, n)
+    M, K2 : ndarray, shape (N, coordinates, coordinates)
         Mass, and stiffness divided by the squared speed, of each design.
     """
 
@@ -81,7 +81,7 @@ class ManyModes:
     static: np.ndarray
 
     def meet(self, target: float) -> np.ndarray:
-        """Return which designs (N,) have all errors below a target or at the level of rounding."""
+        """Return which designs have all errors below a target or at the level of rounding."""
         return np.all(self.error <= np.maximum(target, 3 * self.rounding), axis=(1, 2))
 
 
@@ -110,11 +110,11 @@ class StackedSolver:
 
     @cached_property
     def lowest_at_rest(self) -> np.ndarray:
-        """Lowest squared angular frequency at rest of each design (N,)."""
+        """Lowest squared angular frequency at rest of each design."""
         return 1 / np.linalg.eigvalsh(self.mass)[:, -1]
 
     def solve(self, speeds: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute squared frequencies (N S, k) at speeds (N, S) of the designs, and rounding errors."""
+        """Compute squared frequencies of designs at their speeds (designs, speeds), and rounding errors."""
         design, spin = _rows(speeds)
         terms = 1 + spin * np.abs(self.growth)[design]
         stiffness = 1 + spin * self.growth[design]
@@ -126,7 +126,7 @@ class StackedSolver:
         return squared, np.where(squared == 0, np.inf, rounding)
 
     def squares(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Compute squared frequencies (N S, k) at speeds (N, S), without rounding errors."""
+        """Compute squared frequencies of designs at speeds (designs, speeds), without rounding errors."""
         design, spin = _rows(speeds)
         stiffness = 1 + spin * self.growth[design]
         stiff = stiffness.min(axis=1) >= LEAST_STIFFNESS
@@ -140,7 +140,7 @@ class StackedSolver:
         return squared
 
     def damped(self, speeds: np.ndarray, ratio: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute eigenvalues (N S, k) and rounding errors for damping ratios (N,) of the modes at rest."""
+        """Compute eigenvalues and rounding errors, for one damping ratio per design of the modes at rest."""
         design, spin = _rows(speeds)
         # Unit of time in which frequencies are of order 1.
         time = np.sqrt(1 / self.lowest_at_rest)[design, None, None]
@@ -160,11 +160,11 @@ class StackedSolver:
         return s, 8 * _EPS * (np.abs(s) * np.abs(inverse).max(axis=1)[:, None] + terms[:, None])
 
     def meeting(self, multiples: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute inverse squared speeds (N, L, k) at which frequencies are multiples (L,) of the speed.
+        """Compute inverse squared speeds (designs, multiples, modes) at which lines meet frequencies.
 
-        For the multiple 0, the stiffness is singular.  Modes are in ascending order; a value that is not
-        positive means that the mode meets the line at no speed.  The second result is the rounding error of
-        the values.
+        A line is a multiple of the speed.  For the multiple 0, the stiffness is singular.  Modes are in
+        ascending order; a value that is not positive means that the mode meets the line at no speed.  The
+        second result is the rounding error of the values.
         """
         n = self.growth.shape[1]
         matrices = multiples[:, None, None] ** 2 * self.mass[:, None]
@@ -175,7 +175,7 @@ class StackedSolver:
         return inverse[..., : -count - 1 : -1], rounding
 
     def static(self, speeds: np.ndarray, load: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-        """Compute magnitudes (N, S) of static outputs (d, n), for loads (N, n) per squared speed."""
+        """Compute magnitudes (designs, speeds) of static outputs, by each design's load per squared speed."""
         of_load = np.einsum("nik,ni->nk", self.basis, load)
         spin = speeds[:, :, None] ** 2
         stiffness = 1 + spin * self.growth[:, None, :]
@@ -220,13 +220,13 @@ def solve_many(
     ----------
     stack, coarse : PencilStack
         Matrices of N designs, in a basis and in a coarser one.
-    speeds : ndarray, shape (N, S)
+    speeds : ndarray, shape (N, speeds)
         Speeds of each design [rad/s].
     count : int
         Number k of modes.
-    load : ndarray, shape (N, n)
+    load : ndarray, shape (N, coordinates)
         Static load per squared speed.
-    outputs : ndarray, shape (d, n)
+    outputs : ndarray, shape (outputs, coordinates)
         Coefficients of the components of the requested static displacement, such as that of the tip.
     ratio : ndarray, shape (N,), optional
         Damping ratio of the modes at rest; undamped if not given.
@@ -293,9 +293,9 @@ def speeds_of_meeting(
 
     Returns
     -------
-    speed : ndarray, shape (N, L, k)
+    speed : ndarray, shape (N, L, modes)
         Speeds [rad/s]; inf if a mode does not meet the line up to the largest speed.
-    error, rounding : ndarray, shape (N, L, k)
+    error, rounding : ndarray, shape (N, L, modes)
         Estimated relative error of the speed, inf if there is no speed or it is unresolved; and the rounding
         part of it.
     """
@@ -315,5 +315,5 @@ def speeds_of_meeting(
 
 
 def _rows(speeds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """List the design index (N S,) and the squared speed (N S, 1) of each problem."""
+    """List the design index and the squared speed of each problem: a design at a speed."""
     return np.repeat(np.arange(len(speeds)), speeds.shape[1]), speeds.reshape(-1, 1) ** 2

@@ -133,7 +133,7 @@ class Model(FieldsOnly):
         return self.deflected.tips(speeds)
 
     def over_strip(self, along: int, across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Compute n by k mesh points over a strip: x [m], eta from 1 to -1, and y = -eta b/2 [m] (n, k).
+        """Compute n x k mesh points over a strip: x [m], eta from 1 to -1, and y = -eta b/2 [m] (n, k).
 
         Returns None if the sections keep their shape, or if their width is not known.
         """
@@ -362,7 +362,7 @@ def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.
 
     Returns
     -------
-    ndarray, shape (n, m)
+    ndarray, shape (coordinates, shapes)
         Shapes in columns, with unit mass and a diagonal stiffness at rest; m is smaller than the total
         number of modes if those of different speeds are linearly dependent.
     """

@@ -38,7 +38,7 @@ def solve_general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarr
 
 
 def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Solve M q'' + C q' + K q = 0 for any K, with q ~ exp(s t): return 1/s (m,) and columns (q, s q).
+    """Solve M q'' + C q' + K q = 0 for any K, with q ~ exp(s t): return all 1/s and columns q above s q.
 
     Of the 2 n eigenvalues s, those that are infinite within rounding are omitted.
     """
@@ -71,13 +71,13 @@ def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.nd
 
 
 def has_massless(mass: np.ndarray) -> bool:
-    """Return whether some combination of coordinates has no mass within rounding; mass matrix (n, n)."""
+    """Return whether some combination of coordinates has no mass within rounding."""
     values = np.linalg.eigvalsh(mass)
     return bool(values[0] < _MASSLESS * values[-1])
 
 
 def condense(mass: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
-    """Compute a basis (n, r) with a regular mass matrix; massless coordinates then follow quasi-statically.
+    """Compute a basis (columns) with a regular mass matrix; massless coordinates follow quasi-statically.
 
     Neither damping nor gyroscopic terms may act on massless coordinates.
     """

@@ -85,7 +85,7 @@ class UncoupledSolver(Eigensolver):
         return all(solver.conservative for solver in self.solvers)
 
     def energies_at_rest(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the products v K v at rest and v M v of vectors v (S, n): shape (S,) each."""
+        """Compute the products v K v at rest and v M v of vectors v in rows: one number for each vector."""
         parts = zip(self.parts, self.solvers, strict=True)
         stiffness, mass = np.sum([solver.energies_at_rest(v[:, part]) for part, solver in parts], axis=0)
         return stiffness, mass
@@ -140,7 +140,7 @@ class UncoupledSolver(Eigensolver):
 
 
 def _order(eigenvalue: np.ndarray) -> np.ndarray:
-    """Order eigenvalues (S, k) by squared frequency, which is negative for a growing mode."""
+    """Order eigenvalues of each speed by squared frequency, which is negative for a growing mode."""
     sign = np.where((np.imag(eigenvalue) == 0) & (np.real(eigenvalue) > 0), -1.0, 1.0)
     return np.argsort(sign * np.abs(eigenvalue) ** 2, axis=1, kind="stable")
 
@@ -160,14 +160,14 @@ Solve = Callable[[np.ndarray], Eigen]  # a function that computes modes at given
 
 
 def solve_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> Eigen:
-    """Compute the `count` lowest modes at speeds (S,) [rad/s], as `Eigensolver.solve` does."""
+    """Compute the `count` lowest modes at speeds [rad/s], as `Eigensolver.solve` does."""
     if len(speeds) <= _FEW or solver.pencil.C.any():
         return solver.solve(speeds, count)
     return _solve_over(solver, speeds, lambda some: solver.solve(some, count))
 
 
 def eigenvalues_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> np.ndarray:
-    """Compute the eigenvalues of the `count` lowest modes at speeds (S,), shape (S, count)."""
+    """Compute the eigenvalues of the `count` lowest modes at each speed: (speeds, count)."""
     if len(speeds) <= _FEW:
         return solver.eigenvalues(speeds, count)
 
@@ -258,7 +258,7 @@ def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray, power: i
 
 
 def _align(vector: np.ndarray, mass: np.ndarray) -> np.ndarray:
-    """Give k modes (S, n, k) at S successive speeds consistent signs, or consistent phases if complex."""
+    """Give modes (speeds, coordinates, modes) consistent signs, or consistent phases if complex."""
     if not vector.size:
         return vector
     products = np.einsum("snk,snk->sk", vector[:-1], mass @ vector[1:].conj())
@@ -275,17 +275,17 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
     Parameters
     ----------
-    vectors : ndarray, shape (S, n, k)
+    vectors : ndarray, shape (speeds, coordinates, modes)
         Mode vectors at each speed, by ascending frequency; mass-normalised, or nearly so if the mass matrix
         varies with the speed.
-    mass : ndarray, shape (n, n)
+    mass : ndarray, shape (coordinates, coordinates)
         Mass matrix.
 
     Returns
     -------
-    order : ndarray of int, shape (S, k)
+    order : ndarray of int, shape (speeds, modes)
         ``order[s, i]`` is the index at speed s of the mode that is the i-th at the first speed.
-    confidence : ndarray, shape (S, k)
+    confidence : ndarray, shape (speeds, modes)
         MAC with the same mode at the speed before, minus the largest MAC of that mode with any other: 1
         is certain, 0 or less a guess.
     """

@@ -38,18 +38,18 @@ def remove_shift(
         Conservative equations.
     speeds : ndarray, shape (S,)
         Speeds [rad/s].
-    squared : ndarray, shape (S, k)
+    squared : ndarray, shape (S, modes)
         Squared frequencies plus the shift [rad2/s2].
-    v : ndarray, shape (S, n, k)
+    v : ndarray, shape (S, coordinates, modes)
         Mass-normalised modes.
-    rounding : ndarray, shape (S, k)
+    rounding : ndarray, shape (S, modes)
         Relative rounding error of `squared`.
 
     Returns
     -------
-    squared : ndarray, shape (S, k)
+    squared : ndarray, shape (S, modes)
         Squared frequencies [rad2/s2]; 0 if they are within their rounding error.
-    rounding : ndarray, shape (S, k)
+    rounding : ndarray, shape (S, modes)
         Relative rounding error of the frequencies.
     """
     spin = speeds[:, None, None] ** 2
@@ -84,9 +84,9 @@ def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) ->
     ----------
     pencil : SteadyPencil
         Conservative equations.
-    squared : ndarray, shape (S, k)
+    squared : ndarray, shape (speeds, modes)
         Squared frequencies.
-    v : ndarray, shape (S, n, k)
+    v : ndarray, shape (speeds, coordinates, modes)
         Mass-normalised modes; those of the result are too.
     """
     parted = v.copy()
@@ -97,7 +97,7 @@ def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) ->
 
 
 def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Select the modes (n, r) on which neither stiffness nor damping acts.
+    """Select the modes (columns) on which neither stiffness nor damping acts.
 
     The eigenvalue 0 is double; in general equations, a rounding error would split it by the square root of
     the error.
@@ -108,7 +108,7 @@ def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray)
         Equations with damping or gyroscopic terms; the latter do no work on a mode.
     eigenvalue : ndarray, shape (k,)
         Eigenvalues of the lowest modes without damping and gyroscopic terms [1/s].
-    v : ndarray, shape (n, k)
+    v : ndarray, shape (coordinates, k)
         Mass-normalised vectors of the lowest modes.
     """
     damping = np.abs(np.einsum("nk,nk->k", v, pencil.C @ v))
@@ -118,7 +118,7 @@ def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray)
 def insert_free_turns(
     turns: np.ndarray, s: np.ndarray, v: np.ndarray, rounding: np.ndarray, count: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Insert rigid rotations (n, r) with eigenvalue 0 into the lowest modes, after those that diverge."""
+    """Insert rigid rotations (columns) with eigenvalue 0 into the lowest modes, after those that diverge."""
     growing = int(((np.imag(s) == 0) & (np.real(s) > 0)).sum())
     zeros, unknown = np.zeros(turns.shape[1]), np.full(turns.shape[1], np.inf)
     return (
@@ -221,7 +221,7 @@ def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float
 
 
 def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
-    """Solve static equilibrium (n,) at a speed; nan if the stiffness is not positive definite."""
+    """Solve static equilibrium at a speed; nan if the stiffness is not positive definite."""
     K = pencil.K0 + speed**2 * pencil.K2
     try:
         factor = scipy.linalg.cho_factor(K)

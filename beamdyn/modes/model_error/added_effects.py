@@ -242,7 +242,7 @@ class BaseEquations:
         return assemble_over(scene, self.spaces)
 
     def embed(self, equations: Equations, vectors: np.ndarray) -> np.ndarray:
-        """Embed vectors (n, ...) in coordinates (N, ...) of extended equations; additional fields are 0."""
+        """Embed vectors (columns) in the coordinates of extended equations; additional fields are 0."""
         embedded = np.zeros((equations.size, *vectors.shape[1:]), dtype=vectors.dtype)
         for name, place in self.equations.blocks.items():
             embedded[equations.blocks[name]] = vectors[place]
@@ -253,7 +253,7 @@ class BaseEquations:
         return solver_of(self.equations)
 
     def modes(self, speed: float, eigenvalue: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute eigenvalues (m,) and modes (n, m) of these equations, nearest to given eigenvalues."""
+        """Compute eigenvalues and modes (columns) of these equations, nearest to given eigenvalues."""
         count = min(len(eigenvalue) + EXTRA_MODES, self._solver.size)
         found = self._solver.solve(np.array([speed]), count)
         order = assign(np.abs(eigenvalue[:, None] - found.eigenvalue[0][None, :]))
@@ -275,7 +275,7 @@ def match_modes(equations: Equations, speed: float, vectors: np.ndarray, count: 
         Equations of motion.
     speed : float
         Speed [rad/s].
-    vectors : ndarray, shape (n, m)
+    vectors : ndarray, shape (coordinates, m)
         Modes of other equations in these coordinates.
     count : int
         Number of modes that are computed.
@@ -305,7 +305,7 @@ def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.n
         Speed [rad/s].
     s : ndarray of complex, shape (m,)
         Eigenvalues without the effect [1/s], not 0.
-    v : ndarray, shape (n, m)
+    v : ndarray, shape (coordinates, m)
         Modes of these eigenvalues, 0 in the coordinates that the effect adds.
 
     Returns
@@ -343,7 +343,7 @@ def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarra
 
 
 def _scale(M: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Compute factors (n,) that scale the diagonal of the stiffness, or otherwise of the mass, to 1."""
+    """Compute factors that scale the diagonal of the stiffness, or otherwise of the mass, to 1."""
     size = np.where(np.diag(K) > 0, np.abs(np.diag(K)), np.abs(np.diag(M)))
     return 1 / np.sqrt(np.where(size > 0, size, 1.0))
 
@@ -385,7 +385,7 @@ def shift_critical_speed(pencil: SteadyPencil, critical: float, v: np.ndarray) -
 
 
 def buckling_mode(pencil: SteadyPencil, critical: float) -> np.ndarray:
-    """Find the mode (n,) for which the stiffness vanishes at the critical speed [rad/s]."""
+    """Find the mode for which the stiffness vanishes at the critical speed [rad/s]."""
     scale = _scale(pencil.M, pencil.K0)
     K = scale[:, None] * (pencil.K0 + critical**2 * pencil.K2) * scale
     values, vectors = np.linalg.eigh(K)

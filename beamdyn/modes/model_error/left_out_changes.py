@@ -86,13 +86,13 @@ def left_out_of_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) 
         The model.
     speeds : ndarray, shape (S,)
         Speeds [rad/s].
-    eigenvalue : ndarray of complex, shape (S, m)
+    eigenvalue : ndarray of complex, shape (S, modes)
         Eigenvalues of the modes [1/s].
 
     Returns
     -------
     LeftOutEffects
-        Relative changes (S, m), nan for a mode that does not vibrate or is unstable, with or without the
+        Relative changes (S, modes), nan for a mode that does not vibrate or is unstable, with or without the
         effect.
     """
     modes = eigenvalue.shape[1]
@@ -140,7 +140,7 @@ def _diverge(s: np.ndarray) -> np.ndarray:
 
 
 def _shifted(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Estimate eigenvalues with an effect, of modes s (m,), v (n, m) that vibrate or diverge without it."""
+    """Estimate eigenvalues with an effect, of modes s, v (columns) that vibrate or diverge without it."""
     known = vibrate(s) | _diverge(s)
     shifted = np.full(len(s), np.nan, dtype=complex)
     shifted[known] = added_effects.shift_eigenvalues(equations.steady(), speed, s[known], v[:, known])
@@ -161,11 +161,11 @@ def _say_reversal(s: np.ndarray, shifted: np.ndarray) -> str:
 def _large_deflection_change(
     model: Model, speeds: np.ndarray, eigenvalue: np.ndarray, of_bending: np.ndarray
 ) -> tuple[np.ndarray, str]:
-    """Compute changes of frequencies (S, m) by large deflection, nan if unknown, and why they are unknown.
+    """Compute changes of frequencies by large deflection, nan if unknown, and why they are unknown.
 
     Effects that exclude large deflection are omitted from both beams compared: the change is then accurate to
-    first order, and unknown for modes other than bending (S, m).  Modes of a beam in one plane keep their
-    order.  The change is 0 at rest, and if the straight beam is in equilibrium.
+    first order, and unknown for modes other than bending.  Modes of a beam in one plane keep their order.
+    The change is 0 at rest, and if the straight beam is in equilibrium.
     """
     if not bends(model):
         unstable = (np.real(eigenvalue) > 0).any(axis=1, keepdims=True) & (speeds != 0)[:, None]
@@ -192,7 +192,7 @@ def _large_deflection_change(
 def _bent_change_at(
     straight: Model, bent: Model, speed: float, eigenvalue: np.ndarray
 ) -> tuple[np.ndarray, str]:
-    """Compute relative changes (m,) by large deflection at one speed, and why some are unknown."""
+    """Compute relative changes by large deflection at one speed, and why some are unknown."""
     if not speed:
         return np.zeros(len(eigenvalue)), ""
     count, speeds = (
@@ -411,8 +411,8 @@ def left_out_with_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray
 def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> Iterator[UnlistedMode]:
     """Yield the modes that a model lacks below the highest that it lists at some speed.
 
-    A margin of 3 % above the highest allows for the accuracy of these modes.  The eigenvalues (S, m)
-    are those listed at the speeds (S,) [rad/s].
+    A margin of 3 % above the highest allows for the accuracy of these modes.  The eigenvalues (speeds, modes)
+    are those listed at the speeds [rad/s].
     """
     highest = _MARGIN * np.abs(eigenvalue).max(axis=1, initial=0.0)
     scene = without_large_deflection(model).scene
@@ -456,7 +456,7 @@ def _spaces(scene: Scene, model: Model, modes: int) -> Spaces:
 
 
 def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, count: int) -> np.ndarray:
-    """Compute angular frequencies (S, k), ascending, of modes dominated by fields of given names.
+    """Compute angular frequencies (speeds, modes), ascending, of modes dominated by fields of given names.
 
     Gyroscopic coupling with other fields is neglected, as it changes these modes little.
     """

@@ -107,49 +107,49 @@ class CurveComparison(Result):
 
     @property
     def places(self) -> np.ndarray:
-        """Index of the largest measured value of each curve, shape (C,)."""
+        """Index of the largest measured value of each curve."""
         return np.abs(self.measured).argmax(axis=0)
 
     @property
     def peak(self) -> np.ndarray:
-        """Largest measured magnitude of each curve [unit of the curve], shape (C,)."""
+        """Largest measured magnitude of each curve [unit of the curve]."""
         return np.abs(self.measured).max(axis=0)
 
     @property
     def computed_peak(self) -> np.ndarray:
-        """Largest computed magnitude of each curve at the same x [unit of the curve], shape (C,)."""
+        """Largest computed magnitude of each curve at the same x [unit of the curve]."""
         return np.abs(self.computed).max(axis=0)
 
     @property
     def deviation(self) -> np.ndarray:
-        """Largest measured minus largest computed value, over the computed one, shape (C,); inf for 0."""
+        """Largest measured minus largest computed value, over the computed one; inf for 0."""
         return _over(self.peak - self.computed_peak, self.computed_peak)
 
     @property
     def rms(self) -> np.ndarray:
-        """Root mean square of the difference, over that of the computed curve, shape (C,)."""
+        """Root mean square of the difference, over that of the computed curve."""
         return _over(_rms(self.measured - self.computed), _rms(self.computed))
 
     @property
     def is_turned(self) -> np.ndarray:
-        """Whether each measured curve fits the computed one of opposite sign far better, shape (C,)."""
+        """Whether each measured curve fits the computed one of opposite sign far better."""
         return self.rms_turned < _TURNED * self.rms
 
     @property
     def rms_turned(self) -> np.ndarray:
-        """Root mean square difference `rms` for the measured curves with opposite sign, shape (C,)."""
+        """Root mean square difference `rms` for the measured curves with opposite sign."""
         return _over(_rms(self.measured + self.computed), _rms(self.computed))
 
     @property
     def in_digits(self) -> np.ndarray:
-        """Whether curves differ, in peak and rms, by at most half of the last digit, shape (C,)."""
+        """Whether curves differ, in peak and rms, by at most half of the last digit."""
         half = self.rounding[self.places, np.arange(len(self.name))]
         within = _rms(self.measured - self.computed) <= _rms(self.rounding)
         return within & (np.abs(self.peak - self.computed_peak) <= half)
 
     @property
     def verdict(self) -> tuple[str, ...]:
-        """Verdict on each curve: "agrees", "within the model error", "outside" or "not known"; shape (C,).
+        """Verdict on each curve: "agrees", "within the model error", "outside" or "not known".
 
         Both the largest value and the root mean square of the difference must be within the bounds.  With a
         model error larger than the curve, the verdict is "not known".

@@ -52,7 +52,7 @@ class Fitting:
         The measured frequencies.
     numbers : tuple of FreeNumber
         The p numbers that may change.
-    weight : ndarray, shape (S, m)
+    weight : ndarray, shape (speeds, measured)
         Weights [Hz] by which residuals are divided.
     tolerance : float
         Relative change of variables and of the sum of squares below which a fit ends.
@@ -87,13 +87,13 @@ class Fitting:
         return found.model.discretization
 
     def scene_at(self, x: Sequence[float] | np.ndarray) -> Scene:
-        """Return the scene with the values of the free numbers that belong to variables (p,)."""
+        """Return the scene with the values of the free numbers that belong to variables."""
         pairs = zip(self.numbers, np.asarray(x, dtype=float).tolist(), strict=True)
         values = {number.path: number.number(each) for number, each in pairs}
         return with_numbers(self.start, values) if values else self.start
 
     def at(self, x: np.ndarray) -> FittedModes:
-        """Compute the modes of the scene that belongs to variables (p,)."""
+        """Compute the modes of the scene that belongs to variables."""
         self.solved[0] += 1
         return FittedModes(self, x, Model(self.scene_at(x), self.discretization))
 
@@ -104,7 +104,7 @@ class Fitting:
 
     @property
     def limits(self) -> tuple[np.ndarray, np.ndarray]:
-        """Lower and upper limits of the variables, (p,) each."""
+        """Lower and upper limits of the variables."""
         low, high = zip(*(number.limits for number in self.numbers), strict=True)
         return np.array(low), np.array(high)
 
@@ -134,17 +134,17 @@ class FittedModes:
 
     @property
     def frequency(self) -> np.ndarray:
-        """Frequencies [Hz] (S, n); 0 if a mode does not vibrate."""
+        """Frequencies [Hz] (speeds, modes); 0 if a mode does not vibrate."""
         return np.abs(np.imag(self._solved[0])) * _HZ
 
     def pairs(self) -> np.ndarray:
-        """Return the index (S, m) of each measured frequency's mode; `NO_MODE` if there is none."""
+        """Return the index (speeds, measured) of each measured frequency's mode; `NO_MODE` for none."""
         data = self.fitting.data
         rows = range(len(data.speeds))
         return np.array([pair(data.frequency[i], self.frequency[i], self._likeness(i)) for i in rows])
 
     def _likeness(self, row: int) -> np.ndarray | None:
-        """Compute the modal assurance criterion (m, n) of measured and computed shapes at a speed.
+        """Compute the modal assurance criterion of measured and computed shapes at a speed.
 
         Return None if no shapes were measured.
         """
@@ -156,20 +156,20 @@ class FittedModes:
         return likeness_of(data.shapes, vectors.T @ equations.deflection(np.minimum(xi, 1.0)))
 
     def residual(self, pairs: np.ndarray) -> np.ndarray:
-        """Compute the residuals (N,) of paired frequencies: differences divided by their weights."""
+        """Compute the residuals of paired frequencies: differences divided by their weights."""
         rows, columns = np.nonzero(pairs != NO_MODE)
         off = self.frequency[rows, pairs[rows, columns]] - self.fitting.data.frequency[rows, columns]
         return off / self.fitting.weight[rows, columns]
 
     def derivative(self, pairs: np.ndarray) -> np.ndarray:
-        """Compute derivatives (N, p) of residuals of paired frequencies with respect to the variables."""
+        """Compute derivatives (pairs, variables) of residuals of paired frequencies by the variables."""
         rows, columns = np.nonzero(pairs != NO_MODE)
         of_modes = np.array([self._changes(change) for change in self._matrix_changes])
         found = of_modes[:, rows, pairs[rows, columns]] / self.fitting.weight[rows, columns]
         return found.T.reshape(len(rows), len(self.x))
 
     def _changes(self, change: PencilChange) -> np.ndarray:
-        """Compute derivatives [Hz] (S, n) of frequencies, for one variable, from those of matrices."""
+        """Compute derivatives [Hz] of frequencies, for one variable, from those of matrices."""
         each = [np.imag(modes.derivatives(change)) * _HZ for modes in self._perturbed]
         return np.nan_to_num(np.array(each))
 
@@ -202,7 +202,7 @@ class Fitted:
     ----------
     modes : FittedModes
         Modes of the fitted scene.
-    pairs : ndarray, shape (S, m)
+    pairs : ndarray, shape (speeds, measured)
         Indices of the paired modes, as from `FittedModes.pairs`.
     cost : float
         Sum of squared residuals of the pairs.
@@ -294,7 +294,7 @@ def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> F
 
 
 def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
-    """Return variables (p,) at which fits start, those with the smallest residuals first."""
+    """Return variables at which fits start, those with the smallest residuals first."""
     from scipy.stats.qmc import LatinHypercube  # the import is inside the function because it takes long
 
     numbers = fitting.numbers

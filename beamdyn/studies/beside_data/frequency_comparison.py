@@ -108,19 +108,19 @@ class FrequencyComparison(Result):
 
     @property
     def deviation(self) -> np.ndarray:
-        """Relative deviation of each value: measured minus computed, over the computed one, shape (N,)."""
+        """Relative deviation of each value: measured minus computed, over the computed one."""
         return self.measured / self.computed - 1
 
     @property
     def verdict(self) -> tuple[str, ...]:
-        """Verdict on each value: "agrees", "within the model error", "outside" or "no mode"; shape (N,)."""
+        """Verdict on each value: "agrees", "within the model error", "outside" or "no mode"."""
         off, sure = np.abs(self.measured - self.computed), self.allowance + self.error
         each = [np.isnan(off), off <= sure, off <= sure + self.model_error]
         return tuple(np.select(each, [ALONE, AGREES, LEFT_OUT], OUTSIDE).tolist())
 
     @property
     def in_digits(self) -> np.ndarray:
-        """Whether each value differs by at most half of its last digit, shape (N,)."""
+        """Whether each value differs by at most half of its last digit."""
         return np.abs(self.measured - self.computed) <= self.rounding
 
     @property

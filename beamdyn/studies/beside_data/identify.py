@@ -153,7 +153,7 @@ class _Told:
 
     @cached_property
     def _uncertainty(self) -> np.ndarray:
-        """Standard deviation of each residual (N,), at least that for the relative uncertainty `FINEST`."""
+        """Standard deviation of each residual, at least that for the relative uncertainty `FINEST`."""
         least = FINEST * self._measured / self._fitting.weight[self.fit.pairs != NO_MODE]
         return np.maximum(np.nan_to_num(self._deviation), least)
 
@@ -168,7 +168,7 @@ class _Told:
 
     @cached_property
     def _intervals(self) -> np.ndarray:
-        """Ends (p, 2) of the confidence intervals.
+        """Ends (numbers, 2) of the confidence intervals.
 
         They are centred on the unbounded optimum, even if a bound limits a number.
         """
@@ -187,7 +187,7 @@ class _Told:
 
     @cached_property
     def _covariances(self) -> tuple[np.ndarray, np.ndarray]:
-        """Covariance and correlation (p, p) of the numbers."""
+        """Covariance and correlation matrices of the numbers."""
         C = self._information.covariance
         sizes = np.sqrt(np.diag(C))
         x = self.fit.modes.x
@@ -200,7 +200,7 @@ class _Told:
 
     @cached_property
     def _standardized(self) -> np.ndarray:
-        """Residuals (N,) divided by their own standard deviation in the fit."""
+        """Residuals divided by their own standard deviation in the fit."""
         spread = np.sqrt(np.maximum(1 - self._information.leverage, FINEST))
         return self._residual / (self._uncertainty * spread)
 
@@ -282,5 +282,5 @@ class _Told:
 
 
 def comparison_rows(fitting: Fitting, pairs: np.ndarray) -> np.ndarray:
-    """Return which of the finite measured values (N,) have a mode."""
+    """Return which of the finite measured values have a mode."""
     return (pairs != NO_MODE)[np.isfinite(fitting.data.frequency)]

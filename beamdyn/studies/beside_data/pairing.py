@@ -54,7 +54,7 @@ def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None
 
 
 def _distances(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
-    """Compute distances (m, n) of frequencies, relative to half the gap to the next mode on that side."""
+    """Compute distances of measured and computed frequencies, over half the gap to the next on that side."""
     log, order = np.log(computed), np.argsort(computed)
     apart = np.log(measured)[:, None] - log
     gaps = np.diff(log[order], prepend=log[order[0]] - _BELOW, append=log[order[-1]] + _BELOW)
@@ -65,14 +65,14 @@ def _distances(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
 
 
 def likeness_of(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
-    """Compute the modal assurance criterion (m, n) of shapes (m, P), (n, P) (Allemang 2003, eq. 1)."""
+    """Compute the modal assurance criterion (measured, computed) of shapes in rows (Allemang 2003, eq. 1)."""
     products = np.abs(measured @ computed.conj().T) ** 2
     sizes = (np.abs(measured) ** 2).sum(axis=1)[:, None] * (np.abs(computed) ** 2).sum(axis=1)
     return products / np.where(sizes == 0, 1.0, sizes)
 
 
 def likeness_of_kinds(labels: Sequence[str], kinds: np.ndarray | None, modes: int) -> np.ndarray | None:
-    """Compute likeness (m, n) from labels that mention torsion: 1 if both modes are of the same kind.
+    """Compare modes by labels that mention torsion: 1 if a measured and a computed mode are of one kind.
 
     None if no label mentions it.
     """

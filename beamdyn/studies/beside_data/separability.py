@@ -28,8 +28,8 @@ LARGEST = 1.0  # standard error of a variable of size 1 above which its number i
 FINEST = 1e-6
 # Smallest fraction of `LARGEST` that a direction must add to a number's error for the number to be listed.
 _TAKES_PART = 0.5
-# Smallest singular value used: smaller ones are replaced by this one, as the bounds of a variable are about
-# ten of its sizes apart.
+# Smallest singular value used, in place of smaller ones: the bounds of a variable are about ten times its
+# size apart.
 _BOUND = 0.1
 # Smallest relative change of a measurement along a direction for which it determines that direction.
 _TOLD = 0.05
@@ -48,7 +48,7 @@ class Information:
 
     Parameters
     ----------
-    J : ndarray, shape (N, p)
+    J : ndarray, shape (residuals, p)
         Derivatives of the residuals over their standard uncertainties.
     """
 
@@ -61,18 +61,18 @@ class Information:
 
     @cached_property
     def covariance(self) -> np.ndarray:
-        """Covariance of the variables (p, p)."""
+        """Covariance matrix of the variables."""
         _, s, V = self._parts
         return (V / s**2) @ V.T
 
     @property
     def told(self) -> np.ndarray:
-        """Whether the data determine each variable (p,)."""
+        """Whether the data determine each variable."""
         return np.sqrt(np.diag(self.covariance)) <= LARGEST
 
     @property
     def lost(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Directions (p,) that the data do not determine, and the variables (p,) concerned."""
+        """Directions that the data do not determine, and the variables concerned."""
         _, s, V = self._parts
         each = [
             (v, ~self.told & (np.abs(v) / size > _TAKES_PART * LARGEST))
@@ -82,12 +82,12 @@ class Information:
 
     @property
     def leverage(self) -> np.ndarray:
-        """Leverage (N,) of each value in its own fit: the diagonal of the hat matrix."""
+        """Leverage of each value in its own fit: the diagonal of the hat matrix."""
         U, s, _ = self._parts
         return (U[:, s > _BOUND] ** 2).sum(axis=1)
 
     def step(self, residual: np.ndarray) -> np.ndarray:
-        """Compute the step (p,) to the smallest sum of squares of the linearized problem without bounds."""
+        """Compute the step to the smallest sum of squares of the linearized problem without bounds."""
         U, s, V = self._parts
         return -V @ ((U.T @ residual) / s)
 

@@ -34,7 +34,7 @@ _VERBS = {1: "raises", -1: "lowers", 0: "does not change"}
 
 
 class _RuledOut(NamedTuple):
-    """Box of designs between two corners (p,), all with too low, or all with too high, a result."""
+    """Box of designs between two corners, all with too low, or all with too high, a result."""
 
     low: np.ndarray
     high: np.ndarray
@@ -97,7 +97,7 @@ class Proofs:
 
     @cached_property
     def _ways(self) -> list[np.ndarray | None]:
-        """Sign (p,) of the change of each target's result by each number, 1, -1 or 0; None if not known."""
+        """Sign of the change of each target's result by each number, 1, -1 or 0; None if not known."""
         search = self.search
         corners = [with_numbers(search.scene, each) for each in Designs(search.ranges.inputs).extremes()]
         known = {what: [ways(corner, what) for corner in corners] for what in QUOTIENTS}
@@ -108,7 +108,7 @@ class Proofs:
         return bool(excess < 0) == (self.search.targets[k].at_most is None)
 
     def _helps(self, k: int, excess: float) -> np.ndarray | None:
-        """Return the sign of each number's change (p,) that brings a result nearer to target k, if known."""
+        """Return the sign of each number's change that brings a result nearer to target k, if known."""
         ways = self._ways[k]
         return ways if ways is None or self._is_too_low(k, excess) else -ways
 
@@ -205,7 +205,7 @@ def _is_quotient(target: Target) -> bool:
 
 
 def _common(known: Sequence[dict[str, int]], names: Sequence[str]) -> np.ndarray | None:
-    """Return the signs (p,) of changes by numbers in several scenes; None if they differ or are not known.
+    """Return the signs of changes by numbers in several scenes; None if they differ or are not known.
 
     A number without effect in some scenes has the sign of the others.
     """

@@ -92,7 +92,7 @@ def _sides(beam: Beam) -> dict[str, int]:
 
 
 def _at_rest(scene: Scene) -> dict[str, int]:
-    """Find which numbers increase, decrease or do not change V/T.
+    """Find which numbers increase, decrease or do not change V/T, as in the module, for a frequency at rest.
 
     With a clamped root and no springs, for a given w(x/L), V is proportional to 1/L^3.  The part of sections
     in T is proportional to L, and that of a body without offset decreases at most as L^-2, by its rotation.
@@ -107,7 +107,7 @@ def _at_rest(scene: Scene) -> dict[str, int]:
 
 
 def _of_buckling(scene: Scene) -> dict[str, int]:
-    """Find which numbers increase, decrease or do not change V/G.
+    """Find which numbers increase, decrease or do not change V/G, as in the module, for buckling.
 
     G increases with R.  If R is at least the distance of all masses from the root, no part of G is negative,
     and G increases with each mass.  If only sections have mass, G is proportional to it for any R. With a

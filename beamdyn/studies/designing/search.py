@@ -68,14 +68,14 @@ class Ranges:
         return low, high, low > 0
 
     def values(self, shares: np.ndarray) -> np.ndarray:
-        """Convert fractions of the ranges to values [unit] (..., p)."""
+        """Convert fractions of the ranges to values [unit] (..., numbers)."""
         low, high, positive = self._ends
         ratio = np.where(positive, high / np.where(positive, low, 1.0), 1.0)
         found = np.where(positive, low * ratio**shares, low + (high - low) * shares)
         return np.where(shares >= 1 - _CLOSE, high, np.where(shares <= _CLOSE, low, found))
 
     def shares(self, values: np.ndarray) -> np.ndarray:
-        """Convert values to fractions (p,) of the ranges, clipped to the bounds."""
+        """Convert values to fractions of the ranges, clipped to the bounds."""
         low, high, positive = self._ends
         values = np.clip(values, low, high)
         safe = [np.where(positive, each, 1.0) for each in (values, low, high)]
@@ -83,7 +83,7 @@ class Ranges:
         return np.where(positive, of_logarithms, (values - low) / (high - low))
 
     def slopes(self, shares: np.ndarray) -> np.ndarray:
-        """Compute derivatives [unit] (p,) of the numbers with respect to their fractions of the ranges."""
+        """Compute derivatives [unit] of the numbers with respect to their fractions of the ranges."""
         low, high, positive = self._ends
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(positive, self.values(shares) * np.log(high / low), high - low)
@@ -129,7 +129,7 @@ class Search:
         return found
 
     def studied(self, asked: Asked, shares: np.ndarray) -> Study:
-        """Run the study that answers a question for designs (N, p), given as fractions of ranges."""
+        """Run the study that answers a question for designs (in rows), given as fractions of ranges."""
         values = self.ranges.values(shares)
         vary = {each.name: values[:, k] for k, each in enumerate(self.ranges.inputs)}
         of = [self.targets[k] for k in self.asked[asked]]
@@ -139,7 +139,7 @@ class Search:
             return study(self.scene, vary, **asked._asdict(), modes=modes, **how)
 
     def _answers(self, shares: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute results (nan if there is none, inf above the top speed) and relative errors (N, m)."""
+        """Compute results (nan if there is none, inf above the top speed) and relative errors of designs."""
         value = np.full((len(shares), len(self.targets)), np.nan)
         error = np.zeros(value.shape)
         for asked, targets in self.asked.items():
@@ -177,7 +177,7 @@ class Search:
         return np.array([value for value, _ in each]), np.array([error for _, error in each])
 
     def excess(self, shares: np.ndarray) -> np.ndarray:
-        """Compute by how much designs exceed the targets (N, m); see `Target.excess`."""
+        """Compute by how much designs exceed the targets (designs, targets); see `Target.excess`."""
         value, _ = self.known(shares)
         return np.array([each.excess(value[:, k]) for k, each in enumerate(self.targets)]).T
 
@@ -190,22 +190,22 @@ class Search:
 
     @property
     def designs(self) -> np.ndarray:
-        """Fractions of the ranges (N, p) of all designs computed so far."""
+        """Fractions of the ranges (designs, numbers) of all designs computed so far."""
         return np.array([np.frombuffer(key) for key in self._computed])
 
     def missed(self, shares: np.ndarray) -> np.ndarray:
-        """Compute by how much designs miss targets, (N, m), 0 below 1e-10; see `Target.missed`."""
+        """Compute by how much designs miss targets (designs, targets), 0 below 1e-10; see `Target.missed`."""
         excess = self.excess(shares)
         missed = np.array([each.missed(excess[:, k]) for k, each in enumerate(self.targets)]).T
         return np.where(missed <= _EXACT, 0.0, missed)
 
     def met(self, shares: np.ndarray) -> np.ndarray:
-        """Return which targets designs (N, p) meet within the errors of the results: shape (N, m)."""
+        """Return which targets designs (in rows) meet within the errors of the results."""
         error = self.known(shares)[1]
         return self.missed(shares) <= np.where(np.isfinite(error), error, 0.0)
 
     def aim(self, shares: np.ndarray) -> np.ndarray:
-        """Compute the objective (N,) to be minimized.
+        """Compute the objective to be minimized.
 
         It is the logarithm of a result to be minimized, or minus that of a result to be maximized; without
         such a target, the squared change of the numbers.
@@ -216,20 +216,20 @@ class Search:
         return ((shares - self.own) ** 2).sum(axis=1)
 
     def _aim_slopes(self, x: np.ndarray) -> np.ndarray:
-        """Compute the derivatives (p,) of the objective at a design (p,)."""
+        """Compute the derivatives of the objective at a design."""
         if any(each.best is not None for each in self.targets):
             return _slopes(self.aim, x)
         return 2 * (x - self.own)
 
     def ranked(self, shares: np.ndarray) -> np.ndarray:
-        """Sort designs (N, p), the best first: by their miss of the targets, then by the objective."""
+        """Sort designs (rows), the best first: by their miss of the targets, then by the objective."""
         missed = (self.missed(shares) ** 2).sum(axis=1)
         return shares[np.lexsort((self.aim(shares), missed))]
 
     # The search -------------------------------------------------------------------------------------
 
     def run(self, seed: int) -> np.ndarray:
-        """Run the search, and return the best design as fractions (p,) of the ranges."""
+        """Run the search, and return the best design as fractions of the ranges."""
         with suppress(Spent):
             replace(self, spare=len(self.own) + _CORRECTIONS)._explore(
                 seed
@@ -246,7 +246,7 @@ class Search:
         self._descend(self.ranked(self.designs)[:_STARTS])
 
     def _correct(self, x: np.ndarray) -> None:
-        """Remove a small miss of the targets at a design (p,), with steps by Newton and Broyden."""
+        """Remove a small miss of the targets at a design, with steps by Newton and Broyden."""
         missed = self.missed(x[None])[0]
         if self._is_met or missed.max() > _NEARLY:
             return
@@ -262,7 +262,7 @@ class Search:
             slopes = slopes + np.outer(own, step) / (step @ step)
 
     def _first(self, seed: int) -> np.ndarray:
-        """Return the first designs of a search (N, p): the given scene, and some over the ranges."""
+        """Return the first designs of a search, in rows: the given scene, and some over the ranges."""
         p = len(self.own)
         if p == 1:
             return np.unique(np.append(np.linspace(0, 1, _SCANNED), self.own))[:, None]
@@ -335,7 +335,7 @@ class Search:
     # Additional output ------------------------------------------------------------------------------
 
     def derivatives(self, x: np.ndarray) -> np.ndarray:
-        """Compute derivatives (m, p) of the results' logarithms with respect to the scaled numbers.
+        """Compute derivatives (results, numbers) of the results' logarithms by the scaled numbers.
 
         Each is the slope of a parabola through three designs, all within the bounds.
         """
@@ -354,7 +354,7 @@ class Search:
 
 
 def _step_within(slopes: np.ndarray, excess: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Compute the shortest step (p,) that cancels an excess; numbers that reach their bounds stay there."""
+    """Compute the shortest step that cancels an excess; numbers that reach their bounds stay there."""
     step, free = np.zeros(len(x)), np.ones(len(x), dtype=bool)
     while free.any():
         step[free] = np.linalg.lstsq(slopes[:, free], -excess - slopes[:, ~free] @ step[~free], rcond=None)[0]
@@ -367,17 +367,17 @@ def _step_within(slopes: np.ndarray, excess: np.ndarray, x: np.ndarray) -> np.nd
 
 
 def _at(function: Function) -> Callable[[np.ndarray], Any]:
-    """Turn a function of designs (N, p) into one of a single design (p,)."""
+    """Turn a function of designs (in rows) into one of a single design."""
     return lambda x: function(_within(x)[None])[0]
 
 
 def _within(x: np.ndarray) -> np.ndarray:
-    """Return fractions (p,) clipped to the ranges, and set to a bound if they differ from it by rounding."""
+    """Return fractions clipped to the ranges, and set to a bound if they differ from it by rounding."""
     return np.where(x < _AT_END, 0.0, np.where(x > 1 - _AT_END, 1.0, x))
 
 
 def _slopes(function: Function, x: np.ndarray) -> np.ndarray:
-    """Compute derivatives (..., p) of a function at a design (p,), by differences within the bounds."""
+    """Compute the derivatives of a function by the numbers of a design, by differences in the bounds."""
     x = _within(x)
     steps = np.where(x + _STEP <= 1, _STEP, -_STEP)
     values = function(np.vstack([x, x + np.diag(steps)]))

@@ -46,7 +46,8 @@ _STAGES = 8
 _FIRST, _MOST = 8, 128  # number of harmonics of the slower phase at the first attempt, and at the last
 # Largest number of periods of the faster phase that are integrated; their ends sample the slower phase.
 _PERIODS = 4096
-# Condition number of the harmonics at these ends, above which the ends do not sample the full circle.
+# Condition number of the harmonics at the ends of the periods, above which the ends do not sample the full
+# circle.
 _SPREAD = 30.0
 _RESOLVED = 1e-12  # ratio of the last harmonics to the matrix, below which the harmonics are resolved
 _GRID = 4  # number of values of the slower phase for each harmonic
@@ -111,7 +112,7 @@ def largest_exponent(scene: Scene, equations: Equations) -> LargestExponent:
 
 @dataclass(frozen=True)
 class Cocycle:
-    """Map over a period [s], as harmonics -M to M of the slower phase (2 M + 1, m, m).
+    """Map over a period [s]: matrices of the harmonics -M to M of the slower phase.
 
     `tail` is the size of the last harmonics relative to the largest.
     """
@@ -187,25 +188,22 @@ def _products(B: np.ndarray) -> np.ndarray:
 
 
 def _values(p: np.ndarray) -> np.ndarray:
-    """Compute logarithms (P, m) of the singular values of P matrices from those of their products."""
+    """Convert logarithms of the products of the first singular values to those of the singular values."""
     return np.diff(p, axis=1, prepend=0.0)
 
 
 def _apart(p: np.ndarray) -> np.ndarray:
-    """Compute logarithms (P, m - 1) of the ratio of each singular value to the next."""
+    """Compute logarithms of the ratio of each singular value to the next."""
     return -np.diff(_values(p), axis=1)
 
 
 def _over_first(p: np.ndarray) -> np.ndarray:
-    """Compute logarithms (P, m - 1) of the ratios of all but the last singular values to the first."""
+    """Compute logarithms of the ratios of all but the last singular values to the first."""
     return (_values(p) - p[:, :1])[:, :-1]
 
 
 def _turned(B: np.ndarray, angle: float) -> np.ndarray:
-    """Interpolate matrices (P, m, m) at P evenly spaced phases to phases shifted by an angle.
-
-    The method is a Fourier series.
-    """
+    """Interpolate matrices at evenly spaced phases to phases shifted by an angle, by a Fourier series."""
     orders = np.fft.fftfreq(len(B), 1 / len(B))
     factor = np.exp(1j * orders * angle)[:, None, None]
     return np.fft.ifft(np.fft.fft(B, axis=0) * factor, axis=0).real
@@ -245,7 +243,7 @@ def _fine_enough(B: np.ndarray) -> np.ndarray | None:
 
 
 def _cover(alpha: float, most: int) -> tuple[int, np.ndarray]:
-    """Return a number of periods whose ends sample all values of the slower phase, and harmonics there."""
+    """Return a number of periods whose ends sample the slower phase all around, and the harmonics there."""
     count = min(3 * (2 * most + 1), _PERIODS)
     while True:
         basis = np.exp(1j * np.outer(alpha * np.arange(count), np.arange(-most, most + 1)))
@@ -259,7 +257,7 @@ def _cover(alpha: float, most: int) -> tuple[int, np.ndarray]:
 
 
 def _over_period(system: ModalSystem, T: float, steps: int, k: int) -> np.ndarray:
-    """Integrate the map (2 n, 2 n) of the state over the k-th period of the faster phase."""
+    """Compute the map of the state (displacements, velocities) over the k-th period of the faster phase."""
     starts = T * (k + np.arange(steps) / steps)
     maps = step_maps(system, starts, T / steps, tableau(_STAGES)).step[:, :, 1:]
     return reduce(lambda before, step: step @ before, maps)

@@ -90,7 +90,7 @@ class OnGrid:
 
     Parameters
     ----------
-    value : ndarray, shape (A, B, ...)
+    value : ndarray, shape (first, second, ...)
         The function at each pair of values.
     error : float
         Estimated interpolation error of the entries to which the tolerance applies; 0 without interpolation.

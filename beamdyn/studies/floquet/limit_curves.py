@@ -55,7 +55,7 @@ class LimitTracer:
         The scenes.
     inputs : tuple of VariedInput
         The two numbers.
-    status : ndarray of str, shape (A, B)
+    status : ndarray of str, shape (first, second)
         Verdicts of the chart.
     """
 
@@ -105,7 +105,7 @@ class LimitTracer:
         return -float(_nearest(found)[0] ** 2 / 4)
 
     def _point(self, place: np.ndarray, normal: np.ndarray) -> LimitPoint:
-        """Build the point of a root; at the distance `error`, verdicts on both sides are certain."""
+        """Build the limit at a root; at its distance `error`, verdicts on both sides are certain."""
         error = next((e for e in _ERRORS if self._verdicts(place, e * normal) == (STABLE, UNSTABLE)), np.inf)
         found = self._multipliers(place)
         leaves = found.value[0, 0] if found.sign is None else _nearest(found)[1]

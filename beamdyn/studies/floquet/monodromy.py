@@ -91,14 +91,14 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
 
 
 def _scale(equations: Equations, period: float) -> np.ndarray:
-    """Return factors (2 n,) of the state: a frequency, at rest or of the period, for displacements."""
+    """Return factors of the state: for displacements a frequency, at rest or of the period; else 1."""
     frequency = np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"])))
     frequency = np.where(frequency > 0, frequency, 2 * math.pi / period)
     return np.concatenate([frequency, np.ones(equations.size)])
 
 
 def scaled_states(equations: Equations, period: float, maps: np.ndarray) -> np.ndarray:
-    """Convert maps (P, 2 n, 2 n) of states (q, q') to maps of (w q, q') with frequencies w at rest.
+    """Convert maps of states (q, q') to maps of (w q, q') with frequencies w at rest.
 
     The flux of a circuit (the time integral of its voltage) is omitted, as only its rate acts.
     """
@@ -116,7 +116,7 @@ def count_steps(K: np.ndarray, period: float, rates: tuple[float, ...]) -> int:
 
 
 def _propagate(system: ModalSystem, period: float, steps: int) -> np.ndarray:
-    """Integrate the map (2 n, 2 n) of the state (q, q') over a period, in equal steps."""
+    """Integrate the map of the state (q, q') over a period, in equal steps."""
     h = period / steps
     maps = step_maps(system, h * np.arange(steps), h, tableau(_STAGES)).step[:, :, 1:]
     return reduce(lambda before, step: step @ before, maps)

@@ -35,11 +35,11 @@ class Multipliers:
 
     Parameters
     ----------
-    value : ndarray of complex, shape (P, m)
+    value : ndarray of complex, shape (P, multipliers)
         Multipliers, the largest first.
-    error : ndarray, shape (P, m)
+    error : ndarray, shape (P, multipliers)
         Estimated errors of the multipliers.
-    sign : ndarray, shape (P, m), or None
+    sign : ndarray, shape (P, multipliers), or None
         Krein signs, of the form of undamped motion on the eigenvectors: 1 or -1; 0 if not known, as for all
         multipliers off the unit circle.  None with damping.
     period : ndarray, shape (P,)
@@ -53,12 +53,12 @@ class Multipliers:
 
     @cached_property
     def size(self) -> np.ndarray:
-        """Magnitudes of the multipliers, (P, m)."""
+        """Magnitudes of the multipliers: (matrices, multipliers)."""
         return np.abs(self.value)
 
     @cached_property
     def verdict(self) -> np.ndarray:
-        """Verdicts (P,) on the motions: "stable", "unstable" or "undecided"."""
+        """Verdicts on the motions: "stable", "unstable" or "undecided"."""
         outside = (self.size - self.error > 1).any(axis=1)
         if self.sign is None:
             stable = (self.size + self.error < 1).all(axis=1)
@@ -67,7 +67,7 @@ class Multipliers:
         return np.select([outside, stable], [UNSTABLE, STABLE], UNDECIDED)
 
     def _may_leave(self, sign: np.ndarray) -> np.ndarray:
-        """Return whether multipliers of undamped motion that meet may be off the unit circle: (P,)."""
+        """Return for each matrix whether undamped multipliers that meet may leave the unit circle."""
         reach = self.error[:, :, None] + self.error[:, None, :]
         meet = np.abs(self.value[:, :, None] - self.value[:, None, :]) <= reach
         of_one_sign = sign[:, :, None] * sign[:, None, :] > 0
@@ -77,7 +77,7 @@ class Multipliers:
 
     @cached_property
     def growth(self) -> tuple[np.ndarray, np.ndarray]:
-        """Largest growth rates (P,) and their errors [1/s]; 0 for stable motion without damping."""
+        """Largest growth rates and their errors [1/s]; 0 for stable motion without damping."""
         with np.errstate(divide="ignore"):
             rate = np.log(self.size).max(axis=1) / self.period
             most = np.log(self.size + self.error).max(axis=1) / self.period
@@ -106,7 +106,7 @@ def multipliers_of(motion: Monodromy) -> Multipliers:
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:
-    """Compute inverses of matrices (P, m, m); inf if a matrix is singular."""
+    """Compute inverses of a batch of matrices; inf if a matrix is singular."""
     try:
         return np.linalg.inv(matrix)
     except np.linalg.LinAlgError:
@@ -116,7 +116,7 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 
 
 def _krein_sign(value: np.ndarray, error: np.ndarray, right: np.ndarray, form: np.ndarray) -> np.ndarray:
-    """Compute Krein signs (P, m) of multipliers on the unit circle; 0 if the sign is not certain.
+    """Compute Krein signs of multipliers on the unit circle; 0 if the sign is not certain.
 
     It is the sign of i x^* J x, with the eigenvector x and the form J that the motion preserves.
     """

@@ -271,7 +271,7 @@ class _Grid:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape (A, B) of the chart."""
+        """Numbers of values of the two inputs: the shape of the chart."""
         return Designs(self.inputs).shape
 
     def numbers(self, place: int) -> dict[str, float]:
@@ -279,7 +279,7 @@ class _Grid:
         return Designs(self.inputs).at(*map(int, np.unravel_index(place, self.shape)))
 
     def solved(self) -> tuple[dict[str, np.ndarray], int]:
-        """Compute arrays (A, B) by name, and the number of scenes that were integrated."""
+        """Compute arrays of the chart's shape by name, and the number of scenes that were integrated."""
         if not self._keeps_ratio():
             places = range(math.prod(self.shape))
             each = self._run(judge, [self.numbers(place) for place in places])
@@ -297,7 +297,7 @@ class _Grid:
         return {name: each.reshape(self.shape) for name, each in found.items()}, integrated + len(undecided)
 
     def _keeps_ratio(self) -> bool:
-        """Return whether the period has the same number of cycles over the chart (corners, midpoints)."""
+        """Return whether the ratio of all rates is the same at corners and midpoints of the chart."""
         rows, columns = (sorted({0, n // 2, n - 1}) for n in self.shape)
         scenes = [self.scenes.at(Designs(self.inputs).at(i, j)) for i in rows for j in columns]
         rates = [np.array(rates_of(each)) for each in scenes]
@@ -365,7 +365,7 @@ class _Grid:
 
 
 def _verdicts(motion: Monodromy) -> dict[str, np.ndarray]:
-    """Return verdicts, growth, errors, multipliers and periods of P monodromy matrices, (P,) by name."""
+    """Return verdicts, growth, errors, multipliers and periods of monodromy matrices, by name."""
     found = multipliers_of(motion)
     rate, error = found.growth
     values = found.verdict, rate, error, found.size[:, 0], motion.period

@@ -122,7 +122,7 @@ def _intervals(number: SceneNumber) -> Iterator[list[tuple[float, float]]]:
 
 @dataclass(frozen=True)
 class PencilChange:
-    """Derivatives of the matrices of a `SteadyPencil` with respect to one number, each of shape (n, n)."""
+    """Derivatives of the matrices of a `SteadyPencil` with respect to one number."""
 
     M: np.ndarray
     C: np.ndarray
@@ -165,7 +165,7 @@ class PerturbedModes:
         Speed [rad/s].
     eigenvalue : ndarray, shape (k,)
         Eigenvalues s [1/s].
-    right, left : ndarray, shape (n, k)
+    right, left : ndarray, shape (coordinates, k)
         Eigenvectors v and w.
     """
 
@@ -184,7 +184,7 @@ class PerturbedModes:
         return cls(pencil, speed, eigenvalue, right, np.array(left).T)
 
     def derivatives(self, change: PencilChange) -> np.ndarray:
-        """Compute the derivatives (k,) of the eigenvalues for derivatives of the matrices."""
+        """Compute the derivatives of the eigenvalues for derivatives of the matrices."""
         return np.array(
             [
                 -change.between(self.left[:, k], self.right[:, k], s, self.speed) / self._slope(k)
@@ -195,7 +195,7 @@ class PerturbedModes:
         )
 
     def speed_derivatives(self) -> np.ndarray:
-        """Compute the derivatives (k,) of the eigenvalues with respect to the speed."""
+        """Compute the derivatives of the eigenvalues with respect to the speed."""
         p = self.pencil
         changes = (s * p.G + 2 * self.speed * p.K2 for s in self.eigenvalue)
         return np.array(
@@ -203,9 +203,9 @@ class PerturbedModes:
         )
 
     def scales(self) -> np.ndarray:
-        """Compute magnitudes (k,) of the eigenvalues' derivatives by a relative change of mass and stiffness.
+        """Bound the derivatives of the eigenvalues with respect to a relative change of mass and stiffness.
 
-        All entries of the matrices are taken with the same sign: rounding errors are relative to the result.
+        Absolute values are summed, so that nothing cancels: rounding errors are relative to this bound.
         """
         p = self.pencil
         whole = np.abs(p.K0) + self.speed**2 * np.abs(p.K2)
@@ -249,7 +249,7 @@ def _left(pencil: SteadyPencil, speed: float, s: complex, v: np.ndarray) -> np.n
 
 
 def critical_vector(pencil: SteadyPencil, speed: float) -> np.ndarray:
-    """Compute the shape (n,) in which the beam buckles at its critical speed."""
+    """Compute the shape in which the beam buckles at its critical speed."""
     return scipy.linalg.eigh(pencil.K0 + speed**2 * pencil.K2, pencil.K0, subset_by_index=[0, 0])[1][:, 0]
 
 

@@ -283,7 +283,7 @@ def _compared(
     part: Callable[[np.ndarray], np.ndarray] = np.real,
     unit: float = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute derivatives of k results with respect to n numbers, and errors, from both models: (n, k).
+    """Compute derivatives of k results by n numbers (n, k), with errors by a model and its coarser one.
 
     Parameters
     ----------

@@ -253,7 +253,7 @@ class Sensitivities(JudgedByRepeating):
 
     @property
     def relative(self) -> np.ndarray:
-        """Relative change of each result over that of the number, (n, k): 3 if it is as the number cubed.
+        """Relative change of each result over that of each number (rows): 3 if it is as the number cubed.
 
         It is 0 if the number is 0.
         """
@@ -265,18 +265,18 @@ class Sensitivities(JudgedByRepeating):
 
     @property
     def most_important(self) -> tuple[str, ...]:
-        """Name of the number with the largest relative effect on each result: shape (k,)."""
+        """Name of the number with the largest relative effect on each result."""
         size = np.nan_to_num(np.abs(self.relative), nan=-1.0)
         return tuple(self.inputs[row].name for row in size.argmax(axis=0).tolist())
 
     def judged(self, found: Sensitivities) -> np.ndarray:
-        """Return derivatives (k,) for each result's most important number: their error is stated."""
+        """Return derivatives for each result's most important number: their error is stated."""
         rows = {each.name: i for i, each in enumerate(found.inputs)}
         most = zip(self._same_answers(found).tolist(), self.most_important, strict=True)
         return np.array([np.nan if k < 0 else found.derivative[rows[name], k] for k, name in most])
 
     def _same_answers(self, found: Sensitivities) -> np.ndarray:
-        """Return, for each result, the index (k,) of the nearest result in another scene's analysis.
+        """Return, for each result, the index of the nearest result in another scene's analysis.
 
         The index is -1 if none is near.  Modes that an effect adds may be between the others.
         """

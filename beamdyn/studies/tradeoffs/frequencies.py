@@ -90,7 +90,7 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
 
 
 def sizes_of_eigenvalues(eigenvalues: np.ndarray) -> np.ndarray:
-    """Compute magnitudes of eigenvalues in ascending order, shape (S, m)."""
+    """Compute magnitudes of eigenvalues in ascending order, (speeds, modes)."""
     return np.sort(np.abs(eigenvalues), axis=-1)
 
 
