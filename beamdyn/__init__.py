@@ -92,12 +92,7 @@ if TYPE_CHECKING:
     from beamdyn.modes.setting_angles import SettingAngleLimits, setting_angle_limits
     from beamdyn.scene.beam import Beam
     from beamdyn.scene.harvester import Harvester
-    from beamdyn.scene.measured_curves import (
-        MeasuredHistory,
-        MeasuredLoads,
-        MeasuredPeaks,
-        MeasuredResponse,
-    )
+    from beamdyn.scene.measured_curves import MeasuredHistory, MeasuredLoads, MeasuredPeaks, MeasuredResponse
     from beamdyn.scene.measured_frequencies import MeasuredFrequencies
     from beamdyn.scene.motion import (
         Line,

@@ -40,11 +40,10 @@ def _solution_columns(found: Solutions) -> Columns:
     """Make the columns of the solutions: range of inputs, and residual from the wanted value, of each."""
     name = found.input.replace(".", "_")
     ends = np.concatenate([np.stack([found.values] * 2, axis=-1), found.ranges])
-    residuals = np.append(found.residuals, np.zeros(len(found.ranges)))
     return Columns(
         Column(name, ends[:, 0], found.unit),
         Column(f"{name}_to", ends[:, 1], found.unit),
-        Column("residual", residuals, found.output_unit),
+        Column("residual", np.append(found.residuals, np.zeros(len(found.ranges))), found.output_unit),
     )
 
 

@@ -218,8 +218,7 @@ def _in_words(text: str, speeds: np.ndarray | None) -> bd.MeasuredFrequencies:
     if speeds is not None and len(speeds) != 1:
         raise ValueError(f"--speeds: give one speed with --measured, or a file; there are {len(speeds)}")
     halves = [half_unit(cell) * value / float(cell) for cell, value in zip(written, values, strict=True)]
-    at = (0.0,) if speeds is None else speeds
-    return bd.MeasuredFrequencies(values, at, rounding=[halves])
+    return bd.MeasuredFrequencies(values, (0.0,) if speeds is None else speeds, rounding=[halves])
 
 
 def _with_uncertainty(

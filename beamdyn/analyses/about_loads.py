@@ -14,19 +14,9 @@ import numpy as np
 from cyclopts import Parameter
 
 import beamdyn as bd
+from beamdyn.analyses import options
 from beamdyn.analyses.about_linear_models import NO_RANDOM_INPUT, RandomInput
 from beamdyn.analyses.analysis import DRAWN, WRITTEN, Answer, AsText, analysis
-from beamdyn.analyses.options import (
-    CountOrAuto,
-    Discretization,
-    LoadQuantity,
-    SectionPoints,
-    Speed,
-    Stations,
-    Text,
-    none_given,
-    positive,
-)
 from beamdyn.analyses.results import of_loads
 from beamdyn.analyses.values import parse_quantity, parse_speeds, parse_window
 from beamdyn.common.edge.command_options import write_table
@@ -65,8 +55,8 @@ class CycleOptions:
         Write range, mean and count of each cycle into this file: .csv, .tsv, .txt or .json.
     """
 
-    cycles: LoadQuantity | None = None
-    woehler: Text | None = None
+    cycles: options.LoadQuantity | None = None
+    woehler: options.Text | None = None
     equivalent_cycles: float | None = None
     cycles_file: Annotated[Path | None, WRITTEN] = None
 
@@ -122,13 +112,16 @@ NOT_COUNTED = CycleOptions()
 # Analyses --------------------------------------------------------------------------------------------
 
 
-LoadSpeeds = Annotated[Any, AsText(lambda _, text, scene: parse_speeds(text, scene), absent=none_given)]
-End = Annotated[float | None, positive("s", absent=none_given)]
-Angle = Annotated[
-    float | None, AsText(lambda option, text, _: parse_quantity(option, text, "rad"), absent=none_given)
+LoadSpeeds = Annotated[
+    Any, AsText(lambda _, text, scene: parse_speeds(text, scene), absent=options.none_given)
 ]
-Drawn = Annotated[LoadQuantity | None, DRAWN]
-Duration = Annotated[float, positive("s", default="1 h")]
+End = Annotated[float | None, options.positive("s", absent=options.none_given)]
+Angle = Annotated[
+    float | None,
+    AsText(lambda option, text, _: parse_quantity(option, text, "rad"), absent=options.none_given),
+]
+Drawn = Annotated[options.LoadQuantity | None, DRAWN]
+Duration = Annotated[float, options.positive("s", default="1 h")]
 
 
 @analysis(
@@ -141,18 +134,18 @@ Duration = Annotated[float, positive("s", default="1 h")]
 def loads(
     scene: bd.Scene,
     *,
-    speed: Speed,
+    speed: options.Speed,
     t_end: End,
     speeds: LoadSpeeds,
-    at: Stations,
-    points: SectionPoints,
+    at: options.Stations,
+    points: options.SectionPoints,
     angle: Angle,
-    window: Text | None = None,
+    window: options.Text | None = None,
     counting: CycleOptions = NOT_COUNTED,
     quantity: Drawn = None,
-    modes: CountOrAuto | None = None,
+    modes: options.CountOrAuto | None = None,
     tolerance: float | None = None,
-    discretization: Discretization = "ritz",
+    discretization: options.Discretization = "ritz",
 ) -> Answer:
     """Forces, bending moments, strains and stresses along the span, from loads and inertia.
 
@@ -215,11 +208,11 @@ def random_loads(
     *,
     random_input: RandomInput = NO_RANDOM_INPUT,
     duration: Duration,
-    at: Stations,
-    points: SectionPoints,
+    at: options.Stations,
+    points: options.SectionPoints,
     quantity: Drawn = None,
-    modes: CountOrAuto = "auto",
-    discretization: Discretization = "ritz",
+    modes: options.CountOrAuto = "auto",
+    discretization: options.Discretization = "ritz",
 ) -> Answer:
     """Largest expected strains, stresses, moments and forces along the span for a random input.
 

@@ -53,10 +53,7 @@ def equilibrium(
     physics=None,
 )
 def branches(
-    scene: bd.Scene,
-    *,
-    top_speed: options.PositiveSpeed,
-    discretization: options.Discretization = "ritz",
+    scene: bd.Scene, *, top_speed: options.PositiveSpeed, discretization: options.Discretization = "ritz"
 ) -> bd.EquilibriumBranches:
     """Branches of equilibria over speed: where the beam buckles, and where an equilibrium turns back.
 

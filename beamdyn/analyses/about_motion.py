@@ -181,8 +181,7 @@ def best_resistance(
     tolerance
         Largest error due to omitted harmonics, relative to the sum of all lines.
     """
-    rough = _roughness(road, highest)
-    return bd.best_resistance(scene, speed, modes, tolerance, discretization, rough)
+    return bd.best_resistance(scene, speed, modes, tolerance, discretization, _roughness(road, highest))
 
 
 # Time simulation -------------------------------------------------------------------------------------

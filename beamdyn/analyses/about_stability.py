@@ -44,8 +44,7 @@ Store = Annotated[
 
 
 @analysis(
-    "beamdyn floquet examples/pulsating_wheel.toml",
-    about_scene="The scene, in a motion that repeats itself.",
+    "beamdyn floquet examples/pulsating_wheel.toml", about_scene="The scene, in a motion that repeats itself."
 )
 def floquet(
     scene: bd.Scene, *, modes: ModeCount = 3, discretization: Discretization = "ritz"

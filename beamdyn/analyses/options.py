@@ -33,9 +33,7 @@ _AT_SPEED = (
     'Speed with its unit, e.g. "50 rad/s" or "525 rpm"; default: the final speed of the scene\'s motion'
 )
 AtSpeed = Annotated[
-    float,
-    AsText(values.parse_speed, absent=final_speed),
-    Parameter(help=f"{_AT_SPEED}, or 0 without one."),
+    float, AsText(values.parse_speed, absent=final_speed), Parameter(help=f"{_AT_SPEED}, or 0 without one.")
 ]
 AtFinalSpeed = Annotated[
     float, AsText(values.parse_speed, absent=final_speed), Parameter(help=f"{_AT_SPEED}.")

@@ -254,14 +254,12 @@ def read_shapes(text: DataText, half: Half, speed: float | None) -> MeasuredFreq
     written = [re.sub(r"[^\d.]*$", "", each.split()[0]) for each in given]
     halves = [half(cell) * f / float(cell) for cell, f in zip(written, frequency, strict=True)]
     named = table.named()
-    shapes = [named[f"shape {k}"].values for k in range(1, len(given) + 1)]
-    labels = [f"shape {k}" for k in range(1, len(given) + 1)]
     return MeasuredFrequencies(
         [frequency],
         [_speed(table, speed) or 0.0],
         rounding=[halves],
-        labels=labels,
+        labels=[f"shape {k}" for k in range(1, len(given) + 1)],
         positions=named["position"].values,
-        shapes=shapes,
+        shapes=[named[f"shape {k}"].values for k in range(1, len(given) + 1)],
         source=text.path.name,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from os import PathLike
 
 import numpy as np
@@ -28,9 +29,7 @@ from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 _MOST_SPEED = 1e5  # highest speed [rad/s], 10^6 rpm: a higher one has a wrong unit
 _MOST = 40  # largest number of frequency columns
 _SPEED, _OF_ALL = "speed", "uncertainty"
-_KNOWN = {
-    _SPEED: Quantity("rad/s", least=-_MOST_SPEED, most=_MOST_SPEED),
-}
+_KNOWN = {_SPEED: Quantity("rad/s", least=-_MOST_SPEED, most=_MOST_SPEED)}
 
 
 _FREQUENCY = _SPREAD = Frequency("Hz", above=0.0)
@@ -174,15 +173,13 @@ def half_unit(cell: str) -> float:
 def _from_csv(text: DataText) -> _Read:
     known, names = _KNOWN | {_OF_ALL: _SPREAD}, {plain_name(name): name for name in (_SPEED, "uncertainty")}
     names |= {"omega": _SPEED, "rotationspeed": _SPEED, "uncertainties": _OF_ALL}
-    columns = [(stem, k) for stem in _STEMS for k in ("", *map(str, range(1, _MOST + 1)))]
-    for stem, k in columns:
+    for stem, k in product(_STEMS, ("", *map(str, range(1, _MOST + 1)))):
         name = f"{stem} {k}".rstrip()
         known[name], names[plain_name(name)] = _FREQUENCY, name
         if k:
             of_one = f"{_OF_ALL} {k}"
             known[of_one], names[plain_name(of_one)] = _SPREAD, of_one
-    may_lack = [name for name in known if name != _SPEED]
-    table = read_csv(text, known, names, may_lack, least_rows=1)
+    table = read_csv(text, known, names, [name for name in known if name != _SPEED], least_rows=1)
     _check_columns(table)
     return _as_rows(table)
 

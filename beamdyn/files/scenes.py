@@ -253,17 +253,13 @@ def read_record(path: Path, known: Mapping[str, Quantity]) -> dict[str, tuple[fl
         raise text.refusal(table.head_line, f"unknown column '{unknown}'; known are {', '.join(known)}")
     if _TIMES not in columns or len(columns) < 2:
         raise text.refusal(table.head_line, f"expected a column t [s], and one of {', '.join(known)}")
-    _check_times(table, columns[_TIMES])
-    return columns
-
-
-def _check_times(table: CsvTable, times: tuple[float, ...]) -> None:
-    """Raise an error, with the line number, if times are not evenly spaced from 0."""
+    times = columns[_TIMES]
     try:
         check_record_times("t", times)
     except InvalidValue as error:
         row = times.index(error.value) if error.value in times else 0
         raise table.text.refusal(table.lines[row], str(error)) from None
+    return columns
 
 
 def as_velocity(text: object) -> float | None:
@@ -376,5 +372,4 @@ def _speed_in(motion: Any) -> Any:
     """Return the speed in the table of a motion, or of the rotation nested in it."""
     if not isinstance(motion, Mapping):
         return motion
-    inner = motion.get("speed", motion.get("rotation"))
-    return _speed_in(inner)
+    return _speed_in(motion.get("speed", motion.get("rotation")))

@@ -54,8 +54,7 @@ def check_linear(
         scene, [speed], modes or _MODES, barred={LARGE_DEFLECTION.name: _STRAIGHT} | dict(barred)
     )
     if scene.physics.large_deflection:
-        remedy = "leave large_deflection out"
-        raise InvalidValue("physics.large_deflection", True, _STRAIGHT, remedy)
+        raise InvalidValue("physics.large_deflection", True, _STRAIGHT, "leave large_deflection out")
     return scene, speed
 
 

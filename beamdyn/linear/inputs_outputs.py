@@ -419,6 +419,5 @@ def as_observation(name: str, given: Any) -> Observation:
     if not isinstance(given, Observation):
         words = ", ".join(map(repr, _OBSERVATIONS))
         python = ", a DeflectionAt(position) or an AccelerationAt(position)"
-        objects = Named(python, ' or "deflection@20 mm"')
-        raise InvalidValue(name, given, Words(f"give {words}", objects))
+        raise InvalidValue(name, given, Words(f"give {words}", Named(python, ' or "deflection@20 mm"')))
     return given

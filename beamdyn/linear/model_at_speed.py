@@ -246,8 +246,7 @@ class ModelAtSpeed(FieldsOnly):
                 added = added + np.array([drive.accelerations.get(name, 0.0), 0.0, 0.0])
             return added
         kept = np.linalg.solve(self.K, drive.load)
-        deflection = drive.residual + self.shapes @ kept
-        load = StaticLoad(drive.accelerations, drive.force, deflection)
+        load = StaticLoad(drive.accelerations, drive.force, drive.residual + self.shapes @ kept)
         total = static_moment(self.scene, self.discretization, self.model.equations, self._root, load)
         by_kept = self._at_speed(self._moment.position, np.zeros_like(kept)) @ kept
         return np.array([self._per_moment(observation) * (total - by_kept), 0.0, 0.0])

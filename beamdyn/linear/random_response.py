@@ -17,13 +17,7 @@ from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import announced_of_plain_beam
 from beamdyn.linear import inputs_outputs, mean_square, spectra
-from beamdyn.linear.convergence import (
-    Refined,
-    check_linear,
-    evaluate_accurately,
-    evaluate_also,
-    with_forces,
-)
+from beamdyn.linear.convergence import Refined, check_linear, evaluate_accurately, evaluate_also, with_forces
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.linear.transfer import check_stable
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice

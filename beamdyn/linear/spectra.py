@@ -153,10 +153,10 @@ class PowerSpectrum:
     def rms(self) -> float:
         """Root mean square of the input [unit of the input]."""
         nodes, weights = np.polynomial.legendre.leggauss(16)
-        parts = [part for piece in self.pieces() for part in piece.divided()]
         each = (
             (p.end - p.start) / 2 * weights @ p((p.start + p.end) / 2 + nodes * (p.end - p.start) / 2)
-            for p in parts
+            for piece in self.pieces()
+            for p in piece.divided()
         )
         return math.sqrt(math.fsum(float(v) for v in each))
 

@@ -51,8 +51,7 @@ class StateSpaceWithErrors(StateSpace, lti):  # pyright: ignore[reportIncompatib
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of the lowest natural frequencies by effects left out of the model: see `Matrices`."""
-        modes = min(len(self.A) // 2, MOST_JUDGED)
-        return left_out_of_frequencies(self.scene, self.speed, modes)
+        return left_out_of_frequencies(self.scene, self.speed, min(len(self.A) // 2, MOST_JUDGED))
 
     @property
     def left_out(self) -> Mapping[str, np.ndarray]:
@@ -162,19 +161,14 @@ def _rates(model: ModelAtSpeed, loads: np.ndarray) -> _Rates:
     """Compute velocities and accelerations by loads of unit inputs (columns); a charge has only a rate."""
     n = model.equations.size
     m = model.mechanical.stop
-    M = _with_mass(model, model.M[:m, :m])
+    M = model.M[:m, :m]
+    values = np.linalg.eigvalsh(M)
+    if values[0] < _MASSLESS * values[-1]:
+        bound = "some coordinates have no mass, so that their rates are no states"
+        raise InvalidValue("modes", model.modes, bound, "give a number of modes")
     of_state = np.linalg.solve(M, -np.hstack([model.K[:m], model.C[:m, :m]]))
     of_load = np.linalg.solve(M, loads[:m])
     resistance = model.C[m:, m:]
     flow = np.linalg.solve(resistance, -model.K[m:]), np.linalg.solve(resistance, loads[m:])
     by_state = np.block([[np.zeros((m, n)), np.eye(m)], [flow[0], np.zeros((n - m, m))]])
     return _Rates((by_state, np.vstack([np.zeros_like(of_load), flow[1]])), (of_state, of_load))
-
-
-def _with_mass(model: ModelAtSpeed, M: np.ndarray) -> np.ndarray:
-    """Return the mass matrix; refuse coordinates without mass, such as shear without rotary inertia."""
-    values = np.linalg.eigvalsh(M)
-    if values[0] < _MASSLESS * values[-1]:
-        bound = "some coordinates have no mass, so that their rates are no states"
-        raise InvalidValue("modes", model.modes, bound, "give a number of modes")
-    return M

@@ -111,8 +111,7 @@ def transfer(
 def respond(model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation, s: np.ndarray) -> np.ndarray:
     """Compute the response to one harmonic drive at complex frequencies s [1/s]."""
     row, extra = model.row(observation), model.residual(observation, drive)
-    size = model.equations.size
-    step = max(1, _AT_ONCE // size**2)
+    step = max(1, _AT_ONCE // model.equations.size**2)
     q = np.concatenate([_solve(model, drive.load, s[k : k + step]) for k in range(0, len(s), step)])
     by_kept = q @ row.position + s * (q @ row.velocity) + s**2 * (q @ row.acceleration)
     total = by_kept + extra[0] + s * extra[1] + s**2 * extra[2]

@@ -185,8 +185,7 @@ class LinearLoads:
         accelerations = BaseMotion("n2").accelerations(model.scene.mount, model.speed)
         for harmonic, given in accelerations.items() if model.scene.gravity else ():
             s = 1j * harmonic * model.speed
-            load = _sum(given, vectors, unloaded)
-            q = np.linalg.solve(s**2 * model.M + s * model.C + model.K, load)
+            q = np.linalg.solve(s**2 * model.M + s * model.C + model.K, _sum(given, vectors, unloaded))
             moved = position @ q + s * (velocity @ q)
             output = model.scene.gravity * (_sum(given, rows.load, zero) + moved)
             if harmonic:

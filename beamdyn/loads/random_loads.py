@@ -294,13 +294,12 @@ def random_loads(
 
 def _tip_deflection(model: ModelAtSpeed, drive: Excitation, spectrum: PowerSpectrum) -> np.ndarray:
     """Compute the tip deflection [m] that is rarely exceeded, in each modelled direction."""
-    seen = [DeflectionAt(), DeflectionAt(direction=ACROSS)][: model.equations.planes]
     squares = [
         sum(
             partial_fractions(model, each, tip).mean_square(spectrum, h * model.speed / _TURN)
             for h, each in model.drives(drive).items()
         )
-        for tip in seen
+        for tip in [DeflectionAt(), DeflectionAt(direction=ACROSS)][: model.equations.planes]
     ]
     return _SEVERAL * np.sqrt(squares)
 

@@ -337,7 +337,6 @@ class AskedLoads:
     ) -> dict[str, Any]:
         """Build the fields of a `SpanLoads` from values and errors of the outputs at stations (last axes)."""
         by_quantity = self.outputs.split(values)
-        beyond = warn_of_elastic_limit(by_quantity["strain"])
         return {
             "x": self.stations.xi * self.scene.beam.length,
             "inboard": self.stations.inboard,
@@ -345,7 +344,7 @@ class AskedLoads:
             "scene": self.scene,
             **by_quantity,
             **self.outputs.split(errors, "_error"),
-            "warnings": (*self.notes, *warnings, *beyond),
+            "warnings": (*self.notes, *warnings, *warn_of_elastic_limit(by_quantity["strain"])),
             "provenance": Provenance.since(self.start, method, compared_with),
         }
 

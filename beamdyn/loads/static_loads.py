@@ -155,8 +155,7 @@ def static_loads(
         rounding = _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
         distance = np.abs(found - coarse)  # at some stations the difference may be small by chance
         distance = np.maximum(distance, _ALONG * distance.max(axis=1, keepdims=True))
-        error = BASES_OF_STATIC_LOADS.factor * distance + rounding
-        return _Solved(model, found, error, tip)
+        return _Solved(model, found, BASES_OF_STATIC_LOADS.factor * distance + rounding, tip)
 
     def finer(found: _Solved) -> _Solved | None:
         model = refine_model(found.model) if isinstance(discretization, str) else None
@@ -210,15 +209,7 @@ def _solve(
     equations = model.equations
     rows = span_rows(model.scene, model.discretization, equations, asked.stations)
     root = equations.root(replace(MotionSample.steady(speeds), angle=np.full(len(speeds), theta)))
-    q = _equilibria(equations.matrix(0, root), equations.load(root), speeds)
-    return rows.through(asked.outputs.matrix).at(root, q, np.zeros_like(q)), q @ equations.tips.T
-
-
-def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarray:
-    """Solve K q = load for the coordinates q in equilibrium at several speeds.
-
-    A stiffness matrix K of a speed that is not positive definite is refused.
-    """
+    K = equations.matrix(0, root)
     size = np.sqrt(np.einsum("cii->ci", np.abs(K)))
     size[size == 0] = 1.0  # trial functions without stiffness are not scaled
     scaled = K / (size[:, :, None] * size[:, None, :])
@@ -228,4 +219,5 @@ def _equilibria(K: np.ndarray, load: np.ndarray, speeds: np.ndarray) -> np.ndarr
             f"the straight beam has no stable equilibrium at {speeds[lost][0]:.6g} rad/s: rotation or its "
             "weight buckles it there or before, or it turns freely about its root"
         )
-    return np.linalg.solve(scaled, (load / size)[..., None])[..., 0] / size
+    q = np.linalg.solve(scaled, (equations.load(root) / size)[..., None])[..., 0] / size
+    return rows.through(asked.outputs.matrix).at(root, q, np.zeros_like(q)), q @ equations.tips.T

@@ -74,8 +74,7 @@ def stations_at(beam: Beam, at: Positions | None) -> SpanStations:
         xi = np.sort(np.concatenate([xi, ends[1:-1]]))
     else:
         xi = _snapped(_checked_positions(at, beam.length) / beam.length, ends)
-    twice = np.append(xi[1:] == xi[:-1], False)
-    return SpanStations(xi, twice | (xi == 1))
+    return SpanStations(xi, np.append(xi[1:] == xi[:-1], False) | (xi == 1))
 
 
 def _checked_positions(at: Positions, length: float) -> np.ndarray:

@@ -97,11 +97,6 @@ def printed_by_bmodes() -> Iterator[Comparison]:
         yield Comparison(what, "BModes 3", *numbers, "no rotary inertia (10)")
 
 
-def notes() -> Iterator[str]:
-    """Yield the notes on the table of BModes, a program for blades."""
-    yield (
-        "(10) With torsion and offsets, by the sections in the middle of the 12 elements of BModes' own "
-        "input file, as it takes them.  Those of its stations have frequencies 1.6 to 4.7 % higher: so much "
-        "are its printed numbers off by their elements.  It has no rotary inertia of sections that bend, and "
-        "takes the centre of mass from the reference axis, that of tension from the shear centre."
-    )
+def notes() -> list[str]:
+    """Return notes on the printed frequencies, numbered after those of the first paper."""
+    return load("blades")["notes"]

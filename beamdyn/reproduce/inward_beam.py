@@ -272,12 +272,11 @@ def _bent_limit(speed: float) -> tuple[float, float]:
 
 def sections(fig_6_sweep: bd.Sweep) -> dict[str, list[Comparison]]:
     """Collect all comparisons, by the titles of their tables."""
-    of_sweep = sweep_peak_comparisons(fig_6_sweep)
     found = {
         "Table 2: first natural frequency, beam pointing inward [Hz]": first_frequencies(),
         "Table 3: largest tip deflection in 20 to 30 s [mm]": largest_deflections(),
         "Table 3, continued: steady amplitude at the same speed [mm]": steady_amplitudes(),
-        "Fig. 6: peaks over speed [rad/s]": of_sweep,
+        "Fig. 6: peaks over speed [rad/s]": sweep_peak_comparisons(fig_6_sweep),
         "Fig. 7: speeds of resonance [rad/s]": resonances(),
         "Section 3.3: limits of the setting angle [deg]": limits_of_setting_angle(),
         "Section 4: speed of buckling, beam pointing inward [rad/s]": buckling_speed(),
@@ -299,47 +298,27 @@ def passage() -> tuple[float, float]:
     return float(time), first  # pyright: ignore[reportArgumentType]  (brentq returns a float)
 
 
-def notes() -> Iterator[str]:
-    """Yield notes on the tables, in the order of their numbers."""
-    limits = bd.setting_angle_limits(inward_scene(), 400.0)
-    yield (
-        "(1) The paper prints 65.231 Hz at rest; its own input gives "
-        f"{_first_frequency(inward_scene(), 0.0)[0]:.6f} Hz, as ANSYS does. The cause of the difference is "
-        "unknown."
-    )
-    yield (
-        "(2) Above the second limit the first frequency rises up to the top speed, so the limit depends on "
-        "the top speed. The paper does not state it; 150 rad/s is the end of its Fig. 6. Its 89.62 to "
-        "89.63 deg is what exactly five clamped-free modes give; with more modes the limit tends to 90 deg."
-    )
-    yield (
-        "(3) The limits are results of the linear equations outside their range: at the second limit for "
-        f"400 rad/s the rotation would bend the tip by {limits.static_deflection:.2g} lengths of the beam."
-    )
-    yield (
-        "(4) As printed in the paper. (5) Computed apart from this program, not in the paper: frequencies by "
-        "40-digit Rayleigh-Ritz and power series. A deviation '0 ± e' is within our estimated error e."
-    )
-    low, high = (MM * value for value in KNOWN["largest_deflection_exudyn"]["in_window"])
-    yield (
-        "(6) By another program, whose settings are not known. The response is sensitive to them: Exudyn, "
-        f"whose integrator damps, gives {low:.2f} to {high:.2f} mm."
-    )
-    yield "(7) Three modes and more give the digits of the paper; one and two do not."
+def notes() -> list[str]:
+    """Return notes on the tables, in the order of their numbers."""
     (time, line), (peak, _) = passage(), _peak(run())
     steady = MM * float(bd.steady_response(rolling_scene(), [SPEED], _MODES).amplitude[0])
-    yield (
-        f"(8) The {peak:.2f} mm of Table 3 are ring-down: on its way to {SPEED:g} rad/s the wheel passes "
-        f"the resonance at {line:.2f} rad/s at {time:.2f} s, and without damping the vibration excited "
-        f"there remains. The steady amplitude at {SPEED:g} rad/s is {steady:.2f} mm, {peak / steady:.1f} "
-        f"times less; with a damping ratio of {_DAMPING:g} the transient decays to it."
-    )
     angle, bends = VALUES["setting_angle_limits"]["first"][1], {"large_deflection": True}
     rest, turning = (_first_frequency(inward_scene(angle, **bends), speed)[0] for speed in (0.0, _JUDGED[0]))
-    yield (
-        "(9) Rotation bends this beam, unless it points at the axis, and the paper's equations are linear "
-        "about the straight beam: ours are those of an inextensible beam of any slope. It has the first "
-        f"limit of the paper at rest only: at {angle:g} deg its frequency does not stay, but is "
-        f"{turning - rest:.2f} Hz higher at {_JUDGED[0]:g} rad/s. From {_bent_limit(TOP)[0]:.2f} deg on it "
-        f"rises again before {TOP:g} rad/s, and at no angle does it rise first and then fall."
-    )
+    numbers = {
+        "rest": _first_frequency(inward_scene(), 0.0)[0],
+        "bent": bd.setting_angle_limits(inward_scene(), 400.0).static_deflection,
+        "exudyn": [MM * value for value in KNOWN["largest_deflection_exudyn"]["in_window"]],
+        "peak": peak,
+        "speed": SPEED,
+        "line": line,
+        "time": time,
+        "steady": steady,
+        "times": peak / steady,
+        "damping": _DAMPING,
+        "limit": angle,
+        "rise": turning - rest,
+        "judged": _JUDGED[0],
+        "second": _bent_limit(TOP)[0],
+        "top": TOP,
+    }
+    return [note.format(**numbers) for note in PAPER["notes"]]

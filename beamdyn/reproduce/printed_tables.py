@@ -104,8 +104,7 @@ def entries_of_case(case: Mapping[str, Any], discretization: str) -> Iterator[Pr
     """
     scene, printed, factor = nondimensional_scene(case), case["frequency"], case["factor"]
     modes = bd.natural_modes(scene, case["gamma"], len(printed), discretization)
-    entries = compare_modes(case["where"], printed, factor * np.abs(modes.eigenvalue), modes.error)
-    for entry in entries:
+    for entry in compare_modes(case["where"], printed, factor * np.abs(modes.eigenvalue), modes.error):
         exact, bounds = case["exact"].get(str(entry.mode), ""), None
         if exact and not scene.physics.stretch:
             found, unit = bd.frequency_bounds(scene, case["gamma"], entry.mode), 2 * math.pi * factor

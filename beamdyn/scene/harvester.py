@@ -182,7 +182,6 @@ class Harvester(FieldsOnly):
         elastic = composite(modulus, material.stiffness, h, t, sides)
         heavy = composite(density, self.density, h, t, sides)
         fibre = max(h / 2 + t - elastic.centre, elastic.centre - h / 2)
-        outer = max(fibre, h / 2 + elastic.centre)
         of_bare = {
             "mass_per_length": heavy.area - density * h,
             "axial_stiffness": elastic.area - modulus * h,
@@ -190,7 +189,7 @@ class Harvester(FieldsOnly):
             "rotary_inertia": heavy.second - density * h**3 / 12,
             "second_bending_stiffness": (elastic.area - modulus * h) * b**2 / 12,
             "second_rotary_inertia": (heavy.area - density * h) * b**2 / 12,
-            "outer_fibre": (outer - h / 2) / b,
+            "outer_fibre": (max(fibre, h / 2 + elastic.centre) - h / 2) / b,
         }
         made = {name: _added(getattr(beam, name), span, b * step) for name, step in of_bare.items()}
         free = couple(self.connection, b, t, (h + t) / 2 - elastic.centre, material, elastic.area)

@@ -172,8 +172,7 @@ def warn_of_stiffness(
         EA = axial(xi)
         speed, words = np.sqrt(EA) / np.sqrt(m), f"axial_stiffness = {EA[0]:g} N"
         thickest = np.full(33, _THICKEST * length) if fibre is None else fibre(xi)
-        name = "length / sqrt(12)" if fibre is None else "outer_fibre"
-        _warn_of_gyration(EI, EA, thickest, name)
+        _warn_of_gyration(EI, EA, thickest, "length / sqrt(12)" if fibre is None else "outer_fibre")
     if speed.min() > FASTEST:
         sentence = (
             f"{words} and mass_per_length = {m[0]:g} kg/m: waves along the beam would run at "

@@ -193,7 +193,12 @@ class Mount(OneLine):
             name: angle(name, getattr(self, name)) for name in ("setting_angle", "bending_angle", "precone")
         }
         set_fields(self, radius=not_negative("radius", self.radius, "m", remedy), **angles)
-        _check_precone(self)
+        bound = "it must be less than 90 deg: such a beam would stand along the axis of rotation"
+        refuse(abs(self.precone) >= math.pi / 2, "precone", self.precone, "rad", bound, _PRECONE["remedy"])
+        if self.precone and aligned_cos_sin(self.setting_angle) != (-1.0, 0.0):
+            bound = "only a beam that points outward has a precone"
+            remedy = "give {other} = 180 deg (pi), or leave the precone out"
+            raise InvalidValue("precone", self.precone, bound, remedy, "rad", other="setting_angle")
         for name, value in angles.items():
             warn_of_degrees(name, value)
         for name in ("root_stiffness", "second_root_stiffness"):
@@ -213,16 +218,6 @@ class Mount(OneLine):
     def root_stiffnesses(self) -> tuple[float, float]:
         """Stiffness of the root against rotation in each direction of bending [N m/rad]."""
         return self.root_stiffness, self.second_root_stiffness
-
-
-def _check_precone(mount: Mount) -> None:
-    """Refuse a precone of a beam that does not point outward, or of a quarter turn or more."""
-    bound = "it must be less than 90 deg: such a beam would stand along the axis of rotation"
-    refuse(abs(mount.precone) >= math.pi / 2, "precone", mount.precone, "rad", bound, _PRECONE["remedy"])
-    if mount.precone and aligned_cos_sin(mount.setting_angle) != (-1.0, 0.0):
-        bound = "only a beam that points outward has a precone"
-        remedy = "give {other} = 180 deg (pi), or leave the precone out"
-        raise InvalidValue("precone", mount.precone, bound, remedy, "rad", other="setting_angle")
 
 
 def _spring(name: str, value: object) -> float:

@@ -93,8 +93,9 @@ class Physics:
         for name in ("shear", "rotary_inertia", "camber", "torsion", "stretch", "large_deflection"):
             set_fields(self, **{name: flag(f"physics.{name}", getattr(self, name))})
         one_of("physics.branch", self.branch, ("straight", "bent"))
-        if self.large_deflection:
-            self._check_combination()
+        if self.large_deflection and self.camber:  # large deflection assumes sections of constant shape
+            bound = "it cannot be combined with large_deflection"
+            raise InvalidValue("physics.camber", True, bound, "leave one of the two out")
 
     def with_large_deflection(self, **chosen: Any) -> Physics:
         """Return the physics with large deflection, as analyses need that model it in any case.
@@ -109,12 +110,6 @@ class Physics:
         except InvalidValue as refusal:
             bound = "this analysis models large deflection, with which it cannot be combined"
             raise replace(refusal, bound=bound, remedy="leave it out") from None
-
-    def _check_combination(self) -> None:
-        """Refuse camber with large deflection, which assumes sections of constant shape."""
-        if self.camber:
-            bound = "it cannot be combined with large_deflection"
-            raise InvalidValue("physics.camber", True, bound, "leave one of the two out")
 
 
 @dataclass(frozen=True, repr=False)

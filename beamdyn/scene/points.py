@@ -6,18 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Annotated, Final, Literal, get_args
 
-from beamdyn.common.inputs.checks import (
-    InvalidValue,
-    amount,
-    flag,
-    moderate,
-    one_of,
-    positive,
-    real,
-    real_array,
-    refuse,
-    set_fields,
-)
+from beamdyn.common.inputs import checks
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.snapshots import ADDED_LATER
 
@@ -92,13 +81,13 @@ class TipMass:
     ] = field(default=0.0, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
-        mass, offset = amount("tip.mass", self.mass, "kg"), real("tip.offset", self.offset, "m")
-        set_fields(self, mass=mass, offset=offset)
-        set_fields(self, offset_across=real("tip.offset_across", self.offset_across, "m"))
+        mass, offset = checks.amount("tip.mass", self.mass, "kg"), checks.real("tip.offset", self.offset, "m")
+        checks.set_fields(self, mass=mass, offset=offset)
+        checks.set_fields(self, offset_across=checks.real("tip.offset_across", self.offset_across, "m"))
         required = ("inertia", "axial_inertia")
         given = () if self.transverse_inertia is None else ("transverse_inertia",)
         for name in (*required, *given):
-            set_fields(self, **{name: amount(f"tip.{name}", getattr(self, name), "kg m2")})
+            checks.set_fields(self, **{name: checks.amount(f"tip.{name}", getattr(self, name), "kg m2")})
         # Refuse a moment of inertia beyond the sum of the other two, which no rigid body has.
         moments = {
             "inertia": self.inertia,
@@ -110,7 +99,7 @@ class TipMass:
         bound = f"in a rigid body it is at most the sum of the other two, {' + '.join(moments)} = {{limit}}"
         total = sum(moments.values())
         bad = value > total * (1 + 1e-12)
-        refuse(bad, f"tip.{largest}", value, "kg m2", bound, "check all three", limit=total)
+        checks.refuse(bad, f"tip.{largest}", value, "kg m2", bound, "check all three", limit=total)
 
     @property
     def inertia_about_bending_direction(self) -> float:
@@ -158,8 +147,8 @@ class PointMass:
 
     def __post_init__(self) -> None:
         remedy = "it is the distance from the root, where a mass cannot move"
-        position = positive("point_mass.position", self.position, "m", remedy)
-        set_fields(self, position=position, mass=amount("point_mass.mass", self.mass, "kg"))
+        position = checks.positive("point_mass.position", self.position, "m", remedy)
+        checks.set_fields(self, position=position, mass=checks.amount("point_mass.mass", self.mass, "kg"))
 
 
 @dataclass(frozen=True)
@@ -198,11 +187,11 @@ class PointSpring:
     )
 
     def __post_init__(self) -> None:
-        one_of("point_spring.direction", self.direction, get_args(Direction))
+        checks.one_of("point_spring.direction", self.direction, get_args(Direction))
         remedy = "it is the distance from the root, which cannot move"
-        position = positive("point_spring.position", self.position, "m", remedy)
-        stiffness = amount("point_spring.stiffness", self.stiffness, "N/m")
-        set_fields(self, position=position, stiffness=stiffness)
+        position = checks.positive("point_spring.position", self.position, "m", remedy)
+        stiffness = checks.amount("point_spring.stiffness", self.stiffness, "N/m")
+        checks.set_fields(self, position=position, stiffness=stiffness)
 
 
 _NOTHING = (0.0, 0.0, 0.0)
@@ -248,13 +237,16 @@ class TipLoad:
 
     def __post_init__(self) -> None:
         for name, unit in (("force", "N"), ("moment", "N m")):
-            of, given = f"tip_load.{name}", real_array(f"tip_load.{name}", getattr(self, name))
+            of, given = f"tip_load.{name}", checks.real_array(f"tip_load.{name}", getattr(self, name))
             if len(given) != 3:
-                raise InvalidValue(of, getattr(self, name), "give its three components along b1, b2, b3")
-            set_fields(
-                self, **{name: tuple(moderate(f"{of}[{k}]", each, unit) for k, each in enumerate(given))}
+                raise checks.InvalidValue(
+                    of, getattr(self, name), "give its three components along b1, b2, b3"
+                )
+            checks.set_fields(
+                self,
+                **{name: tuple(checks.moderate(f"{of}[{k}]", each, unit) for k, each in enumerate(given))},
             )
-        flag("tip_load.follows", self.follows)
+        checks.flag("tip_load.follows", self.follows)
 
     @property
     def acts(self) -> bool:

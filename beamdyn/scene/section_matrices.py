@@ -121,14 +121,9 @@ class SectionMatrices(FieldsOnly):
             entries.append([_profile(name, stations, matrices[:, i, j]) for i, j in UPPER])
         return cls(*entries)
 
-    @cached_property
-    def _breakpoints(self) -> tuple[float, ...]:
-        """Breakpoints x/L of all entries."""
-        return merge_breakpoints(np.concatenate([each.breakpoints for each in (*self.stiffness, *self.mass)]))
-
     def _at_breakpoints(self, name: str) -> tuple[np.ndarray, np.ndarray]:
         """Evaluate one matrix at both ends of each segment: positions x/L and matrices (6, 6, ends)."""
-        ends = self._breakpoints
+        ends = merge_breakpoints(np.concatenate([each.breakpoints for each in (*self.stiffness, *self.mass)]))
         found = np.empty((SIZE, SIZE, 2 * (len(ends) - 1)))
         for (i, j), entry in zip(UPPER, getattr(self, name), strict=True):
             found[i, j] = found[j, i] = np.stack(entry.split(ends).end_values(), axis=1).ravel()

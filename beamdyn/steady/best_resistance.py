@@ -193,9 +193,8 @@ def sought(
         other = replace(request, scene=with_resistance(request.scene, resistance))
         tried[resistance] = float(ElectricLines.of(other).power[0])
         if road is not None:
-            asked = other.scene, electrodes_of(other.scene), other.speeds, response.stable, road
-            given = request.basis.modes, discretization, response.amplitude
-            on_road, _ = harvest_on_road(*asked, *given, compared=False)
+            with_load = replace(response, request=other)
+            on_road, _ = harvest_on_road(with_load, road, discretization, compared=False)
             tried[resistance] += float(on_road.power[0])
         return -tried[resistance]
 
@@ -210,15 +209,11 @@ def sought(
     bounds = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
     best = minimize_scalar(lost, bounds=bounds, method="bounded", options={"xatol": search.tolerance / 3})
     chosen = with_resistance(scene, 10.0 ** float(best.x))
-    found = harvested(chosen, [speed], modes, tolerance, discretization, road, search.compared)
+    found = harvested(chosen, [speed], modes, tolerance, discretization, road, compared=search.compared)
     resistances, power = np.array(sorted(tried.items())).T
     values: dict[str, Any] = {each.name: getattr(found, each.name) for each in fields(found)}
     values["provenance"] = Provenance.since(start, found.provenance.method, found.provenance.compared_with)
-    made = BestResistance(
-        **values,
-        resistances=resistances,
-        tried_power=power,
-    )
+    made = BestResistance(**values, resistances=resistances, tried_power=power)
     vars(made)["again"] = vars(found)["again"]  # the model error is computed with this resistance
     return made
 

@@ -15,12 +15,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.common.plots.harvests import (
-    HarvestPanel,
-    panel_size,
-    plot_harvest,
-    plot_harvest_panels,
-)
+from beamdyn.common.plots.harvests import HarvestPanel, panel_size, plot_harvest, plot_harvest_panels
 from beamdyn.common.results.one_line import error_at_most, number, states, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
@@ -261,18 +256,10 @@ def harvest(
 
 
 @one_blas_thread()  # the matrices are small: more threads only wait for each other
-def harvested(
-    scene: Scene,
-    speeds: np.ndarray | Sequence[float],
-    modes: int | str,
-    tolerance: float,
-    discretization: DiscretizationChoice,
-    road: RoadRoughness | None,
-    compared: bool = True,
-) -> Harvest:
-    """Compute the result of `harvest`; its errors are nan unless it is `compared` with other models."""
+def harvested(*given: Any, compared: bool = True, **named: Any) -> Harvest:
+    """Compute the result of `harvest`, from its arguments; its errors are nan unless it is `compared`."""
     start = perf_counter()
-    powers = _powers(scene, speeds, modes, tolerance, discretization, road, compared)
+    powers = _powers(*given, **named, compared=compared)
     resonances = _resonances(powers.scene, powers.speeds)
     provenance = Provenance.since(start, powers.provenance.method, _COMPARED)  # time of resonances included
     found = replace(powers, resonances=resonances, provenance=provenance)
@@ -307,10 +294,7 @@ def _powers(
     values = {name: np.where(response.stable, each, np.nan) for name, each in vars(own).items()}
     warnings, on_road, most = [*response.warnings], None, values["strain"]
     if road is not None:
-        on_road, said = harvest_on_road(
-            response.scene, electrodes, response.speeds, response.stable, road,
-            response.request.basis.modes, discretization, response.amplitude, compared,
-        )  # fmt: skip
+        on_road, said = harvest_on_road(response, road, discretization, compared)
         warnings, most = [*warnings, *said], most + SEVERAL * on_road.strain
     how = "" if road is None else f", with {SEVERAL:g} standard deviations on the road,"
     warnings += _warn_of_strain(most, response.speeds, electrodes, how)
@@ -444,13 +428,12 @@ class HarvestedPowers:
         C = equations.matrices[1].get("unity", np.zeros((equations.size, equations.size)))
         spent = np.real(np.einsum("sil,ij,sjl->sl", velocity.conj(), C, velocity)) @ lines.halves
         rows = strain_rows(equations, request.scene.beam)
-        strain = [largest_over_phases(row[None] @ q, pairs) for row in rows]
         return cls(
             power=lines.power,
             input_power=spent,
             voltage=largest_over_phases(lines.voltage[:, None], pairs),
             current=largest_over_phases(lines.current[:, None], pairs),
-            strain=np.max(strain, axis=0),
+            strain=np.max([largest_over_phases(row[None] @ q, pairs) for row in rows], axis=0),
             truncation=lines.truncation,
         )
 

@@ -37,25 +37,19 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
     largest = np.zeros(len(amplitude))
     if not len(harmonics):
         return largest
-    strong = _find_strong(np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1), harmonics)
+    size = np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1)
+    # Lines cross if their harmonics are not multiples of each other. The strongest line is constant along its
+    # crests, so that the lines that cross it decide there, however weak they are.
+    j, k = harmonics.T
+    crossing = (np.multiply.outer(j, k) != np.multiply.outer(k, j)).astype(float)
+    others, share = size * crossing[size.argmax(axis=1)], _WEAK / len(harmonics)
+    strong = np.any([each > share * each.sum(axis=1, keepdims=True) for each in (size, others)], axis=0)
     degrees = np.stack([(strong * np.abs(h)).max(axis=1) for h in harmonics.T], axis=1)
     for degree in np.unique(degrees, axis=0):  # highest |h| of strong lines: sets the number of samples
         rows = np.flatnonzero((degrees == degree).all(axis=1))
         for part in np.array_split(rows, 1 + len(rows) * int(np.prod(_grid(degree))) // _MOST_SAMPLES):
             largest[part] = _find_largest(amplitude[part], harmonics, degree)
     return largest
-
-
-def _find_strong(size: np.ndarray, harmonics: np.ndarray) -> np.ndarray:
-    """Find the strong lines, of sizes (sums, lines): among all, or among those that cross the strongest line.
-
-    Lines cross if their harmonics are not multiples of each other.  The strongest line is constant along its
-    crests, so that the lines that cross it decide there, however weak they are.
-    """
-    j, k = harmonics.T
-    crossing = (np.multiply.outer(j, k) != np.multiply.outer(k, j)).astype(float)
-    others, share = size * crossing[size.argmax(axis=1)], _WEAK / len(harmonics)
-    return np.any([each > share * each.sum(axis=1, keepdims=True) for each in (size, others)], axis=0)
 
 
 def _grid(degree: np.ndarray) -> np.ndarray:
@@ -66,8 +60,7 @@ def _grid(degree: np.ndarray) -> np.ndarray:
 def _find_largest(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) -> np.ndarray:
     """Find the largest magnitude of sums of lines, sampled with harmonics up to a degree (2,)."""
     grid = _grid(degree)
-    sampled = _sample(amplitude, harmonics, degree)
-    owner, place = _find_maxima(sampled)
+    owner, place = _find_maxima(_sample(amplitude, harmonics, degree))
     phases = (place + _OFFSET) * (2 * np.pi / grid)
     best = np.zeros(len(amplitude))
     for _ in range(_MOST_STEPS):

@@ -145,20 +145,14 @@ def _fourier_coefficients(samples: np.ndarray) -> np.ndarray:
 
 def list_harmonics(spectrum: np.ndarray) -> set[Pair]:
     """List the harmonics (j, k) that are not 0 at some speed."""
-    index = _indices(spectrum)
-    return {(int(index[a]), int(index[b])) for a, b in np.argwhere(spectrum.any(axis=0))}
-
-
-def _indices(spectrum: np.ndarray) -> np.ndarray:
-    """List the harmonic number at each index of an axis of a spectrum."""
     N = spectrum.shape[-1]
-    return (np.arange(N) + N // 2) % N - N // 2
+    index = (np.arange(N) + N // 2) % N - N // 2
+    return {(int(index[a]), int(index[b])) for a, b in np.argwhere(spectrum.any(axis=0))}
 
 
 def select_harmonics(spectrum: np.ndarray, pairs: np.ndarray) -> np.ndarray:
     """Select harmonics (..., 2) of a spectrum; 0 where its grid has no such harmonic."""
-    half = spectrum.shape[-1] // 2
-    inside = (np.abs(pairs) < half).all(axis=-1)
+    inside = (np.abs(pairs) < spectrum.shape[-1] // 2).all(axis=-1)
     j, k = np.moveaxis(np.where(inside[..., None], pairs, 0), -1, 0)
     return np.where(inside, spectrum[:, j, k], 0)
 

@@ -16,9 +16,9 @@ from beamdyn.linear.mean_square import check_damped, parametric_term
 from beamdyn.linear.random_response import rms_by, root_mean_squares
 from beamdyn.linear.spectra import RoadRoughness, random_input, warn_of_band
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.scene.harvester import Electrodes
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import list_speeds, warn_of_deflection
+from beamdyn.steady.response import SteadyResponse
 
 SEVERAL = 3.0  # number of standard deviations that a random response rarely exceeds
 _LARGE = 0.01  # relative change of the root mean square by the parametric term above which a warning is given
@@ -76,17 +76,9 @@ def check_road(scene: Scene, road: object) -> None:
 
 
 def harvest_on_road(
-    scene: Scene,
-    electrodes: Electrodes,
-    speeds: np.ndarray,
-    stable: np.ndarray,
-    roughness: RoadRoughness,
-    modes: int | None,
-    discretization: DiscretizationChoice,
-    amplitude: np.ndarray,
-    compared: bool = True,
+    response: SteadyResponse, roughness: RoadRoughness, discretization: DiscretizationChoice, compared: bool
 ) -> tuple[RoadHarvest, list[str]]:
-    """Compute the harvest on a random road at S speeds with stable motion, and warnings.
+    """Compute the harvest on a random road at S speeds with a stable steady response, and warnings.
 
     Unless it is `compared` with other models, its errors are nan, and there are no warnings about the road.
 
@@ -95,12 +87,14 @@ def harvest_on_road(
     InvalidValue
         If the scene has no rolling wheel, or a mode is not damped.
     """
-    R = electrodes.resistance
+    scene, speeds, modes = response.scene, response.speeds, response.request.basis.modes
+    assert scene.beam.electrodes is not None
+    R = scene.beam.electrodes.resistance
     outputs = (HarvestedVoltage() if R else HarvestedCurrent(), LayerStrain(), DeflectionAt())
     rms, error = np.full((2, len(outputs), len(speeds)), np.nan)
     rms[:, speeds == 0], error[:, speeds == 0] = 0.0, 0.0
     change, missed = np.zeros(len(speeds)), np.zeros(len(speeds), dtype=bool)
-    for k in np.flatnonzero(stable & (speeds != 0)).tolist():
+    for k in np.flatnonzero(response.stable & (speeds != 0)).tolist():
         speed = float(speeds[k])
         drive, density = random_input(scene, speed, roughness, None)
         if not compared and modes is not None:
@@ -120,31 +114,20 @@ def harvest_on_road(
     road = RoadHarvest(
         roughness, voltage * current, voltage, current, strain, deflection, relative, *error[1:]
     )
-    return road, [*_warnings(scene, road, speeds, change, missed, amplitude)]
+    return road, [*_warnings(response, road, change, missed)]
 
 
 def _warnings(
-    scene: Scene,
-    road: RoadHarvest,
-    speeds: np.ndarray,
-    change: np.ndarray,
-    missed: np.ndarray,
-    amplitude: np.ndarray,
+    response: SteadyResponse, road: RoadHarvest, change: np.ndarray, missed: np.ndarray
 ) -> Iterator[str]:
     """Yield warnings of large deflection, the omitted parametric term, and resonances missed by the road."""
-    reached = np.nan_to_num(amplitude + SEVERAL * road.deflection)
-    yield from warn_of_deflection(reached, scene.beam.length, speeds)
+    speeds, reached = response.speeds, np.nan_to_num(response.amplitude + SEVERAL * road.deflection)
+    yield from warn_of_deflection(reached, response.scene.beam.length, speeds)
     if change.max() > _LARGE:
         most = "without limit" if np.isinf(change.max()) else f"by up to {change.max():.0%}"
         said = "on the road the parametric term that is left out would raise the root mean square "
-        where = list_speeds(speeds, change > _LARGE)
-        yield Statement(
-            f"{said}{most}, at ",
-            where,
-            kind=LIMITS,
-            quantity="rms by the parametric term",
-            value=change.max(),
-        )
+        said = f"{said}{most}, at ", list_speeds(speeds, change > _LARGE)
+        yield Statement(*said, kind=LIMITS, quantity="rms by the parametric term", value=change.max())
     if missed.any():
         where = list_speeds(speeds, missed)
         lacking = "the road lacks a spatial frequency that excites the first resonance, at "

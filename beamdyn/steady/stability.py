@@ -75,8 +75,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     """
     A, periodic = _first_order(system)
     sigma, R = _solve_mean(system, A)
-    scale = np.abs(sigma).max(axis=1)
-    rate, error = _largest_real_part(sigma, scale), np.zeros(len(A))
+    rate, error = _largest_real_part(sigma, np.abs(sigma).max(axis=1)), np.zeros(len(A))
     if not system.coupling:
         return rate, error
     singular = np.abs(sigma).min(axis=1) == 0

@@ -177,8 +177,7 @@ def choose_vibrating(
     except NoEquilibrium:
         pass
     from_rest = replace(scene, physics=replace(scene.physics, branch="straight"))
-    at_rest = choose_model(from_rest, discretization, np.zeros(1), modes)
-    rough = at_rest.of(scene)
+    rough = choose_model(from_rest, discretization, np.zeros(1), modes).of(scene)
     found = speeds[np.isfinite(find_equilibria(rough, speeds)).all(axis=1)]
     return choose_model(scene, discretization, found, modes) if found.size else rough
 

@@ -106,8 +106,7 @@ class AnswerArrays:
             # ones.
             noted = self._cautions.setdefault(caution.kind, [])
             noted.append((place[0].start, place[1].start, caution))
-            worst = min(noted, key=lambda each: (-each[2].weight, *each[:2]))
-            self._cautions[caution.kind] = [worst]
+            self._cautions[caution.kind] = [min(noted, key=lambda each: (-each[2].weight, *each[:2]))]
             self._counts[caution.kind] = self._counts.get(caution.kind, 0) + caution.count
 
     @property

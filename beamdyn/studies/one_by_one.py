@@ -61,8 +61,7 @@ class SpeedAnswer(NamedTuple):
     @property
     def is_warned(self) -> np.ndarray:
         """Whether a warning applies at each speed."""
-        everywhere = np.full(len(self.value), bool(self.warnings))
-        return everywhere if self.warned is None else self.warned
+        return np.full(len(self.value), bool(self.warnings)) if self.warned is None else self.warned
 
 
 @dataclass(frozen=True)
@@ -122,8 +121,7 @@ def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.nda
     except _FAILURES as error:
         if len(speeds) == 1:
             shape = 1, question.numbers
-            states = np.full(shape, REFUSED)
-            nothing = np.full(shape, np.nan), np.full(shape, np.inf), states
+            nothing = np.full(shape, np.nan), np.full(shape, np.inf), np.full(shape, REFUSED)
             return SpeedAnswer(*nothing, warnings=(), refusals=(str(error),))
     return _together([_answer(question, design, speeds[[i]]) for i in range(len(speeds))])
 

@@ -141,7 +141,9 @@ class Study(StatesModelError):
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of the result by neglected effects, at the designs of `left_out_places` (first axis)."""
-        return join_effects([self.left_out_at(*place) for place in self.left_out_places], self._numbers)
+        return join_effects(
+            [self.left_out_at(*place) for place in self.left_out_places], len(self.labels) or 1
+        )
 
     @cached_property
     def left_out_places(self) -> tuple[tuple[int, ...], ...]:
@@ -151,8 +153,7 @@ class Study(StatesModelError):
         take long to compute, only the design with the largest result.
         """
         if self.question.kind.needs_motion:
-            known = np.isfinite(self.value)
-            at = [np.nanargmax(self.value)] if known.any() else []
+            at = [np.nanargmax(self.value)] if np.isfinite(self.value).any() else []
         else:
             ends = [np.array([0, n - 1]) for n in self.shape[:_MOST_AXES]]
             corners = np.ravel_multi_index(
@@ -165,10 +166,6 @@ class Study(StatesModelError):
         """Compute changes of the result of a design by neglected effects; None if it has no result."""
         design = self.design(*place)
         return left_out_of_design(self.question, with_numbers(self.scene, design), design)
-
-    @property
-    def _numbers(self) -> int:
-        return len(self.labels) or 1
 
     def model_warnings(self, tolerance: float | None = None) -> list[Statement]:
         """Return warnings of a model error above a tolerance, or 1 %, with the design where it is largest."""
@@ -261,7 +258,11 @@ class Study(StatesModelError):
         shown = []
         for each in self.inputs if self.combine == "product" else self.inputs[:1]:
             unit = self.typed_units.get(each.name) or self.unit_shown(each.unit, "m")
-            present = _present(self.scene, each.name)
+            if each.name == SPEED:
+                value = None if self.scene.motion is None else self.scene.motion.final_speed
+            else:
+                value = number_at(self.scene, each.name)
+            present = None if value is None or not np.isfinite(value) else value
             values, present = unit.of(each.values), present and unit.of(present)
             shown.append(MapInput(each.in_words, unit.name, values, present))
         return shown
@@ -287,15 +288,6 @@ class Study(StatesModelError):
         along = np.moveaxis(speeds.reshape(*(1,) * (len(self.shape) - 1), -1), -1, place) / (2 * np.pi)
         lines = lines_of(self.scene, float(speeds.max()))
         return {line.name: line.multiple * along for kind, line in lines if kind == "forced"}
-
-
-def _present(scene: Scene, name: str) -> float | None:
-    """Return the value of an input in the scene; None if it has none, or if it varies along the beam."""
-    if name == SPEED:
-        value = None if scene.motion is None else scene.motion.final_speed
-    else:
-        value = number_at(scene, name)
-    return None if value is None or not np.isfinite(value) else value
 
 
 _REASONS = {

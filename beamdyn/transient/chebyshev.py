@@ -53,7 +53,7 @@ def to_part(count: int, start: float, end: float) -> np.ndarray:
     return _to_coefficients(count) @ T
 
 
-def chebyshev_coefficients(values: np.ndarray) -> np.ndarray:
+def expand(values: np.ndarray) -> np.ndarray:
     """Compute Chebyshev coefficients of functions from their values at P extrema, along the first axis."""
     P = len(values)
     return values if P == 1 else (_to_coefficients(P) @ values.reshape(P, -1)).reshape(values.shape)

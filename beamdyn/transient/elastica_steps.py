@@ -15,6 +15,7 @@ In shapes of arrays, n counts coordinates, N steps, and s nodes in each.
 from __future__ import annotations
 
 import math
+from functools import partial
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -72,8 +73,8 @@ def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float)
         return None
     still = np.zeros((_TIMES_COMPARED, system.size))
     # Times are unevenly spaced, so that they do not coincide with any period of the forces.
-    times = t_end * np.sqrt(np.linspace(0, 1, len(still)))
-    force = system.residual(system.carrier(system.root(times)), q, still, still)
+    carrier = system.carrier(system.root(t_end * np.sqrt(np.linspace(0, 1, len(still)))))
+    force = system.residual(carrier, q, still, still)
     stiffness, size = np.abs(system.elastica.beam.stiffness), np.abs(q[0])
     # Equilibria are known up to rounding of the coordinates, which means a large force in a stiff mode.
     if (np.abs(force) > _BALANCE * ((stiffness @ size).max() + np.diag(stiffness) * size.max())).any():
@@ -97,9 +98,8 @@ def attempt_elastica(
 
     def run(stages: int, like: tuple[Segment, ...] = ()) -> tuple[Segment, ...]:
         known = iter(like)
-        return chain_segments(
-            edges, steps, y0, lambda *step: propagate_elastica(system, *step, stages, next(known, None))
-        )
+        one = partial(propagate_elastica, system, stages=stages)
+        return chain_segments(edges, steps, y0, lambda *step: one(*step, like=next(known, None)))
 
     try:
         coarse = run(STAGES)

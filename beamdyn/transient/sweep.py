@@ -145,8 +145,7 @@ class Sweep(StatesModelError):
     @property
     def left_out_speeds(self) -> np.ndarray:
         """Speed of the largest peak [rad/s], for which the model error is computed: (1,), or (0,)."""
-        known = np.isfinite(self.peaks).any()
-        return self.speeds[[np.nanargmax(self.peaks)]] if known else np.empty(0)
+        return self.speeds[[np.nanargmax(self.peaks)]] if np.isfinite(self.peaks).any() else np.empty(0)
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:

@@ -256,8 +256,7 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
     # Changes of the load's slope change displacements in proportion to the cube of the step size.
     kinds = steps.h, steps.h**3 * np.maximum.reduceat(bend, steps.first)
     worst = np.unique([np.argsort(kind)[-_MOST_OF_A_KIND:] for kind in kinds])
-    spread = choose_checked_steps(count, most)
-    for chosen, represented in ((spread, count), (worst, len(worst))):
+    for chosen, represented in ((choose_checked_steps(count, most), count), (worst, len(worst))):
         batches = np.array_split(chosen, -(-int(steps.counts[chosen].sum()) // _BATCH))
         found = [_check_batch(system, segment, batch, outputs) for batch in batches if len(batch)]
         local = np.concatenate([each[0] for each in found])

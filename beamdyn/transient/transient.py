@@ -170,8 +170,7 @@ class Transient(StatesModelError):
     def with_warnings(self, more: tuple[str, ...]) -> Transient:
         """Return a copy with further warnings, which keeps the refined run if it has been computed."""
         copy = replace(self, warnings=(*self.warnings, *more))
-        computed = {name: self.__dict__[name] for name in _COMPUTED if name in self.__dict__}
-        copy.__dict__.update(computed)
+        copy.__dict__.update({name: self.__dict__[name] for name in _COMPUTED if name in self.__dict__})
         return copy
 
     def distance_from(self, other: Transient) -> float:

@@ -19,15 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beamdyn.transient import gauss
-from beamdyn.transient.chebyshev import (
-    NEGLIGIBLE,
-    Polynomials,
-    chebyshev_coefficients,
-    extrema,
-    polynomials,
-    to_part,
-)
+from beamdyn.transient import chebyshev, gauss
 
 _POINTS = (25, 37)  # odd numbers of Chebyshev points in a segment of changing speed that are tried in turn
 # Smallest number of steps per Chebyshev point for which interpolation is cheaper than solving every step.
@@ -198,9 +190,9 @@ class _Expansion:
         The series at the Chebyshev points.
     """
 
-    maps: list[Polynomials]
-    X0: Polynomials
-    Y: Polynomials
+    maps: list[chebyshev.Polynomials]
+    X0: chebyshev.Polynomials
+    Y: chebyshev.Polynomials
     ratio: np.ndarray
     point: _StepMapSeries
 
@@ -211,7 +203,7 @@ class _Expansion:
         Returns None if the polynomials through these points are not accurate enough after all steps.
         """
         system, first, h, count, table, accuracy = steps
-        begin = first + (count - 1) * h * (1 + extrema(points)) / 2
+        begin = first + (count - 1) * h * (1 + chebyshev.extrema(points)) / 2
         point = _StepMapSeries.at(system, begin, h, table)
         e, _ = system.scalars(np.linspace(first, first + count * h, _SAMPLES)[1:-1])
         largest, ratio = _LARGEST_SAMPLED * np.abs(e).max(axis=0), point.every(3).ratio()
@@ -220,20 +212,20 @@ class _Expansion:
         orders = point.constant(), point.first(), point.every(2).second()
         monomials = _monomials_by_order(np.repeat(largest, len(table.c))[None])
         for k, (order, factor) in enumerate(zip(orders, monomials, strict=True)):
-            values = chebyshev_coefficients(order)
+            values = chebyshev.expand(order)
             size = (np.abs(values * (rows[:, None] * columns)).max(axis=(2, 3)) * factor).sum(axis=1)
             if len(size) > 1 and size[-1] > allowed:  # more Chebyshev points are needed
                 return None
             rough = k > 0 and size.sum() * _SINGLE_ROUNDING <= allowed
-            maps.append(Polynomials(values, size, allowed).shortened(rough))
+            maps.append(chebyshev.Polynomials(values, size, allowed).shortened(rough))
         change = float(ratio @ largest)  # ratio of the first-order change to the unperturbed map
-        X0, Y = chebyshev_coefficients(point.X0), chebyshev_coefficients(point.Y)
+        X0, Y = chebyshev.expand(point.X0), chebyshev.expand(point.Y)
         # Conversion from accelerations to displacements.
         forces = np.tile(rows[point.size :] ** 2, len(table.c))
         size = np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2))
-        terms = Polynomials(X0, size, min(NEGLIGIBLE * accuracy, 1.0) * size.max())
+        terms = chebyshev.Polynomials(X0, size, min(chebyshev.NEGLIGIBLE * accuracy, 1.0) * size.max())
         size, share = np.abs(Y).max(axis=(1, 2)), accuracy / max(change, accuracy)
-        varied = Polynomials(Y, size, min(NEGLIGIBLE * share, 1.0) * size.max())
+        varied = chebyshev.Polynomials(Y, size, min(chebyshev.NEGLIGIBLE * share, 1.0) * size.max())
         rough = change * _SINGLE_ROUNDING <= accuracy
         return cls(maps, terms.shortened(rough=False), varied.shortened(rough), ratio, point)
 
@@ -243,7 +235,7 @@ class _Expansion:
         Fewer polynomials suffice for this part than for all steps.
         """
         parts = *self.maps, self.X0, self.Y
-        local = to_part(max(len(part.values) for part in parts), start, end)
+        local = chebyshev.to_part(max(len(part.values) for part in parts), start, end)
         *maps, X0, Y = (part.over(local) for part in parts)
         return _Block(tuple(maps), X0, Y, self.point)
 
@@ -259,7 +251,7 @@ class _Block:
 
     def polynomials(self, x: np.ndarray) -> np.ndarray:
         """Evaluate the p Chebyshev polynomials that the block needs, at x in [-1, 1]: p columns."""
-        return polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
+        return chebyshev.polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
         """Compute maps of steps from the polynomials' values T at their starts, and from their factors e."""

@@ -153,13 +153,9 @@ class CaliperAnswer(planar.PlanarAnswer):
         """Warnings of the stroke, of friction that holds the brake, and of the force of the hand."""
         f = self.friction
         held = [f.message] if f and f.has_answer and f.status != "determined" else []
-        hard = [f"hand, {self._verdict}"] if passes("bicycle", self.run.finger_force) else []
+        hand = "bicycle", self.run.finger_force
+        hard = [f"hand, {verdict(*hand)}"] if passes(*hand) else []
         return tuple(map(in_files, (*self.run.warnings, *held, *hard)))
-
-    @property
-    def _verdict(self) -> str:
-        """One sentence that compares the hand's force with the limit of the standard."""
-        return verdict("bicycle", self.run.finger_force)
 
     @property
     def error(self) -> float:
@@ -224,7 +220,8 @@ class CaliperAnswer(planar.PlanarAnswer):
                 f"{self._assumed()}."
             )
             shown.append(self._doubt())
-        return [*shown, f"Hand, {self._verdict}.", self._diagnosis(run.message, run.virtual_work)]
+        hand = verdict("bicycle", self.run.finger_force)
+        return [*shown, f"Hand, {hand}.", self._diagnosis(run.message, run.virtual_work)]
 
     def _assumed(self) -> str:
         """State which dimensions of the vehicle are assumed to be those of a usual bicycle."""

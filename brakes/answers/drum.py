@@ -15,7 +15,14 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.screens.screen_parts import Handle
 from brakes.answers.base import Answer
 from brakes.answers.rubbing import RubbingAnswer, RubbingType, heat_outputs
-from brakes.answers.tables import list_outputs, outputs_table, resultant, take_fields, take_from
+from brakes.answers.tables import (
+    list_outputs,
+    outputs_table,
+    resultant,
+    take_fields,
+    take_from,
+    take_from_each,
+)
 from brakes.config.drum import DrumInput
 from brakes.drawings.drum import charts_of, drawing_of
 from brakes.drawings.sketches import drum_sketch
@@ -35,11 +42,8 @@ _SHOE = (
 
 def _outputs(shoes: int) -> tuple[Output, ...]:
     """Describe all outputs of a brake with `shoes` shoes; names of a shoe's numbers end in its index."""
-    return take_from(lambda answer: answer.result, _WHOLE) + tuple(
-        Output(f"{o.name}_{i + 1}", f"{o.words}, shoe {i + 1}", o.of, o.unit, o.scale)
-        for i in range(shoes)
-        for o in take_from(lambda answer, i=i: answer.result.shoes[i], _SHOE)
-    )
+    whole = take_from(lambda answer: answer.result, _WHOLE)
+    return whole + take_from_each(lambda answer: answer.result.shoes, shoes, "shoe", _SHOE)
 
 
 @dataclass(frozen=True)

@@ -110,14 +110,10 @@ class _Designs:
         return said or (f"{words}: never" if np.isinf(made.found[0][0]) else f"there is no {words}")
 
     def _sweep(self, x: np.ndarray) -> Any:
-        axis = self.axis
-        values = np.array([_in_si(axis.input.quantity, each, axis.unit) for each in x.tolist()])
-        asked = replace(self.asked, axes=[replace(axis, given=x, values=values)])
+        unit, convert = self.axis.unit, self.axis.input.quantity.convert
+        values = np.array([convert(f"{each!r} {unit}" if unit else each) for each in x.tolist()])
+        asked = replace(self.asked, axes=[replace(self.axis, given=x, values=values)])
         return self.brake.sweep_cases(asked, [self.output, ERROR])[0]
-
-
-def _in_si(quantity: Quantity, value: float, unit: str) -> float:
-    return quantity.convert(f"{value!r} {unit}" if unit else value)
 
 
 def _wanted(outputs: Sequence[Output], text: str) -> tuple[Output, float, float, str]:

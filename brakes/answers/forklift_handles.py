@@ -70,7 +70,6 @@ def duo_servo_handles(motion: ShoeMotion, progress: float) -> list[Handle]:
     tip, adjuster = (_place_drawn(motion, progress, getattr(g, name)) for name in ("tip", "adjuster"))
     contact = _place_drawn(motion, progress, _contact_at_rest(motion))
     tilt, r = float(g.face_tilt), float(g.drum_radius)
-    face = tip + 0.1 * r * np.array([np.sin(tilt), np.cos(tilt)])
     return [
         Handle("drum radius", (0.0, r), lambda x, y: {"brake.drum_radius": y}),
         Handle("tip of the shoe", _pair(tip), partial(_find_pin, motion, progress, "tip")),
@@ -78,7 +77,7 @@ def duo_servo_handles(motion: ShoeMotion, progress: float) -> list[Handle]:
         Handle("contact of the lining", _pair(contact), partial(_find_contact, motion, progress)),
         Handle(
             "tilt of the piston's face",
-            _pair(face),
+            _pair(tip + 0.1 * r * np.array([np.sin(tilt), np.cos(tilt)])),
             lambda x, y: {"brake.face_tilt": float(np.arctan2(x - tip[0], y - tip[1]))},
         ),
     ]

@@ -14,7 +14,7 @@ from beamdyn.common.edge.input_sweep import Output
 from beamdyn.common.inputs.checks import InvalidValue
 from brakes.answers.base import Answer
 from brakes.answers.rubbing import RubbingAnswer, RubbingType, heat_outputs
-from brakes.answers.tables import list_outputs, take_fields, take_from
+from brakes.answers.tables import list_outputs, take_fields, take_from, take_from_each
 from brakes.config.machine import MachineInput, file_of
 from brakes.drawings import annulus, band, block, sliding
 from brakes.drawings.machine import charts_of
@@ -33,8 +33,7 @@ from brakes.machines import (
 )
 
 _WHOLE = take_fields(
-    MachineResult,
-    "torque c_star c_star_slope force peak_pressure radius locking_friction margin error",
+    MachineResult, "torque c_star c_star_slope force peak_pressure radius locking_friction margin error"
 )
 _LINING = take_fields(LiningResult, "torque peak_pressure")
 Draw = Callable[[MachineResult], Drawing]
@@ -51,12 +50,8 @@ def _of_lining(brake: Machine) -> tuple[Output, ...]:
 
 def _outputs(brake: Machine) -> tuple[Output, ...]:
     """Describe all outputs of a brake; those of a lining have names that end in its number."""
-    count = len(brake.linings(0.0, False))
-    return take_from(lambda answer: answer.result, _WHOLE) + tuple(
-        Output(f"{o.name}_{i + 1}", f"{o.words}, lining {i + 1}", o.of, o.unit, o.scale)
-        for i in range(count)
-        for o in take_from(lambda answer, i=i: answer.result.linings[i], _of_lining(brake))
-    )
+    whole, count = take_from(lambda answer: answer.result, _WHOLE), len(brake.linings(0.0, False))
+    return whole + take_from_each(lambda answer: answer.result.linings, count, "lining", _of_lining(brake))
 
 
 @dataclass(frozen=True)

@@ -21,14 +21,7 @@ from brakes.answers import planar
 from brakes.answers.tables import SCALES
 from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import MechanismInput
-from brakes.drawings.mechanism import (
-    loads_over_stroke,
-    mechanism_figure,
-    open_and_closed,
-    travel_axis,
-    with_lock,
-    with_points,
-)
+from brakes.drawings import mechanism as drawings
 from brakes.planar import Equilibrium, Mechanism, assemble, solve, solve_with_friction, stroke
 from brakes.planar.system import join_names
 
@@ -230,7 +223,7 @@ class MechanismAnswer(planar.PlanarAnswer):
             forces.
         """
         ((drawn,),) = self.drawings(place or 0.0)
-        return mechanism_figure(drawn, self.charts(place or 0.0))
+        return drawings.mechanism_figure(drawn, self.charts(place or 0.0))
 
     def drawings(self, place: float) -> Rows:
         """Make the drawing of the mechanism as drawn and at a fraction of its stroke, from 0 to 1."""
@@ -242,8 +235,8 @@ class MechanismAnswer(planar.PlanarAnswer):
             return ()
         curves = [(load, load.name, self.over.amplitudes[load.name]) for load in self._mechanism.loads]
         factor, unit, _ = planar.units_of(self._mechanism.load(self.motion.driver))
-        return loads_over_stroke(
-            travel_axis(f"travel of {self.motion.driver}", unit, factor * self.motion.values),
+        return drawings.loads_over_stroke(
+            drawings.travel_axis(f"travel of {self.motion.driver}", unit, factor * self.motion.values),
             factor * self.motion.values,
             [*curves, *(self.friction.curves() if self.friction else ())],
             factor * float(self.motion.values[self._index_at(place)]),
@@ -267,11 +260,11 @@ class MechanismAnswer(planar.PlanarAnswer):
         else:
             now = solve(self._mechanism, position)
         captions = self.friction.captions(index) if self.friction else ()
-        drawn = open_and_closed(self.equilibrium.position, now, "\n".join((title, *captions)))
+        drawn = drawings.open_and_closed(self.equilibrium.position, now, "\n".join((title, *captions)))
         if now.status == "self-locking":
-            drawn = with_lock(drawn, now, self._mechanism.unknown_loads[-1].name)
+            drawn = drawings.with_lock(drawn, now, self._mechanism.unknown_loads[-1].name)
         points = getattr(self.design, "points", {})  # files have points; a named caliper has dimensions
-        return with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
+        return drawings.with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
 
     def _travelled(self, index: int) -> str:
         """State the travel of the driving load at the position of an index."""

@@ -223,9 +223,8 @@ class MechanismFriction(Result):
     def to_dict(self) -> dict[str, Any]:
         """Convert the equilibria as drawn to plain numbers, lists and strings, by direction of motion."""
         keys = ("status", "message", "reactions", "magnitudes", "amplitudes", "friction", "residual")
-        ways = self._moving(self.drawn)
         return {"driver": self.driver} | {
-            n: {key: plain(getattr(way, key)) for key in keys} for n, way in ways
+            n: {key: plain(getattr(way, key)) for key in keys} for n, way in self._moving(self.drawn)
         }
 
 

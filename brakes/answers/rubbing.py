@@ -149,8 +149,7 @@ class RubbingAnswer(Answer):
 
     def values(self) -> dict[str, Any]:
         """Convert the results to plain numbers, lists and strings."""
-        fade = {} if self.fade is None else {"heat": self.fade.to_dict()}
-        return self.result.to_dict() | fade
+        return self.result.to_dict() | ({} if self.fade is None else {"heat": self.fade.to_dict()})
 
 
 class RubbingType(ArrayBrakeType[FileModel]):

@@ -126,13 +126,12 @@ class _BrakeAnswers:
         except NoAnswer as error:
             raise ValueError(str(error)) if later else error from None
         value = np.stack(made.found[:-1], axis=-1)
-        status = np.where(np.isnan(value), "no answer", np.where(np.isinf(value), "infinite", "done"))
         return SpreadAnswers(
             answers=tuple(output.name for output in self.wanted),
             units=tuple(output.unit for output in self.wanted),
             value=value,
             error=np.broadcast_to(made.found[-1][:, None], value.shape),
-            status=status,
+            status=np.where(np.isnan(value), "no answer", np.where(np.isinf(value), "infinite", "done")),
             warnings=tuple(warnings),
             method=self.brake.method,
             compared_with=self.brake.error_from,

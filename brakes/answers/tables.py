@@ -52,6 +52,17 @@ def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Ou
     )
 
 
+def take_from_each(
+    parts: Callable[[Any], Sequence[Any]], count: int, kind: str, outputs: Iterable[Output]
+) -> tuple[Output, ...]:
+    """Turn outputs of a part into outputs of an answer's numbered parts, such as its shoes."""
+    return tuple(
+        Output(f"{o.name}_{i + 1}", f"{o.words}, {kind} {i + 1}", o.of, o.unit, o.scale)
+        for i in range(count)
+        for o in take_from(lambda answer, i=i: parts(answer)[i], outputs)
+    )
+
+
 def list_outputs(
     outputs: Iterable[Output], results: Sequence[Any], doubtful: Sequence[Sequence[Any]] = ()
 ) -> list[list[str | Text]]:

@@ -35,10 +35,9 @@ _HOLDING = (
     ),
 )
 _BRAKING = take_fields(vehicle.Braking, "pitching front_alone rear_alone both front_locks rear_locks largest")
-_SLOWING = take_fields(
-    vehicle.Slowing,
-    "distance time deceleration ratio front_force rear_force",
-) + tuple(replace(o, name=f"braked_{o.name}") for o in take_fields(vehicle.Slowing, "front_load rear_load"))
+_SLOWING = take_fields(vehicle.Slowing, "distance time deceleration ratio front_force rear_force") + tuple(
+    replace(o, name=f"braked_{o.name}") for o in take_fields(vehicle.Slowing, "front_load rear_load")
+)
 _LEVER = take_fields(Actuation, "pedal_force output_force pressure actuator_force pedal_travel")
 _WORDS = {
     "friction_to_hold": ("least friction of the tyres that holds", ""),
@@ -71,10 +70,9 @@ class OneDirection:
 
 def _of_one_way(design: VehicleInput) -> tuple[Output, ...]:
     """Describe the outputs for one direction of motion."""
-    names = ["friction_to_hold"] if design.lever is None else [*_WORDS]
     asked = (
         Output(name, _WORDS[name][0], lambda way, name=name: way.needs[name].value, _WORDS[name][1])
-        for name in names
+        for name in (["friction_to_hold"] if design.lever is None else [*_WORDS])
     )
     return (
         *take_from(lambda way: way.holding, _HOLDING),

@@ -12,16 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from brakes.calipers.caliper import (
-    CABLE,
-    LEFT_PAD,
-    RIGHT_PAD,
-    Caliper,
-    Clearance,
-    LeverRatio,
-    PivotRadius,
-    Split,
-)
+from brakes.calipers import caliper
 from brakes.planar import GROUND, Cable, CablePair, Contact, Force, Mechanism, Pin, RotationLock, Slot
 from brakes.planar.part import DescribedPoint, check_inputs
 from brakes.planar.rows import Point
@@ -57,19 +48,21 @@ class Design:
 
     label: ClassVar[str]
 
-    lever_ratio: LeverRatio = 4.0
-    clearance: Clearance = 1.25e-3
-    pivot_radius: PivotRadius = 4e-3
+    lever_ratio: caliper.LeverRatio = 4.0
+    clearance: caliper.Clearance = 1.25e-3
+    pivot_radius: caliper.PivotRadius = 4e-3
 
     def __post_init__(self) -> None:
         check_inputs(self)
 
-    def build(self) -> Caliper:
+    def build(self) -> caliper.Caliper:
         """Make the caliper with these dimensions."""
         raise NotImplementedError
 
-    def _caliper(self, mechanism: Mechanism, centring: tuple[RotationLock, ...] = (), **more: Any) -> Caliper:
-        return Caliper(
+    def _caliper(
+        self, mechanism: Mechanism, centring: tuple[RotationLock, ...] = (), **more: Any
+    ) -> caliper.Caliper:
+        return caliper.Caliper(
             mechanism,
             centring,
             lever_ratio=self.lever_ratio,
@@ -123,9 +116,9 @@ class EeBrake(Design):
     housing: Annotated[Point, _point("face C of the cable's housing")] = (-3.765798714439799 * MM, 33.9 * MM)
     link_anchor: Annotated[Point, _point("pin G of the link on the panel")] = (-3.6 * MM, 14.9 * MM)
     cable_anchor: Annotated[Point, _point("end of the inner wire on the panel")] = (17.5 * MM, -19 * MM)
-    split: Split = "equal force"
+    split: caliper.Split = "equal force"
 
-    def build(self) -> Caliper:
+    def build(self) -> caliper.Caliper:
         """Make the caliper with these dimensions."""
         right, left, upper, strut, link = "right lever", "left lever", "upper-left lever", "strut", "link"
         joints = (
@@ -137,7 +130,7 @@ class EeBrake(Design):
             Pin("pin B", strut, upper, self.strut_pin),
             Pin("strut end", strut, right, self.upper_pin),
         )
-        cable = CablePair(CABLE, upper, GROUND, self.housing, self.cable_anchor)
+        cable = CablePair(caliper.CABLE, upper, GROUND, self.housing, self.cable_anchor)
         bodies = (right, left, upper, strut, link)
         return self._caliper(
             Mechanism(bodies, joints, (cable, *pads(self.pad, right, left))), split=self.split
@@ -168,13 +161,13 @@ class SinglePivot(Design):
     clamp: Annotated[Point, _point("cable clamp, on the arm of the right pad")] = (-42 * MM, 2 * MM)
     housing: Annotated[Point, _point("stop of the housing, on the arm of the left pad")] = (-42 * MM, 34 * MM)
 
-    def build(self) -> Caliper:
+    def build(self) -> caliper.Caliper:
         """Make the caliper with these dimensions."""
         joints = (
             Pin("bolt, right arm", RIGHT, GROUND, self.bolt),
             Pin("bolt, left arm", LEFT, GROUND, self.bolt),
         )
-        cable = CablePair(CABLE, RIGHT, LEFT, self.clamp, self.housing)
+        cable = CablePair(caliper.CABLE, RIGHT, LEFT, self.clamp, self.housing)
         return self._caliper(Mechanism((RIGHT, LEFT), joints, (cable, *pads(self.pad))), CENTRED)
 
 
@@ -208,16 +201,16 @@ class DualPivot(Design):
     pad: Annotated[Point, _point("right pad")] = (12.5 * MM, -46 * MM)
     clamp: Annotated[Point, _point("cable clamp, on the arm of the right pad")] = (-38 * MM, 2 * MM)
     housing: Annotated[Point, _point("stop of the housing, on the arm of the left pad")] = (-38 * MM, 34 * MM)
-    split: Split = "equal force"
+    split: caliper.Split = "equal force"
 
-    def build(self) -> Caliper:
+    def build(self) -> caliper.Caliper:
         """Make the caliper with these dimensions."""
         joints = (
             Pin("side pivot", RIGHT, GROUND, self.side_pivot),
             Pin("bolt", LEFT, GROUND, self.bolt),
             Contact("roller", LEFT, RIGHT, self.roller, (0.0, 1.0)),
         )
-        cable = CablePair(CABLE, RIGHT, LEFT, self.clamp, self.housing)
+        cable = CablePair(caliper.CABLE, RIGHT, LEFT, self.clamp, self.housing)
         return self._caliper(Mechanism((RIGHT, LEFT), joints, (cable, *pads(self.pad))), split=self.split)
 
 
@@ -247,7 +240,7 @@ class CentrePull(Design):
     yoke: Annotated[Point, _point("yoke on the straddle cable")] = (0 * MM, 60 * MM)
     stop: Annotated[Point, _point("stop of the main cable's housing")] = (0 * MM, 120 * MM)
 
-    def build(self) -> Caliper:
+    def build(self) -> caliper.Caliper:
         """Make the caliper with these dimensions."""
         return self._caliper(straddled(self), CENTRED)
 
@@ -277,7 +270,7 @@ class Cantilever(Design):
     yoke: Annotated[Point, _point("yoke on the straddle cable")] = (0 * MM, 70 * MM)
     stop: Annotated[Point, _point("stop of the main cable's housing")] = (0 * MM, 130 * MM)
 
-    def build(self) -> Caliper:
+    def build(self) -> caliper.Caliper:
         """Make the caliper with these dimensions."""
         return self._caliper(straddled(self), CENTRED)
 
@@ -300,18 +293,18 @@ class VBrake(Design):
 
     label = "V-brake"
 
-    lever_ratio: LeverRatio = 2.2
+    lever_ratio: caliper.LeverRatio = 2.2
     pivot: Annotated[Point, _point("boss of the right arm")] = (40 * MM, -25 * MM)
     pad: Annotated[Point, _point("right pad")] = (12.5 * MM, 0 * MM)
     clamp: Annotated[Point, _point("cable clamp at the top of the right arm")] = (34 * MM, 80 * MM)
 
-    def build(self) -> Caliper:
+    def build(self) -> caliper.Caliper:
         """Make the caliper with these dimensions."""
         joints = (
             Pin("right boss", RIGHT, GROUND, self.pivot),
             Pin("left boss", LEFT, GROUND, mirrored(self.pivot)),
         )
-        cable = CablePair(CABLE, RIGHT, LEFT, self.clamp, mirrored(self.clamp))
+        cable = CablePair(caliper.CABLE, RIGHT, LEFT, self.clamp, mirrored(self.clamp))
         return self._caliper(Mechanism((RIGHT, LEFT), joints, (cable, *pads(self.pad))), CENTRED)
 
 
@@ -336,8 +329,8 @@ def mirrored(point: Point) -> Point:
 def pads(right: Point, right_body: str = RIGHT, left_body: str = LEFT) -> tuple[Force, Force]:
     """Make the rim's forces on the right pad at a point, and on the left pad at its mirror image."""
     return (
-        Force(RIGHT_PAD, right_body, right, (1.0, 0.0)),
-        Force(LEFT_PAD, left_body, mirrored(right), (-1.0, 0.0)),
+        Force(caliper.RIGHT_PAD, right_body, right, (1.0, 0.0)),
+        Force(caliper.LEFT_PAD, left_body, mirrored(right), (-1.0, 0.0)),
     )
 
 
@@ -351,5 +344,5 @@ def straddled(arms: CentrePull | Cantilever) -> Mechanism:
         Slot("middle", yoke, GROUND, arms.yoke, (0.0, 1.0)),
         RotationLock("yoke upright", yoke, GROUND),
     )
-    cable = CablePair(CABLE, yoke, GROUND, arms.yoke, arms.stop)
+    cable = CablePair(caliper.CABLE, yoke, GROUND, arms.yoke, arms.stop)
     return Mechanism((RIGHT, LEFT, yoke), joints, (cable, *pads(arms.pad)))

@@ -70,8 +70,7 @@ class Actuation(Result):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentence on a pedal force above the limit of the standards; empty if it is allowed."""
-        limb = self.pedal.operated_by
-        return (f"the {self.verdict}",) if passes(limb, self.pedal_force) else ()
+        return (f"the {self.verdict}",) if passes(self.pedal.operated_by, self.pedal_force) else ()
 
     @property
     def verdict(self) -> str:
@@ -113,7 +112,10 @@ def actuate(pedal: Pedal, line: Line) -> Actuation:
     _check(pedal, line)
     output = pedal.output_force
     travel = pedal.ratio * line.stroke(output)
-    _refuse_pressure(line, output)
+    if isinstance(line, HydraulicLine) and line.most_pressure is not None:
+        over = np.asarray(output) > line.limit * (1 + EDGE)
+        bound, remedy = "the pedal's force gives {limit}", "less force, or a larger master cylinder"
+        refuse(over, "most_pressure", line.most_pressure, "Pa", bound, remedy, limit=line.pressure(output))
     if pedal.travel is not None:
         late = np.asarray(travel) > pedal.travel * (1 + EDGE)
         bound, remedy = "it needs a travel of {limit}", "less lost travel, or a smaller ratio"
@@ -220,10 +222,3 @@ def _ends(pedal: Pedal, line: Line, output: Numbers, travel: Numbers) -> tuple[t
         (over, "the line would exceed the pressure of its cylinders, which rises with the force"),
         (far, "the travel runs out before: it rises with the ratio and with the force"),
     )
-
-
-def _refuse_pressure(line: Line, output: Numbers) -> None:
-    if isinstance(line, HydraulicLine) and line.most_pressure is not None:
-        over = np.asarray(output) > line.limit * (1 + EDGE)
-        bound, remedy = "the pedal's force gives {limit}", "less force, or a larger master cylinder"
-        refuse(over, "most_pressure", line.most_pressure, "Pa", bound, remedy, limit=line.pressure(output))

@@ -61,8 +61,7 @@ class Pedal:
         ),
     ] = None
     travel: Annotated[
-        Numbers | None,
-        Described("m", "", "largest travel; not checked if not given", above=0),
+        Numbers | None, Described("m", "", "largest travel; not checked if not given", above=0)
     ] = None
 
     def __post_init__(self) -> None:

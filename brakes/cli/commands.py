@@ -452,13 +452,7 @@ def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> No
     plain = f"brakes {name} examples/{name}.toml"
 
     @app.command(name=name, help=help, help_epilogue=examples(plain, f"{plain} --plot {name}.png"))
-    def answer_file(
-        file: BrakeFile,
-        /,
-        *,
-        asked: Asked = ONE_DESIGN,
-        outputs: Outputs = NO_FILES,
-    ) -> None:
+    def answer_file(file: BrakeFile, /, *, asked: Asked = ONE_DESIGN, outputs: Outputs = NO_FILES) -> None:
         """Answer a file.
 
         Parameters

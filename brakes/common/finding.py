@@ -266,8 +266,7 @@ def _piece(curve: Curve) -> Piece:
 def _run_as_it_is(x: np.ndarray, y: np.ndarray, run: slice) -> _Run:
     """Make a run of whole numbers; its ends are samples and need no search."""
     before = float(x[run.start - 1]) if run.start else None
-    after = float(x[run.stop]) if run.stop < len(x) else None
-    return _Run(x[run], y[run], before, after)
+    return _Run(x[run], y[run], before, float(x[run.stop]) if run.stop < len(x) else None)
 
 
 def _runs(answers: _Answers, x: np.ndarray, y: np.ndarray) -> Iterator[_Run]:

@@ -98,8 +98,7 @@ class Duty:
         Numbers, Described("N m", "L", "torque that drives on, of a slope or a hanging load", least=0)
     ] = 0.0
     free_angle: Annotated[
-        Numbers,
-        Described("rad", "", "angle that it turns in each stop before the torque is there", least=0),
+        Numbers, Described("rad", "", "angle that it turns in each stop before the torque is there", least=0)
     ] = 0.0
     stops: Annotated[Numbers, Described("", "n", "number of stops", least=1, most=1000, whole=True)] = 1.0
     interval: Annotated[Numbers, Described("s", "t", "time from the end of a stop to the next", least=0)] = (
@@ -406,8 +405,7 @@ class _Warming:
 
     def least(self, start: Numbers, end: Numbers | None = None) -> np.ndarray:
         """Compute the least torque [N m] between two temperatures: at an end, or a point of the curve."""
-        ends = (start,) if end is None else (start, end)
-        found = [self.friction(each) for each in ends]
+        found = [self.friction(each) for each in ((start,) if end is None else (start, end))]
         if self.knots is not None and end is not None:
             found += [np.where((start < at) & (at < end), mu, found[0]) for at, mu in self.knots]
         return self.torque(np.min(np.broadcast_arrays(*found), axis=0))

@@ -205,8 +205,7 @@ class Solutions(Result):
         """Plot the answer over the input, with the wanted value and the solutions."""
         from beamdyn.common.plots.axes_and_lines import set_up_axes
 
-        labels = (f"{name} [{unit}]" if unit else name for name, unit in self.named)
-        ax = set_up_axes(ax, *labels)
+        ax = set_up_axes(ax, *(f"{name} [{unit}]" if unit else name for name, unit in self.named))
         ax.plot(self.samples, self.answers, linewidth=1.8)
         ax.axhline(self.target, color="0.4", linestyle="--", linewidth=1.2)
         ax.plot(self.values, self.target + self.residuals, "o", color="black")

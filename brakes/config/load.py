@@ -25,8 +25,7 @@ class LoadInput(Section):
     """Table [load] of a file: actuating force, or the wanted torque or pressure."""
 
     force: Annotated[
-        float | None,
-        Quantity("N", "P", "actuating force: on each shoe, pad or lever", above=0),
+        float | None, Quantity("N", "P", "actuating force: on each shoe, pad or lever", above=0)
     ] = None
     cylinder_bore: Annotated[
         float | None,

@@ -10,16 +10,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, create_model
 
-from beamdyn.common.edge.config import (
-    CoreSection,
-    MadeSection,
-    MissingValue,
-    fields_of,
-    parse,
-    read,
-    section_of,
-    validated,
-)
+from beamdyn.common.edge import config
 from beamdyn.common.edge.inputs import Input, Quantity, Section, describe
 from beamdyn.common.edge.units import InvalidInput, show
 from beamdyn.common.inputs.described import described_hints, description, descriptions
@@ -59,33 +50,33 @@ def load_mechanism(path: str | PathLike[str]) -> CaliperInput | MechanismInput:
     ConfigError
         If there is no such file or it does not describe a mechanism; the message lists all mistakes.
     """
-    return parse_mechanism(read(path), str(path))
+    return parse_mechanism(config.read(path), str(path))
 
 
 def parse_mechanism(text: str, source: str = "mechanism") -> CaliperInput | MechanismInput:
     """Read a caliper or a mechanism from TOML text; see `load_mechanism`."""
-    return mechanism_from_dict(parse(text, source), source)
+    return mechanism_from_dict(config.parse(text, source), source)
 
 
 def mechanism_from_dict(data: Mapping[str, Any], source: str = "mechanism") -> CaliperInput | MechanismInput:
     """Read a caliper or a mechanism from the tables of a TOML file; see `load_mechanism`."""
     name = data.get("caliper")
     if isinstance(name, str):
-        return validated(model_of(name) if name in NAMED else CaliperInput, data, source)
-    return validated(CompleteMechanismInput, _with_points(data), source)
+        return config.validated(model_of(name) if name in NAMED else CaliperInput, data, source)
+    return config.validated(CompleteMechanismInput, _with_points(data), source)
 
 
 # Any mechanism ------------------------------------------------------------------------------------
 
 
-class PartSection(MadeSection):
+class PartSection(config.MadeSection):
     """A table that describes a joint or a load."""
 
     model_config = SHORT_TEXTS
 
 
 SECTIONS = {  # sections by the name of the table
-    part.key(): section_of(part, tables=QUANTITIES, base=PartSection) for part in (*JOINTS, *LOADS)
+    part.key(): config.section_of(part, tables=QUANTITIES, base=PartSection) for part in (*JOINTS, *LOADS)
 }
 
 
@@ -95,7 +86,7 @@ class RolesInput(Section):
     centring: Annotated[list[str], Field(description="joints that hold only until the pads touch")] = []  # noqa: RUF012
 
 
-class MechanismInput(CoreSection):
+class MechanismInput(config.CoreSection):
     """File of a mechanism: bodies, joints and loads; if it is a caliper, also its cable and pads.
 
     `CompleteMechanismInput` adds a list of tables for each kind of joint and load.
@@ -130,7 +121,9 @@ class MechanismInput(CoreSection):
                 raise InvalidInput("run.friction", friction, bound)
             rubs = made.friction or "friction" in self.run.model_fields_set  # friction may be 0 in a sweep
             if self.run.driver is not None and self.run.travel is None and not rubs:
-                raise MissingValue("run.travel", None, "give the travel of the driver, or leave out driver")
+                raise config.MissingValue(
+                    "run.travel", None, "give the travel of the driver, or leave out driver"
+                )
             return made
         roles = self.caliper
         missing = [name for name in roles.centring if name not in {joint.name for joint in joints}]
@@ -147,7 +140,7 @@ class MechanismInput(CoreSection):
         run = self.run
         if run.driver is None:
             if run.travel is not None and self.caliper is None:
-                raise MissingValue("run.driver", None, "name the load that drives the stroke")
+                raise config.MissingValue("run.driver", None, "name the load that drives the stroke")
             return
         if run.driver not in loads:
             raise InvalidInput("run.driver", run.driver, "no such load", f"name one of {', '.join(loads)}")
@@ -160,7 +153,7 @@ class MechanismInput(CoreSection):
             raise InvalidInput("run.travel", float(run.travel), bound, unit=unit)
 
 
-_ROLES = fields_of(Caliper, leave_out=("mechanism", "centring", "name"))
+_ROLES = config.fields_of(Caliper, leave_out=("mechanism", "centring", "name"))
 _Roles = create_model("_Roles", __base__=RolesInput, __module__=__name__, **_ROLES)
 _TABLES: dict[str, Any] = {"caliper": (_Roles | None, None)} | {
     key: (list[section], []) for key, section in SECTIONS.items()

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from beamdyn.common.drawing.layout import Rows
@@ -36,24 +39,19 @@ def draw_disc(result: MachineResult) -> Drawing:
 
 def draw_plates(result: MachineResult) -> Drawing:
     """Draw a section through the plates, with the force that presses them; for a single case."""
-    plates = result.brake
-    assert isinstance(plates, Plates)
-    arrows = ForceArrows(0.6 * float(plates.outer_radius) / float(result.force))
-    _add_plates(arrows.shapes, plates)
-    return _with_force(arrows, result, "A multi-plate brake, cut along its axis")
+    return _draw_section(result, _add_plates, "A multi-plate brake, cut along its axis")
 
 
 def draw_cone(result: MachineResult) -> Drawing:
     """Draw a section through the cone, with the force that presses it; for a single case."""
-    cone = result.brake
-    assert isinstance(cone, Cone)
-    arrows = ForceArrows(0.6 * float(cone.outer_radius) / float(result.force))
-    _add_cone(arrows.shapes, cone)
-    return _with_force(arrows, result, "A cone brake, cut along its axis")
+    return _draw_section(result, _add_cone, "A cone brake, cut along its axis")
 
 
-def _with_force(arrows: ForceArrows, result: MachineResult, words: str) -> Drawing:
-    """Complete the drawing of a section: add the actuating force along the axis, title and key."""
+def _draw_section(result: MachineResult, add: Callable[[list[DrawnShape], Any], None], words: str) -> Drawing:
+    """Draw a section along the axis, of shapes that a function adds, with the actuating force."""
+    brake: Any = result.brake
+    arrows = ForceArrows(0.6 * float(brake.outer_radius) / float(result.force))
+    add(arrows.shapes, brake)
     arrows.add((0.0, 0.0), np.array([float(result.force), 0.0]), "P", "load", ends_here=True)
     title = f"Pressed by {float(result.force):.5g} N; torque {float(result.torque):.5g} N m"
     return arrows.drawing(title, words, {"load": "actuating force P"})
@@ -108,19 +106,14 @@ def disc_sketch() -> Rows:
     """Sketch the dimensions of a pad."""
     s, disc = Sketch(), DiscBrake(0.6, 1.0, np.radians(80.0))
     _add_disc(s.shapes, disc)
-    _radii(s, disc.inner_radius, disc.outer_radius)
+    for symbol, radius, angle in (("r_i", disc.inner_radius, -0.5), ("r_o", disc.outer_radius, -2.4)):
+        tip = radius * np.array([np.cos(angle), np.sin(angle)])
+        s.add(Disc((0, 0), radius, "axis", 0.8, (4.0, 2.5)))
+        s.length(symbol, (0, 0), tip, (-tip[1], tip[0]))
     s.angle("theta", (0, 0), 0.32, np.radians(50.0), np.radians(130.0))
     for end in np.radians((50.0, 130.0)):
         s.dashed((0, 0), (0.6 * np.cos(end), 0.6 * np.sin(end)))
     return [[s.drawing("Disc and pad", "A pad on its disc: r_i, r_o, theta")]]
-
-
-def _radii(s: Sketch, low: float, high: float) -> None:
-    """Add inner and outer radius, measured from the centre, to a sketch."""
-    for symbol, radius, angle in (("r_i", low, -0.5), ("r_o", high, -2.4)):
-        tip = radius * np.array([np.cos(angle), np.sin(angle)])
-        s.add(Disc((0, 0), radius, "axis", 0.8, (4.0, 2.5)))
-        s.length(symbol, (0, 0), tip, (-tip[1], tip[0]))
 
 
 def plates_sketch() -> Rows:

@@ -8,6 +8,7 @@ from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Label, Outline, Symbol, arc
 from beamdyn.common.drawing.sketch import Sketch
 from brakes.drawings.arrows import ForceArrows, rotation
+from brakes.drawings.sketches import width_sketch
 from brakes.machines import Band, MachineResult
 
 
@@ -51,11 +52,10 @@ def _places(band: Band) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
 def _add_body(shapes: list[DrawnShape], band: Band) -> None:
     """Add drum, band, lever and fulcrum to the shapes."""
     rim, (first, second, fulcrum, end) = _places(band)
-    left = min(second[0], fulcrum[0])
     shapes += [
         Disc((0, 0), float(band.drum_radius), "neutral", 1.4),
         Symbol("cross", (0, 0), "axis", 9.0),
-        Outline([(left, fulcrum[1]), end], "body", 6.0),
+        Outline([(min(second[0], fulcrum[0]), fulcrum[1]), end], "body", 6.0),
         Outline(np.vstack([second, rim, first]), "support", 4.0),
         *(Symbol("dot", at, "pin", 5.0) for at in (first, second)),
         Symbol("ground", fulcrum, "ground", 12.0),
@@ -80,11 +80,4 @@ def band_sketch() -> Rows:
     s.dashed(fulcrum, fulcrum - (0.0, 0.95))
     s.arrow("P", end + np.array([0.0, 0.75]), end + np.array([0.0, 0.08]))
     s.moment("M", (0.0, 0.0), 1.15, 2.0, 1.1, "load")
-    return [[s.drawing("A differential band", "A band brake: r, phi, a, s, c, P, M"), _width()]]
-
-
-def _width() -> Drawing:
-    s = Sketch()
-    s.add(Outline([(0, 0), (1.0, 0)], "neutral", 1.4), Outline([(0.2, 0.1), (0.8, 0.1)], "support", 6.0))
-    s.length("w", (0.2, 0.4), (0.8, 0.4), (0.0, 1.0))
-    return s.drawing("Along the axis", "The width of the band along the drum's axis: w")
+    return [[s.drawing("A differential band", "A band brake: r, phi, a, s, c, P, M"), width_sketch("band")]]

@@ -8,6 +8,7 @@ from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline, Symbol, arc
 from beamdyn.common.drawing.sketch import Sketch
 from brakes.drawings.arrows import ForceArrows, rotation
+from brakes.drawings.sketches import width_sketch
 from brakes.machines import Block, LiningResult, MachineResult
 
 # Matrices that transform a block's axes to the drawing, for a block above and for one below the drum.
@@ -74,8 +75,7 @@ def _add_drum(shapes: list[DrawnShape], r: float, *, reverse: bool) -> None:
 def _add_lever(shapes: list[DrawnShape], block: Block, placed: np.ndarray) -> None:
     """Add a block with its lever; the matrix `placed` transforms the block's axes to the drawing."""
     face, fulcrum, end = _places(block)
-    r = float(block.drum_radius)
-    back = face * (1.0, 0.0) + (0.0, 1.3 * r)
+    back = face * (1.0, 0.0) + (0.0, 1.3 * float(block.drum_radius))
     knee = np.array([fulcrum[0], end[1]])
     shapes += [
         Outline(np.vstack([fulcrum, knee, end]) @ placed, "body", 5.0),
@@ -103,11 +103,7 @@ def block_sketch() -> Rows:
         s.dashed((0, 0), (np.cos(angle), np.sin(angle)))
     s.angle("theta", (0, 0), 0.45, np.radians(65.0), np.radians(115.0))
     s.arrow("P", end + np.array([0.0, 0.9]), end + np.array([0.0, 0.05]))
-    return [[s.drawing("Block and lever", "A block on its drum: r, theta, b, c, e, P")], [_width()]]
-
-
-def _width() -> Drawing:
-    s = Sketch()
-    s.add(Outline([(0, 0), (1.0, 0)], "neutral", 1.4), Outline([(0.2, 0.1), (0.8, 0.1)], "support", 6.0))
-    s.length("w", (0.2, 0.4), (0.8, 0.4), (0.0, 1.0))
-    return s.drawing("Along the axis", "The width of the block along the drum's axis: w")
+    return [
+        [s.drawing("Block and lever", "A block on its drum: r, theta, b, c, e, P")],
+        [width_sketch("block")],
+    ]

@@ -99,22 +99,19 @@ def draw_chassis(shapes: list[DrawnShape], t: Truck, turn: np.ndarray) -> None:
     """Add ground, wheels, body, mast and load, rotated by a matrix; x is towards the rear axle, y up."""
     L, r1 = float(t.wheelbase), float(t.front_wheel_radius)
     r2 = 0.75 * r1
-    ground = np.array([(-1.3 * L, 0.0), (1.9 * L, 0.0)]) @ turn
-    shapes.append(Outline(ground, "ground", 2.0))
+    shapes.append(Outline(np.array([(-1.3 * L, 0.0), (1.9 * L, 0.0)]) @ turn, "ground", 2.0))
     body = [(0.1, 1.0), (0.1, 2.6), (0.75, 2.6), (1.28, 2.3), (1.28, 0.8), (1.0, 0.8)]
     cab = [(0.25, 2.6), (0.3, 4.9), (0.85, 4.9), (0.95, 2.5)]
     mast = [(-0.2, 0.3), (-0.2, 5.6), (-0.12, 5.6), (-0.12, 0.3)]
     for shape, role in ((cab, "second"), (body, "body"), (mast, "body")):
-        corners = np.array(shape) * (L, r1) @ turn
-        shapes.append(Outline(corners, role, 1.0, closed=True, filled=True))
+        shapes.append(Outline(np.array(shape) * (L, r1) @ turn, role, 1.0, closed=True, filled=True))
     if has_load(t):
         x, y = float(t.load_cg[0]), float(t.load_cg[1]) + r1
         half = min(abs(x) - 0.2 * L, y - 0.3 * r1)
         box = np.array([(-half, -half), (half, -half), (half, half), (-half, half)]) + np.array([x, y])
-        fork = np.array([(-0.16 * L, y - half), (x - half, y - half)])
         shapes += [
             Outline(box @ turn, "second", 1.0, closed=True, filled=True),
-            Outline(fork @ turn, "neutral", 3.0),
+            Outline(np.array([(-0.16 * L, y - half), (x - half, y - half)]) @ turn, "neutral", 3.0),
             Symbol("dot", np.array([x, y]) @ turn, "neutral", 3.0),
         ]
     for x, r in ((0.0, r1), (L, r2)):

@@ -65,8 +65,7 @@ def _slope() -> Drawing:
 
 def duo_servo_sketch() -> Rows:
     """Sketch the dimensions of a duo-servo brake at rest."""
-    motion = BENDIX_12_5.move_shoes(0.0106)
-    s, drawn = Sketch(), duo_servo(BENDIX_12_5, motion, 0.0)
+    s, drawn = Sketch(), duo_servo(BENDIX_12_5, BENDIX_12_5.move_shoes(0.0106), 0.0)
     s.shapes += drawn.shapes
     r, (x, y), (ax, ay) = 0.15875, (0.06155, 0.10229), (0.05304, -0.12211)
     s.length("r", (0.0, 0.0), r * np.array([-np.cos(0.5), -np.sin(0.5)]), (0.4, -1.0))
@@ -167,6 +166,14 @@ def _width() -> Drawing:
     s.add(Outline([(0.2, 0.0), (0.8, 0.0)], "support", 9.0))
     s.length("w", (0.2, 0.3), (0.8, 0.3), _UP)
     return s.drawing("Along the axis", "The width of the lining along the drum's axis: w")
+
+
+def width_sketch(part: str) -> Drawing:
+    """Sketch the width of a band, block or lining outside or inside its drum, along the drum's axis."""
+    s = Sketch()
+    s.add(Outline([(0, 0), (1.0, 0)], "neutral", 1.4), Outline([(0.2, 0.1), (0.8, 0.1)], "support", 6.0))
+    s.length("w", (0.2, 0.4), (0.8, 0.4), _UP)
+    return s.drawing("Along the axis", f"The width of the {part} along the drum's axis: w")
 
 
 def cylinder_sketch() -> Drawing:

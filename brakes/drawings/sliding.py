@@ -8,6 +8,7 @@ from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.drawing.sketch import Sketch
 from brakes.drawings.arrows import ForceArrows, rotation
+from brakes.drawings.sketches import width_sketch
 from brakes.machines import MachineResult, Sliding
 
 _SIDES = (np.array([1.0, 1.0]), np.array([-1.0, 1.0]))
@@ -31,8 +32,7 @@ def draw_sliding(result: MachineResult) -> Drawing:
         _add_shoe(arrows.shapes, brake, side)
         if not result.locked:
             at, lean = brake.pressure_on(i, _along(brake), float(result.friction), result.reverse), 0.93 * r
-            touching = _along(brake)[at > 0]
-            arrows.shapes.append(Outline(_points(lean, touching) * side, "normal", 5.0))
+            arrows.shapes.append(Outline(_points(lean, _along(brake)[at > 0]) * side, "normal", 5.0))
             _add_forces(arrows, brake, lining.reactions, float(result.force), side, f"_{i + 1}")
     if result.locked:
         arrows.labels.append(Label("a shoe grips by itself", (0.0, 0.4 * r), "inside", priority=4))
@@ -67,12 +67,7 @@ def _add_shoe(shapes: list[DrawnShape], brake: Sliding, side: np.ndarray) -> Non
 
 
 def _add_forces(
-    arrows: ForceArrows,
-    brake: Sliding,
-    reactions: dict[str, float],
-    force: float,
-    side: np.ndarray,
-    i: str,
+    arrows: ForceArrows, brake: Sliding, reactions: dict[str, float], force: float, side: np.ndarray, i: str
 ) -> None:
     """Add a shoe's forces: pressure and friction where their lines of action cross, actuation, abutment."""
     nx, ny, tx, ty, abutment = (float(each) for each in reactions.values())
@@ -109,13 +104,6 @@ def sliding_sketch() -> Rows:
     return [
         [
             s.drawing("Sliding shoe", "A sliding shoe in its drum: r, alpha1, alpha2, a, b, c, psi, P"),
-            _width(),
+            width_sketch("lining"),
         ]
     ]
-
-
-def _width() -> Drawing:
-    s = Sketch()
-    s.add(Outline([(0, 0), (1.0, 0)], "neutral", 1.4), Outline([(0.2, 0.1), (0.8, 0.1)], "support", 6.0))
-    s.length("w", (0.2, 0.4), (0.8, 0.4), (0.0, 1.0))
-    return s.drawing("Along the axis", "The width of the lining along the drum's axis: w")

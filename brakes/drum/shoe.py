@@ -288,7 +288,6 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeRe
     arms = (np.abs(shoe.force_arm) + np.abs(shoe.pivot[1])) / shoe.moment_arm
     from_bracket = bracket_error / bracket
     slope_error = i.K_error + i.n_error / np.abs(i.n) + from_bracket
-    error = _EPS * (4 + arms) + from_bracket + np.maximum(slope_error, i.SC_error)
     return ShoeResult(
         shoe=shoe,
         leading=leading,
@@ -301,7 +300,7 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeRe
         pin_reaction=pin,
         effective_arm=(r * i.K / np.hypot(i.S, i.C))[()],
         closure=(np.abs(left) / (np.abs(force) * arm))[()],
-        error=error[()],
+        error=(_EPS * (4 + arms) + from_bracket + np.maximum(slope_error, i.SC_error))[()],
         c_star=(mu * arm * i.K / bracket)[()],
         c_star_slope=(arm * i.K * n / bracket**2)[()],
         locking_friction=limit[()],

@@ -193,8 +193,7 @@ class Sliding(Machine):
         shape = np.broadcast_shapes(*map(np.shape, numbers))
         grid = _FRICTIONS.reshape(-1, *(1,) * len(shape)) + np.zeros(shape)
         free = np.logical_and.accumulate(holds(grid), axis=0)
-        last = np.maximum(free.sum(axis=0) - 1, 0)
-        low = _FRICTIONS[last]
+        low = _FRICTIONS[np.maximum(free.sum(axis=0) - 1, 0)]
         high = low + _FRICTIONS[1]
         for _ in range(_HALVINGS):
             middle = (low + high) / 2

@@ -14,19 +14,7 @@ from typing import Annotated
 import numpy as np
 
 from beamdyn.common.inputs.described import Described
-from brakes.planar.part import (
-    BetweenPoints,
-    Coefficient,
-    DescribedBody,
-    DescribedPoint,
-    Direction,
-    DrawnPoint,
-    Joint,
-    Length,
-    OneWay,
-    OnTwoBodies,
-    Shape,
-)
+from brakes.planar import part
 from brakes.planar.rows import (
     GROUND,
     End,
@@ -44,11 +32,11 @@ from brakes.planar.rows import (
 
 _NORMAL = 0.9999  # least cosine of the angle between the normal of a round face and the line to its centre
 _TURNS = 0.1  # rotation of a straight face over a stroke above which there is a warning [deg]
-SLACK = OneWay("cable", "push", "cable slackens", "it is slack; remove it, or reverse the loads")
+SLACK = part.OneWay("cable", "push", "cable slackens", "it is slack; remove it, or reverse the loads")
 
 
 @dataclass(frozen=True)
-class Pin(OnTwoBodies, Joint):
+class Pin(part.OnTwoBodies, part.Joint):
     """A pin joint: a point of one body stays on a point of another.
 
     Parameters
@@ -76,12 +64,12 @@ class Pin(OnTwoBodies, Joint):
     label = "pins"
     is_hinge = True
 
-    at: DrawnPoint
-    at_other: DrawnPoint | None = None
+    at: part.DrawnPoint
+    at_other: part.DrawnPoint | None = None
     radius: Annotated[
         float, Described("m", "r", "radius of the pivot", least=0, remedy="give the radius of the pivot")
     ] = 0.0
-    friction: Coefficient = 0.0
+    friction: part.Coefficient = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -106,13 +94,13 @@ class Pin(OnTwoBodies, Joint):
         """Copy the pin with a radius [m] and a coefficient of friction, unless it already has friction."""
         return self if self.friction else replace(self, radius=self.radius or radius, friction=friction)
 
-    def shapes(self) -> tuple[Shape, ...]:
+    def shapes(self) -> tuple[part.Shape, ...]:
         """Return the drawing of the joint: a pin at its points."""
-        return (Shape("pin", self._ends),)
+        return (part.Shape("pin", self._ends),)
 
 
 @dataclass(frozen=True)
-class Bar(BetweenPoints, Joint):
+class Bar(part.BetweenPoints, part.Joint):
     """A two-force link of constant length between points of two bodies.
 
     Parameters
@@ -136,19 +124,19 @@ class Bar(BetweenPoints, Joint):
     remedy = "move one of its ends, or join the bodies by a pin"
     style = "bar"
 
-    length: Length | None = None
+    length: part.Length | None = None
 
     def rows(self) -> tuple[Row, ...]:
         """Return one row, whose multiplier is positive in tension."""
         return (self.path(self.length),)
 
-    def shapes(self) -> tuple[Shape, ...]:
+    def shapes(self) -> tuple[part.Shape, ...]:
         """Return the drawing of a bar with pins at its ends."""
-        return (*super().shapes(), *(Shape("pin", (end,)) for end in self.path().ends))
+        return (*super().shapes(), *(part.Shape("pin", (end,)) for end in self.path().ends))
 
 
 @dataclass(frozen=True)
-class Slot(OnTwoBodies, Joint):
+class Slot(part.OnTwoBodies, part.Joint):
     """A point of a body slides along a straight slot of another body, which holds it in both directions.
 
     Parameters
@@ -177,10 +165,10 @@ class Slot(OnTwoBodies, Joint):
 
     label = "slots"
 
-    at: DrawnPoint
-    along: Direction
-    on: DrawnPoint | None = None
-    friction: Coefficient = 0.0
+    at: part.DrawnPoint
+    along: part.Direction
+    on: part.DrawnPoint | None = None
+    friction: part.Coefficient = 0.0
 
     def rows(self) -> tuple[Row, ...]:
         """Return one row: the force on the body, positive to the left of `along`."""
@@ -191,13 +179,13 @@ class Slot(OnTwoBodies, Joint):
         """Return a friction force against the sliding."""
         return (FrictionLaw(_line(self, unit_vector("along", self.along)), self.friction),)
 
-    def shapes(self) -> tuple[Shape, ...]:
+    def shapes(self) -> tuple[part.Shape, ...]:
         """Return the drawing of a short line along the slot."""
-        return (Shape("face", ((self.body, self.at),), self.other, self.along),)
+        return (part.Shape("face", ((self.body, self.at),), self.other, self.along),)
 
 
 @dataclass(frozen=True)
-class Contact(OnTwoBodies, Joint):
+class Contact(part.OnTwoBodies, part.Joint):
     """A point of a body pushes on a straight or round face of another body.
 
     Parameters
@@ -231,16 +219,17 @@ class Contact(OnTwoBodies, Joint):
     """
 
     label = "contacts"
-    one_way = OneWay(
+    one_way = part.OneWay(
         "contact", "pull", "contact opens", "it is open, or its normal is reversed; remove or turn it"
     )
 
-    at: DrawnPoint
-    normal: Direction | None = None
-    on: DrawnPoint | None = None
-    friction: Coefficient = 0.0
+    at: part.DrawnPoint
+    normal: part.Direction | None = None
+    on: part.DrawnPoint | None = None
+    friction: part.Coefficient = 0.0
     centre: (
-        Annotated[Point, DescribedPoint("m", meaning="centre of a round face; straight if not given")] | None
+        Annotated[Point, part.DescribedPoint("m", meaning="centre of a round face; straight if not given")]
+        | None
     ) = None
     radius: (
         Annotated[float, Described("m", "R", "radius of a round face, if not the drawing's", above=0)] | None
@@ -301,16 +290,16 @@ class Contact(OnTwoBodies, Joint):
                 "right for a flat face; of a round one, such as a drum, give the centre, not the normal"
             )
 
-    def shapes(self) -> tuple[Shape, ...]:
+    def shapes(self) -> tuple[part.Shape, ...]:
         """Return the drawing of a short line along a straight face, or of an arc of a round one."""
         if self.centre is not None:
-            return (Shape("face", ((self.body, self.at), (self.other, self.centre))),)
+            return (part.Shape("face", ((self.body, self.at), (self.other, self.centre))),)
         x, y = unit_vector("normal", self.normal or (0.0, 1.0))
-        return (Shape("face", ((self.body, self.at),), self.other, (-y, x)),)
+        return (part.Shape("face", ((self.body, self.at),), self.other, (-y, x)),)
 
 
 @dataclass(frozen=True)
-class RotationLock(OnTwoBodies, Joint):
+class RotationLock(part.OnTwoBodies, part.Joint):
     """A gear: a body turns by `ratio` times the angle of another (1: no relative rotation; -1: mirrored).
 
     Parameters
@@ -336,7 +325,7 @@ class RotationLock(OnTwoBodies, Joint):
 
 
 @dataclass(frozen=True)
-class Cable(Joint):
+class Cable(part.Joint):
     """A taut cable of fixed length over frictionless eyes, with one tension, positive if it pulls.
 
     Parameters
@@ -360,9 +349,9 @@ class Cable(Joint):
     label = "cables of fixed length"
     one_way = SLACK
 
-    bodies: Annotated[tuple[str, ...], DescribedBody(meaning="body of each point")]
-    points: tuple[Annotated[Point, DescribedPoint("m", meaning="points in the drawing")], ...]
-    length: Length | None = None
+    bodies: Annotated[tuple[str, ...], part.DescribedBody(meaning="body of each point")]
+    points: tuple[Annotated[Point, part.DescribedPoint("m", meaning="points in the drawing")], ...]
+    length: part.Length | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -378,9 +367,9 @@ class Cable(Joint):
         length = path_length(self.points) if self.length is None else self.length
         return (Path(tuple(self.bodies), tuple(self.points), length),)
 
-    def shapes(self) -> tuple[Shape, ...]:
+    def shapes(self) -> tuple[part.Shape, ...]:
         """Return the drawing of a cable through its points."""
-        return (Shape("cable", self.rows()[0].ends),)
+        return (part.Shape("cable", self.rows()[0].ends),)
 
 
 def _line(joint: Slot | Contact, normal: Point) -> Line:

@@ -13,24 +13,13 @@ from typing import Annotated
 import numpy as np
 
 from beamdyn.common.inputs.described import Described
+from brakes.planar import part
 from brakes.planar.joints import SLACK
-from brakes.planar.part import (
-    AppliedLoad,
-    BetweenPoints,
-    Body,
-    Direction,
-    DrawnPoint,
-    Load,
-    NewtonMetres,
-    Newtons,
-    Other,
-    Shape,
-)
 from brakes.planar.rows import GROUND, Line, Point, Row, Turn, unit_vector
 
 
 @dataclass(frozen=True)
-class Force(AppliedLoad):
+class Force(part.AppliedLoad):
     """A force on a point of a body.
 
     Parameters
@@ -55,10 +44,10 @@ class Force(AppliedLoad):
 
     label = "forces"
 
-    body: Body
-    at: DrawnPoint
-    direction: Direction
-    magnitude: Newtons | None = None
+    body: part.Body
+    at: part.DrawnPoint
+    direction: part.Direction
+    magnitude: part.Newtons | None = None
     follows: Annotated[bool, Described(meaning="whether it turns with the body")] = False
 
     @property
@@ -79,13 +68,13 @@ class Force(AppliedLoad):
         (x, y), (dx, dy) = self.at, self._direction()
         return replace(self, at=(x + distance * dx, y + distance * dy))
 
-    def shapes(self) -> tuple[Shape, ...]:
+    def shapes(self) -> tuple[part.Shape, ...]:
         """Return the drawing of the load: an arrow at its point."""
-        return (Shape("force", ((self.body, self.at),)),)
+        return (part.Shape("force", ((self.body, self.at),)),)
 
 
 @dataclass(frozen=True)
-class Moment(AppliedLoad):
+class Moment(part.AppliedLoad):
     """A moment on a body, positive anticlockwise, and the opposite moment on another body.
 
     Parameters
@@ -105,9 +94,9 @@ class Moment(AppliedLoad):
 
     label = "moments"
 
-    body: Body
-    magnitude: NewtonMetres | None = None
-    other: Other = GROUND
+    body: part.Body
+    magnitude: part.NewtonMetres | None = None
+    other: part.Other = GROUND
 
     def row(self) -> Row:
         """Return the row whose value is the rotation of the body relative to the other [rad]."""
@@ -115,7 +104,7 @@ class Moment(AppliedLoad):
 
 
 @dataclass(frozen=True)
-class CablePair(BetweenPoints, AppliedLoad):
+class CablePair(part.BetweenPoints, part.AppliedLoad):
     """A cable and its housing: equal and opposite forces that pull points of two bodies together.
 
     Parameters
@@ -138,7 +127,7 @@ class CablePair(BetweenPoints, AppliedLoad):
     one_way = SLACK
     style = "cable"
 
-    magnitude: Newtons | None = None
+    magnitude: part.Newtons | None = None
 
     def row(self) -> Row:
         """Return the row whose value is the shortening of the distance between the points [m]."""
@@ -146,7 +135,7 @@ class CablePair(BetweenPoints, AppliedLoad):
 
 
 @dataclass(frozen=True)
-class Spring(BetweenPoints, Load):
+class Spring(part.BetweenPoints, part.Load):
     """A linear spring between points of two bodies, which pulls with stiffness * (length - free).
 
     Parameters
@@ -185,7 +174,7 @@ class Spring(BetweenPoints, Load):
 
 
 @dataclass(frozen=True)
-class TorsionSpring(Load):
+class TorsionSpring(part.Load):
     """A linear spring between the angles of two bodies: moment -stiffness * (angle - free angle) on the body.
 
     Parameters
@@ -207,10 +196,10 @@ class TorsionSpring(Load):
 
     label = "torsion springs"
 
-    body: Body
+    body: part.Body
     stiffness: Annotated[float, Described("N m/rad", "k", "stiffness", least=0)]
     free_angle: Annotated[float, Described("rad", meaning="angle without moment, from the drawing")]
-    other: Other = GROUND
+    other: part.Other = GROUND
 
     def row(self) -> Row:
         """Return the row whose value is the rotation past the free angle [rad]."""

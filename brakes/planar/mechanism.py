@@ -185,13 +185,11 @@ class Position:
 
     def point(self, body: str, at: Point) -> np.ndarray:
         """Position [m] of a body's point given by its position in the drawing; one row for each instant."""
-        place = self.mechanism.system.place(self.batch, body, at)
-        return place.reshape(*self.coordinates.shape[:-1], 2)
+        return self.mechanism.system.place(self.batch, body, at).reshape(*self.coordinates.shape[:-1], 2)
 
     def angle(self, body: str) -> np.ndarray:
         """Return the angle by which a body has turned from the drawing [rad], at each instant."""
-        angle = self.mechanism.system.angle(self.batch, body)
-        return angle.reshape(self.coordinates.shape[:-1])
+        return self.mechanism.system.angle(self.batch, body).reshape(self.coordinates.shape[:-1])
 
 
 # The curve of positions ------------------------------------------------------------------------------

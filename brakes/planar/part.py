@@ -320,8 +320,7 @@ class Joint(Part):
 
     def size(self, multiplier: np.ndarray) -> np.ndarray:
         """Compute the magnitude of the joint's force for multipliers (positions, rows) [N, N m]."""
-        single = multiplier.shape[1] == 1
-        return multiplier[:, 0] if single else np.hypot.reduce(multiplier, axis=1)
+        return multiplier[:, 0] if multiplier.shape[1] == 1 else np.hypot.reduce(multiplier, axis=1)
 
     def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:
         """Yield warnings of doubtful inputs, given the angles of the bodies over a stroke [rad]."""

@@ -78,8 +78,7 @@ def decompose(a: np.ndarray, rounding: float) -> Decomposition:
     """Decompose a batch of matrices whose entries have a relative rounding error, and find their ranks."""
     u, s, vt = np.linalg.svd(a)
     padded = np.concatenate((s, np.zeros((len(s), 1))), axis=1)
-    largest = np.maximum(padded[:, :1], np.finfo(float).tiny)
-    relative = padded / largest
+    relative = padded / np.maximum(padded[:, :1], np.finfo(float).tiny)
     rank = (relative > rank_tolerance(rounding)).sum(axis=1)
     each = np.arange(len(s))
     return Decomposition(u, s, vt, rank, relative[each, np.maximum(rank - 1, 0)], relative[each, rank])

@@ -37,7 +37,7 @@ def compare_all(screen: Console, folder: Path) -> Sequence[Verdict]:
     for paper in _PAPERS:
         screen.rule()
         print_heading(screen, paper.PAPER)
-        screen.print(f"\n{paper.INTRODUCTION}\n")
+        screen.print(f"\n{paper.PAPER['introduction']}\n")
         print_notes(screen, paper.summary())
         for made in paper.shown():
             screen.print(made)

@@ -61,8 +61,7 @@ def step(printed: str, digits: int | None = None) -> float:
         Number of significant digits, if trailing zeros are only padding.
     """
     if digits is not None:
-        lead = len(printed.partition(".")[0].lstrip("-0"))
-        return 10.0 ** (lead - digits)
+        return 10.0 ** (len(printed.partition(".")[0].lstrip("-0")) - digits)
     if "." in printed:
         return 10.0 ** -len(printed.partition(".")[2])
     return 10.0 if printed.endswith("0") else 1.0

@@ -25,11 +25,6 @@ from brakes.published import load
 from brakes.reproduce.common import Cell, Erratum, PrintedTable, errata_of, errata_table, step
 
 PAPER = load("vardanyan_2019")
-INTRODUCTION = (
-    "Torques of two shoes in a drum over the arc of the lining. The printed equations (12) and (15) do not "
-    "give the printed table: what does is an effective arm rho with another constant, and (15) with the "
-    "other sign of mu b1."
-)
 _INPUT = values_alone(PAPER["input"])
 # Friction coefficient [-], actuating force [N], and angle at which the lining starts [rad].
 _MU, _P, _START = _INPUT["friction"], _INPUT["force"], np.radians(_INPUT["lining_start"])
@@ -204,26 +199,22 @@ def shown() -> Iterator[Group]:
     yield errata_table(heading, errata())
 
 
-def summary() -> Iterator[str]:
-    """Yield the conclusions for a brake engineer, one paragraph each."""
+def summary() -> list[str]:
+    """Return the conclusions for a brake engineer, one paragraph each."""
     printed, right, pivot = table_1(), corrected(), corrected(pressure_zero="pivot")
-    short, long = (float(printed.total[i] / right.torque[i]) for i in (0, -1))
-    yield (
-        f"Do not use Table 1. Its total torque is {100 * short:.0f} % of the right one at 10 deg and "
-        f"{100 * long:.0f} % at 80 deg; it rises with the arc, where at a given force the right one falls. "
-        "The paper's second shoe is self-energising as well; in fact it trails, and gives "
-        f"{float(right.shoes[1].torque[-1]):.3g} in place of {float(printed.second_torque[-1]):.4g} N m. The "
-        f"leading shoe locks at a friction of {float(right.shoes[0].locking_friction[-1]):.3g}; the paper's "
-        "condition for that, (18), has no root."
-    )
+    short, long = (float(100 * printed.total[i] / right.torque[i]) for i in (0, -1))
     pairs = zip(right.shoes, pivot.shoes, strict=True)
-    more = max(float(np.max(axis.c_star / turning.c_star)) for axis, turning in pairs) - 1
-    yield (
-        "The right numbers here keep the paper's pressure (2), which vanishes on the axis. That of a shoe "
-        "which turns about its pin vanishes on the line to the pin. The axis overstates the C* of a shoe by "
-        f"up to {100 * more:.1f} %; the total at 80 deg is {pivot.torque[-1]:.4g} in place of "
-        f"{right.torque[-1]:.4g} N m. `brakes drum` takes the pin unless the file says otherwise."
-    )
+    numbers = {
+        "short": short,
+        "long": long,
+        "second": float(right.shoes[1].torque[-1]),
+        "printed_second": float(printed.second_torque[-1]),
+        "locking": float(right.shoes[0].locking_friction[-1]),
+        "more": 100 * (max(float(np.max(axis.c_star / turning.c_star)) for axis, turning in pairs) - 1),
+        "pivot": pivot.torque[-1],
+        "total": right.torque[-1],
+    }
+    return [paragraph.format(**numbers) for paragraph in PAPER["summary"]]
 
 
 def notes() -> Iterator[str]:

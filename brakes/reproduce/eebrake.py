@@ -70,21 +70,12 @@ def _stroke(split: str, travel: float) -> CaliperStroke:
     return EeBrake(split=split).build().stroke([0.0, travel])  # pyright: ignore[reportArgumentType]
 
 
-def notes() -> tuple[str, ...]:
+def notes() -> list[str]:
     """Return the remarks below the tables."""
-    open_, closed = _stroke("equal force", _CABLE).advantage[[0, -1], 0]
+    advantage = _stroke("equal force", _CABLE).advantage[[0, -1], 0]
+    numbers = dict(zip(("open", "closed"), advantage, strict=True))
     ratio = _stroke("equal work", 0.0).force_symmetry[0]
-    return (
-        "X against f_t does not test whether both arms get the same force. Statics gives "
-        "F_L = (T - F_R delta_R)/delta_L and X/f_t = F_L/F_R: with T = delta_R + delta_L the two are equal "
-        "whatever the geometry; with T = 2 delta_R their ratio is delta_R/delta_L, the ratio of the pads' "
-        f"velocities ({ratio:.5f} here). An error of 2.3 % in T makes the whole difference.",
-        "With both pads on a rigid rim the split between them is statically indeterminate; the two readings "
-        "are equal forces and equal work of both pads.",
-        "The page's 5.6 is the mean over the stroke; in the reconstruction the advantage grows from "
-        f"{open_:.3f} to {closed:.3f}. The hand-lever ratio of 4 is assumed, and the coordinates are "
-        "reconstructed to meet the page's numbers.",
-    )
+    return [note.format(ratio=ratio, **numbers) for note in PAPER["notes"]]
 
 
 def _with_curves() -> Figure:

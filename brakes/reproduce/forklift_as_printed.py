@@ -186,9 +186,8 @@ def base_case(**varied: Numbers) -> tuple[Truck, StopConditions]:
     paper = values_alone(load("yoo_1997"))
     case = paper["input"] | varied
     truck = ("empty_mass", "empty_cg", "load_mass", "load_cg", "front_wheel_radius", "wheelbase")
-    road = ("slope", "friction", "reaction_time", "rise_time")
     return Truck(**{name: case[name] for name in truck}), StopConditions(
-        **{name: case[name] for name in road},
+        **{name: case[name] for name in ("slope", "friction", "reaction_time", "rise_time")},
         speed=case["speed"] / 3.6,  # the paper's speed is in km/h
         gravity=paper["reproduction"]["gravity"],
     )

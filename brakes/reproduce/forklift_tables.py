@@ -23,13 +23,6 @@ from brakes.reproduce.forklift_as_printed import BRAKE, FORCES, VEHICLE
 from brakes.reproduce.newton import newton_raphson
 
 PAPER = load("yoo_1997")
-INTRODUCTION = (
-    "A loaded truck reverses down a slope and stops with locked front wheels; one of its two front brakes is "
-    'a duo-servo brake of 12.5 in. "ours" follows the paper (Tables 2-4 with an arm y_cg - r1 and a factor '
-    '0.97 on the slope\'s pull, which it does not mention), "corrected" is the right mechanics. Tables 5-7 '
-    "rest on pin positions fitted to them: the paper prints none. Base case: 5950 kg with a load of 3500 kg, "
-    "0.3019 rad (17.3 deg), 20 km/h, friction 0.7 on the ground, front wheels of 0.40 m radius."
-)
 _INPUT = values_alone(PAPER["input"])
 _HEADS = {  # headings of the tables, by input or quantity
     "friction": "friction",
@@ -93,59 +86,48 @@ def shown() -> Iterator[Group]:
     yield errata_table("What is wrong in the paper, and what follows at its base case", as_printed.errata())
 
 
-def summary() -> Iterator[str]:
-    """Yield the conclusions for a brake engineer, one paragraph each."""
+def summary() -> list[str]:
+    """Return the conclusions for a brake engineer, one paragraph each."""
     printed, right = _stops()
     high, low = float(printed.torque_per_brake), float(right.torque_per_brake)
     short, long = float(printed.distance), float(right.distance)
-    yield (
-        f"The paper's errors make the torque {100 * (high / low - 1):.0f} % too high ({high:.0f} in place of "
-        f"{low:.0f} N m), which is safe for strength. They make the stopping distance too short: "
-        f"{short:.2f} m where the truck needs {long:.2f} m, {100 * (long / short - 1):.0f} % more, "
-        "which is not safe. Unladen on this slope, where Table 3 has 120.5 m, the truck does not stop at all."
-    )
+    percents = {"torque_high": 100 * (high / low - 1), "longer": 100 * (long / short - 1)}
+    return [PAPER["summary"].format(high=high, low=low, short=short, long=long, **percents)]
 
 
-def notes() -> Iterator[str]:
-    """Yield the remarks below the tables: misfit, lining friction, motion of the shoes, Newton-Raphson."""
+def notes() -> list[str]:
+    """Return notes on the tables, in the order of their numbers."""
     compared, misfit, forces = tables(), PAPER["misfit"][0], as_printed.base_forces()
     every = [cell for name in VEHICLE for cell in compared[name].cells]
-    yield (
-        f"(1) {sum(cell.agrees for cell in every)} of {len(every)} numbers of Tables 2-4 agree to their "
-        f"digits. {misfit['where']}: printed {misfit['printed']}, ours {misfit['ours']}, which rounds to "
-        "10.0; why is not known."
-    )
-    needed = _stops()[1].torque_per_brake
-    right = internal_forces(forces.levers, torque=needed, piston_force=_INPUT["piston_force"])
-    yield (
-        "The friction of the lining is a result of the paper's equations, which it does not show: "
-        f"{float(forces.lining_friction):.3g} at 11000 N m ({float(right.lining_friction):.3g} at the "
-        "corrected torque). With less, this piston force does not lock the wheels; the brake locks by "
-        f"itself at {float(forces.locking_friction):.3g}. The leading shoe does "
-        f"{100 * float(forces.leading_share):.0f} % of the work, C* = {float(forces.c_star):.3g}, and the "
-        f"cylinder's bolts carry {float(np.hypot(*forces.bolt_force)) / 1e3:.0f} kN."
+    right = internal_forces(
+        forces.levers, torque=_stops()[1].torque_per_brake, piston_force=_INPUT["piston_force"]
     )
     followed, motion = _follow(), BENDIX_12_5.move_shoes(_INPUT["clearance"])
     stages = followed.right, followed.left, followed.drum
     full = all(int(stage.rank.min()) == stage.constraints for stage in stages)
-    turn, psi = np.degrees(float(motion.seating_turn)), np.degrees(float(motion.drum_turn))
-    yield (
-        f"On the way the shoes turn {turn:.2f} deg until the linings touch, then with the drum by "
-        f"{psi:.2f} deg; the constraints have {'no redundant row' if full else 'redundant rows'} on the "
-        "way. With these pins a lining concentric at rest would enter the drum by "
-        f"{1e3 * float(motion.lining_penetration):.2f} mm near "
-        f"{np.degrees(float(motion.penetration_angle)):.0f} deg: unless it is ground to fit, it touches "
-        "there first."
-    )
     case = {"torque": _INPUT["torque"], "piston_force": _INPUT["piston_force"]}
     scaled, plain = (newton_raphson(forces.levers, **case, scaled=scaled) for scaled in (True, False))
-    same = abs(scaled.unknowns[8] / float(forces.Q) - 1) < 1e-9
-    yield (
-        f"The paper's Newton-Raphson on ten equations ends at {'the same' if same else 'other'} forces in "
-        f"{scaled.iterations} steps from a good start; from most starts it does not. In SI units the "
-        f"condition number is {plain.condition_number:.1e}, in units of T/r and r "
-        f"{scaled.condition_number:.0f}. Our reduction to one equation needs no start."
-    )
+    numbers = {
+        **{name: misfit[name] for name in ("where", "printed", "ours")},
+        "agreeing": sum(cell.agrees for cell in every),
+        "compared": len(every),
+        "friction": float(forces.lining_friction),
+        "right_friction": float(right.lining_friction),
+        "locking": float(forces.locking_friction),
+        "share": 100 * float(forces.leading_share),
+        "c_star": float(forces.c_star),
+        "bolts": float(np.hypot(*forces.bolt_force)) / 1e3,
+        "turn": np.degrees(float(motion.seating_turn)),
+        "psi": np.degrees(float(motion.drum_turn)),
+        "rows": "no redundant row" if full else "redundant rows",
+        "penetration": 1e3 * float(motion.lining_penetration),
+        "angle": np.degrees(float(motion.penetration_angle)),
+        "same": "the same" if abs(scaled.unknowns[8] / float(forces.Q) - 1) < 1e-9 else "other",
+        "steps": scaled.iterations,
+        "plain": plain.condition_number,
+        "scaled": scaled.condition_number,
+    }
+    return [note.format(**numbers) for note in PAPER["notes"]]
 
 
 def _stops(**varied: Any) -> tuple[Stop, Stop]:

@@ -182,7 +182,6 @@ def _deceleration(c: StopConditions, left: Numbers) -> Numbers:
     way = np.where(np.asarray(left) > 0, left, np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):
         late = way - V * t2 / 2  # the deceleration d solves t2^2 d^2 / 24 + late d - V^2 / 2 = 0
-        root = np.sqrt(late**2 + t2**2 * V**2 / 12)
-        rolling = V**2 / (late + root)
+        rolling = V**2 / (late + np.sqrt(late**2 + t2**2 * V**2 / 12))
         rising = 2 * V * t2 * (2 * V / (3 * way)) ** 2
         return np.where(way < 2 / 3 * V * t2, rising, np.where(way < np.inf, rolling, 0.0))

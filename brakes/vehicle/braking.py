@@ -134,7 +134,6 @@ def braking_limits(
     with np.errstate(invalid="ignore"):
         equal = np.abs(front - rear) <= _EDGE * lock
     kinds = [lock >= pitching * (1 - _EDGE), equal, front < rear]
-    first = np.select(kinds, ["pitching over", "both", "front"], default="rear")
     return Braking(
         vehicle,
         mu,
@@ -147,5 +146,5 @@ def braking_limits(
         front_locks=front[()],
         rear_locks=rear[()],
         largest=np.minimum(lock, pitching)[()],
-        first=first[()],
+        first=np.select(kinds, ["pitching over", "both", "front"], default="rear")[()],
     )

@@ -302,12 +302,11 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
     stops, near = -undecided > A, np.abs(A) <= undecided
     in_rise, lost, rise, braking, time = _slow_down(V, A, t2, stops)
     weak = ~stops & rolls & (gs < mu * locked / M)
-    status = np.select([near, weak, ~stops, in_rise], _KINDS, default="stops")
     return Stop(
         truck=truck,
         conditions=conditions,
         stops=stops[()],
-        status=status[()],
+        status=np.select([near, weak, ~stops, in_rise], _KINDS, default="stops")[()],
         acceleration=A[()],
         distance=(V * t1 + rise + braking)[()],
         time=(t1 + time)[()],

@@ -62,8 +62,7 @@ def _deviations(values: np.ndarray, in_digits: np.ndarray) -> list[str]:
 
 def comparison_tables(result: bd.FrequencyComparison) -> Group:
     """Make tables of measured and computed frequencies, and of single inputs that may explain deviations."""
-    columns = comparison_columns(result)
-    parts = [table_of(columns, result.display_units, keys=2)]
+    parts = [table_of(comparison_columns(result), result.display_units, keys=2)]
     if result.explanations:
         rows = [
             (
@@ -199,11 +198,10 @@ def design_tables(result: bd.FoundDesign) -> Group:
         "",
         f"relative change over that of {', '.join(in_files(InputName(name)) for name in result.names)}",
     )
-    notes = (Text(in_files(each, result.display_units)) for each in result.sentences())
     return Group(
         table(title, ("number", "in the scene", "found", "from", "to"), _numbers(result, said), range(5)),
         table("What was wanted", heads, rows, (0, 1, 2, 3, 4)),
-        *notes,
+        *(Text(in_files(each, result.display_units)) for each in result.sentences()),
     )
 
 

@@ -107,14 +107,13 @@ def matrices_table(result: bd.Matrices) -> Group:
     lowest = result.error[: 2 * _PAIRS : 2].tolist()
     of_pairs = ", ".join(rounded_up(each) if isfinite(each) else "not known" for each in lowest)
     errors = f"Relative errors of the lowest poles, pair by pair: {of_pairs}."
-    inputs = f"{errors} Inputs: {', '.join(result.inputs)}. JSON and CSV have the matrices."
     columns = Columns(
         Column("row", range(1, len(result.coordinates) + 1)),
         Column("coordinate", result.coordinates),
         Column("mass, diagonal", result.mass.diagonal()),
         Column("stiffness, diagonal", result.stiffness.diagonal()),
         title=f"Equations at {speed}, by {result.provenance.method}",
-        note=inputs,
+        note=f"{errors} Inputs: {', '.join(result.inputs)}. JSON and CSV have the matrices.",
     )
     return table_of(columns, result.display_units)
 

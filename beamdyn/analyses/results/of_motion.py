@@ -244,11 +244,7 @@ def _road_columns(result: bd.Harvest) -> tuple[Column, ...]:
         Column("road_current_rms", road.current, "A", error=of_rms * road.current, words="rms current"),
         Column("road_strain_rms", road.strain, error=road.strain_error, words="rms strain"),
         Column(
-            "road_deflection_rms",
-            road.deflection,
-            "m",
-            error=road.deflection_error,
-            words="rms deflection",
+            "road_deflection_rms", road.deflection, "m", error=road.deflection_error, words="rms deflection"
         ),
     )
 

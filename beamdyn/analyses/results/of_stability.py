@@ -47,10 +47,6 @@ def multiplier_columns(result: bd.FloquetMultipliers) -> Columns:
     )
 
 
-def _multiplier_table(result: bd.FloquetMultipliers) -> Group:
-    return table_of(multiplier_columns(result), result.display_units)
-
-
 def chart_table(result: bd.StabilityChart, units: Mapping[str, tuple[str, float]] = _SI) -> Group:
     """Make a table of unstable ranges of the second input, for values of the first input.
 
@@ -64,8 +60,6 @@ def chart_table(result: bd.StabilityChart, units: Mapping[str, tuple[str, float]
     names = [(_words(each), *units.get(each.name, (each.unit, 1.0))) for each in result.inputs]
     (first, *_), (second, *_) = heads = [(f"{n} [{u}]" if u else n, u, size) for n, u, size in names]
     values = [each.values / size for each, (*_, size) in zip(result.inputs, heads, strict=True)]
-    number = len(values[0])
-    shown = evenly_spread(number, _MOST_ROWS)
     rows = [
         (
             f"{values[0][k]:.6g}",
@@ -73,7 +67,7 @@ def chart_table(result: bd.StabilityChart, units: Mapping[str, tuple[str, float]
             f"{result.growth_rate[k].max():.4g}",
             f"{result.growth_rate_error[k].max():.1g}",
         )
-        for k in shown
+        for k in evenly_spread(len(values[0]), _MOST_ROWS)
     ]
     title = f"Where free motion grows, by {result.provenance.method}"
     return table(title, (first, f"not stable at {second}", "largest growth rate [1/s]", "error"), rows, (1,))
@@ -139,7 +133,7 @@ def _limit_table(result: bd.StabilityLimits) -> Group:
 
 
 VIEWS = {
-    "FloquetMultipliers": View(_multiplier_table, multiplier_columns, 1),
+    "FloquetMultipliers": View(None, multiplier_columns, 1),
     "StabilityChart": View(chart_table, chart_columns, 2),
     "StabilityLimits": View(_limit_table, limit_columns, 1),
 }

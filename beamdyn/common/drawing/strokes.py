@@ -137,10 +137,9 @@ def strokes_of(layout: Layout) -> Iterator[Stroke]:
 
 def letters_of(text: Text) -> list[Letters]:
     """Return the lines of a text that are not blank."""
-    lines = zip(text.lines, text.baselines, strict=True)
     made = [
         Letters(text.symbol if i == 0 else "", line, float(text.centre[0]), y, text.letters, text.role)
-        for i, (line, y) in enumerate(lines)
+        for i, (line, y) in enumerate(zip(text.lines, text.baselines, strict=True))
     ]
     return [each for each in made if each.symbol or each.words]
 

@@ -87,8 +87,7 @@ class Report:
         tables = html(self.tables) + further(self.more)
         title = self.question.title
         made = "" if draw is None else picture(drawing(draw), title)
-        part = ("Results", self.warnings, tables, made)
-        return report_page(title, self.question.inputs, [part])
+        return report_page(title, self.question.inputs, [("Results", self.warnings, tables, made)])
 
 
 def further(parts: Iterable[tuple[str, Callable[[], str]]]) -> str:

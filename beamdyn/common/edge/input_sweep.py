@@ -196,8 +196,7 @@ def swept(
 def sweep_csv(swept: InputSweep) -> Columns:
     """Make columns with one row per design: inputs, results, and the reason if a result is missing."""
     rows, why = [*sweep_rows(swept)], dict(swept.refused)
-    cells = [*zip(*rows, strict=True)]
-    named = zip(columns(swept), cells, strict=True)
+    named = zip(columns(swept), zip(*rows, strict=True), strict=True)
     each = [column_named(name, values, unit) for (name, unit), values in named]
     reasons = [Column("no_answer", [why.get(row, "") for row in range(len(rows))])] if why else []
     return Columns(*each, *reasons)

@@ -129,8 +129,7 @@ class Described:
 
 def description(hint: Any) -> Described | None:
     """Return the `Described` object in a type annotation or in one of its parts; None if there is none."""
-    parts = (hint, *get_args(hint))
-    found = (entry for part in parts for entry in getattr(part, "__metadata__", ()))
+    found = (entry for part in (hint, *get_args(hint)) for entry in getattr(part, "__metadata__", ()))
     return next((entry for entry in found if isinstance(entry, Described)), None)
 
 
@@ -153,8 +152,7 @@ def described_hints(made: Callable[..., Any]) -> dict[str, Any]:
 @cache
 def descriptions(made: Callable[..., Any]) -> dict[str, Described]:
     """Return the `Described` objects of the arguments of a dataclass or function, in order."""
-    hints = described_hints(made)
-    return {name: found for name, hint in hints.items() if (found := description(hint))}
+    return {name: found for name, hint in described_hints(made).items() if (found := description(hint))}
 
 
 # Designs: combinations of input values ---------------------------------------------------------------

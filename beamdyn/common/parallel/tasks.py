@@ -321,7 +321,9 @@ class _TaskRun:
                     self._finish(own, _solve(self.solve, own.made))
                 elif not self.flying:
                     return
-                self._collect(wait(self.flying, None if own is None else 0.0, FIRST_COMPLETED).done)
+                for future in wait(self.flying, None if own is None else 0.0, FIRST_COMPLETED).done:
+                    result = self._ask(future.result)
+                    self._finish(self.flying.pop(future), result)
         finally:
             self._land()
 
@@ -329,11 +331,6 @@ class _TaskRun:
         for pending in tasks:
             future = self._ask(executor.submit, _returning_errors, self.solve, pending.made)
             self.flying[future] = pending
-
-    def _collect(self, done: Iterable[Future[Any]]) -> None:
-        for future in done:
-            result = self._ask(future.result)
-            self._finish(self.flying.pop(future), result)
 
     def _take_back(self) -> _Pending | None:
         """Withdraw a submitted task that has not begun; None if there is none."""

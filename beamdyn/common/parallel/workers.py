@@ -100,12 +100,11 @@ class _Process:
     """A process that reads pickled tasks from its standard input, and writes results to its output."""
 
     def __init__(self) -> None:
-        path = os.pathsep.join(p or os.getcwd() for p in sys.path)
         self._popen = subprocess.Popen(
             [sys.executable, "-P", "-c", _SERVE],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            env={**os.environ, "PYTHONPATH": path},
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(p or os.getcwd() for p in sys.path)},
         )
         assert self._popen.stdin is not None and self._popen.stdout is not None
         self._tasks, self._answers = self._popen.stdin, self._popen.stdout

@@ -239,11 +239,11 @@ def plot_maps(inputs: Sequence[MapInput], answers: Sequence[MapAnswer], ax: Axes
     inches = ax.bbox.width / ax.figure.dpi
     count, columns = _grid(inputs, answers, inches)
     whole, each = (ax, [ax]) if count == 1 else panels(count, ax, columns)
-    for k, (panel, (title, value, reason, meets)) in enumerate(zip(each, shown, strict=True)):
+    for k, (panel, answer) in enumerate(zip(each, shown, strict=True)):
         draw = _draw_map if len(over) > 1 else _draw_curve
-        draw(panel, [inputs[i] for i in over[:2]], value, reason, meets)
+        draw(panel, [inputs[i] for i in over[:2]], answer)
         letters = max(int(_LETTERS * inches / columns), 12)
-        rows = (row for line in title.splitlines() for row in textwrap.wrap(line, letters))
+        rows = (row for line in answer.title.splitlines() for row in textwrap.wrap(line, letters))
         panel.set_title("\n".join(rows), fontsize=10)
         if k + columns < count:
             panel.set_xlabel("")
@@ -274,11 +274,8 @@ def _thirds(given: MapInput) -> list[int]:
     return evenly_spread(len(given.values), _MOST_THIRD).tolist()
 
 
-_Panel = tuple[str, np.ndarray, np.ndarray, dict[str, np.ndarray]]
-
-
-def _panels(inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> Iterator[_Panel]:
-    """Yield title, values, reasons and comparison lines of each panel, over one or two varied inputs."""
+def _panels(inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> Iterator[MapAnswer]:
+    """Yield the part of a result that each panel shows, over one or two varied inputs."""
     over = _varied(inputs)
     thirds = _thirds(inputs[over[2]]) if len(over) > 2 else [0]
     known = [each for each in answers if np.isfinite(each.value).any()] or answers[:1]
@@ -291,7 +288,8 @@ def _panels(inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> Iterato
         fixed = [each.at(place[i]) for i, each in enumerate(inputs) if i not in over[:2]]
         at = tuple(place)
         meets = {name: np.broadcast_to(each, answer.value.shape)[at] for name, each in answer.meets.items()}
-        yield "\n".join([answer.title, ", ".join(fixed)]).strip(), answer.value[at], answer.reason[at], meets
+        title = "\n".join([answer.title, ", ".join(fixed)]).strip()
+        yield MapAnswer(title, answer.value[at], answer.reason[at], meets)
 
 
 def _set_up(ax: Axes, inputs: Sequence[MapInput], ylabel: str = "") -> None:
@@ -309,19 +307,13 @@ def _set_up(ax: Axes, inputs: Sequence[MapInput], ylabel: str = "") -> None:
 # Over two inputs -------------------------------------------------------------------------------------
 
 
-def _draw_map(
-    ax: Axes,
-    inputs: Sequence[MapInput],
-    value: np.ndarray,
-    reason: np.ndarray,
-    meets: Mapping[str, np.ndarray],
-) -> None:
+def _draw_map(ax: Axes, inputs: Sequence[MapInput], answer: MapAnswer) -> None:
     """Draw contour lines over two inputs on a hatched background."""
     _set_up(ax, inputs)
     orders = [np.argsort(each.values, kind="stable") for each in inputs]
     x, y = (each.values[order] for each, order in zip(inputs, orders, strict=True))
     sort = np.ix_(*orders)
-    z, why = np.where(np.isfinite(value), value, np.nan)[sort].T, reason[sort].T
+    z, why = np.where(np.isfinite(answer.value), answer.value, np.nan)[sort].T, answer.reason[sort].T
     labels = PlacedLabels(ax)
     ax.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
     _mark_present(ax, labels, *(each.present for each in inputs))
@@ -329,7 +321,7 @@ def _draw_map(
     if lacking.any():
         _hatch(ax, x, y, lacking)
         _name_regions(ax, labels, x, y, lacking, why)
-    for name, other in meets.items():
+    for name, other in answer.meets.items():
         _draw_meeting(ax, labels, x, y, z - other[sort].T, name)
     _draw_levels(ax, labels, x, y, z)
 
@@ -350,16 +342,11 @@ def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z
     pale = colors.ListedColormap(colormaps["YlGnBu"](np.linspace(*_PALE, 64)))
     bounds = np.union1d(levels, [np.nextafter(low, -np.inf), np.nextafter(high, np.inf)])
     # Colours extend to the edge of the hatched region.
-    ax.contourf(x, y, _extended(z), bounds, cmap=pale, zorder=1)
+    _, (rows, columns) = _nearest_outside(~np.isfinite(z))
+    ax.contourf(x, y, z[rows, columns], bounds, cmap=pale, zorder=1)
     drawn = ax.contour(x, y, z, levels, colors="0.25", linewidths=1.0, zorder=2)
     for level, paths in zip(levels.tolist(), drawn.allsegs, strict=True):
         _label_path(labels, f"{level:.{_DIGITS}g}", paths, color="0.1")
-
-
-def _extended(z: np.ndarray) -> np.ndarray:
-    """Replace missing values by the value of the nearest grid point that has one."""
-    _, (rows, columns) = _nearest_outside(~np.isfinite(z))
-    return z[rows, columns]
 
 
 def _nearest_outside(region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -440,17 +427,15 @@ def _mark_present(ax: Axes, labels: PlacedLabels, x: float | None, y: float | No
 # Over one input --------------------------------------------------------------------------------------
 
 
-def _draw_curve(
-    ax: Axes,
-    inputs: Sequence[MapInput],
-    value: np.ndarray,
-    reason: np.ndarray,
-    meets: Mapping[str, np.ndarray],
-) -> None:
+def _draw_curve(ax: Axes, inputs: Sequence[MapInput], answer: MapAnswer) -> None:
     """Draw a result over one input as a curve; intervals without a result are hatched."""
     given = inputs[0]
     order = np.argsort(given.values, kind="stable")
-    x, y, why = given.values[order], np.where(np.isfinite(value), value, np.nan)[order], reason[order]
+    x, y, why = (
+        given.values[order],
+        np.where(np.isfinite(answer.value), answer.value, np.nan)[order],
+        answer.reason[order],
+    )
     _set_up(ax, inputs, " ")
     labels = PlacedLabels(ax)
     ax.plot(x, y, color=COLOURS[0], linewidth=1.8, marker="." if len(x) <= _FEW else "")
@@ -466,8 +451,8 @@ def _draw_curve(
         heights = np.linspace(*ends, 12)[1:-1]
         labels.add("present design", np.stack([np.full(10, given.present), heights], axis=1))
     _hatch_spans(ax, labels, x, y, why)
-    for name, other in meets.items():
-        line = np.broadcast_to(other, value.shape)[order]
+    for name, other in answer.meets.items():
+        line = other[order]
         ax.plot(x, line, color=_MEETS, linewidth=1.2, linestyle="--", scalex=False, scaley=False)
         inside = (line > ends[0]) & (line < ends[1])
         if inside.any():

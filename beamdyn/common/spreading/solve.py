@@ -6,7 +6,7 @@ In shapes of arrays, N counts designs, d inputs, and k results.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import Any
 
@@ -18,9 +18,9 @@ from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Statement, after
 from beamdyn.common.spreading.first_order import KnownDerivatives, first_order_of, slopes_from
 from beamdyn.common.spreading.spread_result import Spread
-from beamdyn.common.spreading.statistics import Scatter, SpreadDesigns, indices_of, scatter_of
+from beamdyn.common.spreading.statistics import SpreadDesigns, indices_of, scatter_of
 from beamdyn.common.spreading.tolerances import SpreadInput
-from beamdyn.common.spreading.worst_case import BOTH, WorstCases, trends_of, worst_cases
+from beamdyn.common.spreading.worst_case import BOTH, trends_of, worst_cases
 from beamdyn.common.words import percent
 
 _FEW = 3  # largest number of reasons for missing results that a warning lists
@@ -114,10 +114,7 @@ def solve_spread(
     trends = trends_of(random, errors[2], sampled[:samples], sampled[samples:])
     worst = worst_cases(inputs, trends, designs.table, found.value, found.absolute_error, further)
     scatter, indices = scatter_of(random[:2]), indices_of(random, worst_error)
-    states = _states(designs.part(found.status)[2][:2])
-    notes = _notes(found.answers, inputs, trends, worst, scatter, states, worst_error)
-    wall = perf_counter() - start
-    return Spread(
+    made = Spread(
         what=what,
         answers=found.answers,
         units=found.units,
@@ -129,14 +126,16 @@ def solve_spread(
         trends=trends,
         scatter=scatter,
         indices=indices,
-        states=states,
+        states=_states(designs.part(found.status)[2][:2]),
         samples=samples,
         seed=seed,
         sampled_inputs=sampled,
         sampled_answers=random[:2].reshape(2 * samples, -1),
-        warnings=(*cautions, *known.warnings, *notes, *found.warnings, *further.warnings(found.warnings)),
-        provenance=Provenance(__version__, found.method, found.compared_with, wall),
+        warnings=(),
+        provenance=Provenance(__version__, found.method, found.compared_with, perf_counter() - start),
     )
+    said = (*cautions, *known.warnings, *_notes(made, worst_error), *found.warnings)
+    return replace(made, warnings=(*said, *further.warnings(found.warnings)))
 
 
 def _columns(inputs: Sequence[SpreadInput], designs: np.ndarray) -> dict[str, np.ndarray]:
@@ -199,8 +198,7 @@ class _FurtherAnswers:
 
 def _subject(sentence: str) -> tuple[str, ...]:
     """Return the key by which repeated warnings are recognized: kind and quantity, or else the text."""
-    is_data = isinstance(sentence, Statement)
-    return (sentence.kind, sentence.quantity) if is_data else (sentence,)
+    return (sentence.kind, sentence.quantity) if isinstance(sentence, Statement) else (sentence,)
 
 
 def _largest_error(found: SpreadAnswers) -> np.ndarray:
@@ -226,35 +224,27 @@ def _states(status: np.ndarray) -> tuple[dict[str, float], ...]:
 # Warnings ---------------------------------------------------------------------------------------
 
 
-def _notes(
-    answers: Sequence[str],
-    inputs: Sequence[SpreadInput],
-    trends: np.ndarray,
-    worst: WorstCases,
-    scatter: Scatter,
-    states: Sequence[dict[str, float]],
-    error: np.ndarray,
-) -> Iterator[str]:
+def _notes(spread: Spread, error: np.ndarray) -> Iterator[str]:
     """Yield sentences on what limits the statistics of each result."""
-    yield from _without_answer(answers, scatter.no_answer, states)
-    for k, name in enumerate(answers):
+    yield from _without_answer(spread)
+    worst = spread.worst
+    for k, name in enumerate(spread.answers):
         if worst.searched[k]:
-            turning = [each.name for each, trend in zip(inputs, trends[:, k], strict=True) if trend == BOTH]
+            trends = zip(spread.inputs, spread.trends[:, k], strict=True)
+            turning = [each.name for each, trend in trends if trend == BOTH]
             why = f"it rises and falls with {', '.join(turning)}" if turning else "a corner is not the worst"
             ended = (
                 f"a search that was ended after {worst.designs} designs" if worst.cut_short[k] else "a search"
             )
             yield f"{name}: {why}, so that its worst cases come from {ended}: there may be worse"
-        if scatter.deviation[k] <= error[k]:
+        if spread.scatter.deviation[k] <= error[k]:
             yield f"{name}: it scatters by no more than its numerical error, {error[k]:.1g}: no indices"
 
 
-def _without_answer(
-    answers: Sequence[str], shares: np.ndarray, states: Sequence[dict[str, float]]
-) -> Iterator[str]:
+def _without_answer(spread: Spread) -> Iterator[str]:
     """Yield sentences on missing results, one for all results with the same reasons."""
     said: dict[str, list[str]] = {}
-    for name, share, parts in zip(answers, shares, states, strict=True):
+    for name, share, parts in zip(spread.answers, spread.scatter.no_answer, spread.states, strict=True):
         why = ", ".join(f"{state} {percent(part)}" for state, part in parts.items())
         if share == 1:
             said.setdefault(f"no random design has an answer ({why})", []).append(name)

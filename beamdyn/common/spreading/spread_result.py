@@ -129,8 +129,7 @@ class Spread(Result):
         top = int(total.argmax())
         near = total[top] - total <= _APART * np.hypot(error, error[top])
         near[top] = True
-        order = np.argsort(-total, kind="stable")
-        return tuple(self.inputs[i].name for i in order if near[i])
+        return tuple(self.inputs[i].name for i in np.argsort(-total, kind="stable") if near[i])
 
     def design(self, row: int) -> dict[str, float]:
         """Return the inputs of a random design, by name, in SI units: a row of `sampled_inputs`."""

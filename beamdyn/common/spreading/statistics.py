@@ -214,15 +214,10 @@ def scatter_of(random: np.ndarray) -> Scatter:
     random : ndarray, shape (2, samples, results)
         Results of the samples A and B; not finite where there is none.
     """
-    blocks = _in_blocks(random)
-    return Scatter(*(np.stack(each, axis=-1) for each in zip(*map(_scatter_of_one, blocks), strict=True)))
-
-
-def _in_blocks(random: np.ndarray) -> np.ndarray:
-    """Arrange k results of 2 n random designs in blocks: shape (k, BLOCKS, 2 n / BLOCKS)."""
     two, n, k = random.shape
     blocks = random.reshape(two, BLOCKS, n // BLOCKS, k)
-    return np.moveaxis(blocks, -1, 0).transpose(0, 2, 1, 3).reshape(k, BLOCKS, -1)
+    blocks = np.moveaxis(blocks, -1, 0).transpose(0, 2, 1, 3).reshape(k, BLOCKS, -1)
+    return Scatter(*(np.stack(each, axis=-1) for each in zip(*map(_scatter_of_one, blocks), strict=True)))
 
 
 def _scatter_of_one(values: np.ndarray) -> tuple[np.ndarray | float, ...]:

@@ -195,8 +195,7 @@ def parse_tolerance(name: str, text: str, nominal: float, unit: str, convert: Co
         return _relative(name, text, number, nominal, unit) if written == "%" else convert(number, written)
 
     if found := _DEVIATION.fullmatch(given):
-        deviation = _wide(name, text, size(found[1], found[2]))
-        return Normal(nominal, deviation, given)
+        return Normal(nominal, _wide(name, text, size(found[1], found[2])), given)
     if found := _BOTH.fullmatch(given):
         width = size(found[1], found[2])
         low, high = nominal - width, nominal + width

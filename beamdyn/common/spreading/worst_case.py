@@ -145,9 +145,8 @@ def worst_cases(
     at, value, wrong = (np.array(each) for each in zip(*cases, strict=True))
     rows, cut, count = np.flatnonzero(np.repeat(searched, 2) & np.isfinite(value)), np.zeros(2 * k, bool), 0
     if rows.size:
-        start = _Case(at[rows], value[rows], wrong[rows])
         (at[rows], value[rows], wrong[rows]), cut[rows], count = _search(
-            start, rows, (low, high), answer, len(designs)
+            _Case(at[rows], value[rows], wrong[rows]), rows, (low, high), answer, len(designs)
         )
     return WorstCases(
         smallest=value[::2],

@@ -305,10 +305,9 @@ def find_steps(blade: Blade) -> tuple[PropertyStep, ...]:
     for name in _STEPPED:
         if (values := blade.columns.get(name)) is not None:
             factors = values[1:] / values[:-1]
-            steep = np.flatnonzero(np.maximum(factors, 1 / factors) >= STEEP)
             found += [
                 PropertyStep(_STEPPED_NAMES[name], float(x[k]), float(x[k + 1]), float(factors[k]))
-                for k in steep
+                for k in np.flatnonzero(np.maximum(factors, 1 / factors) >= STEEP)
             ]
     return tuple(sorted(found, key=lambda step: step.start))
 

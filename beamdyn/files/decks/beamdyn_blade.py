@@ -65,7 +65,6 @@ def read_main_file(text: DataText, hub_radius: float) -> Blade:
     x, angles = _angles_of_line(points, members)
     kept = _places(x / x[-1], angles, blade.matrices.stations)
     at_kept = (_interpolated(kept, x / x[-1], a) for a in angles)
-    columns = dict(zip(("twist", "sweep", "prebend"), at_kept, strict=True))
     return replace(
         blade,
         kind=f"BeamDyn primary file and {blade.kind}",
@@ -73,7 +72,7 @@ def read_main_file(text: DataText, hub_radius: float) -> Blade:
         sources=(text.path, *blade.sources),
         length=float(x[-1]),
         stations=kept,
-        columns=columns,
+        columns=dict(zip(("twist", "sweep", "prebend"), at_kept, strict=True)),
     )
 
 
@@ -121,8 +120,7 @@ def _check_line(text: DataText, points: np.ndarray, lines: Sequence[int]) -> Non
     """Raise an error if the reference line does not start at the root, or turns back on itself."""
     if points[0, :3].any():
         raise text.refusal(lines[0], "expected the first key point at 0 0 0, the root")
-    chords = np.diff(points[:, :3], axis=0)
-    along = np.concatenate([[[0.0, 0.0, 1.0]], chords])
+    along = np.concatenate([[[0.0, 0.0, 1.0]], np.diff(points[:, :3], axis=0)])
     ahead = (along[1:] * along[:-1]).sum(axis=1)
     if (bad := np.flatnonzero(ahead <= 0)).size:
         k = bad[0] + 1

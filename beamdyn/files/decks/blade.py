@@ -82,14 +82,16 @@ def read_stations(text: DataText, known: Sequence[DeckColumn], count: NamedValue
         If headings, units, rows or the number of rows are invalid.
     """
     head_line = _find_heads(text, known, count)
-    by_name = {plain_name(column.name): column for column in known}
-    heads = _read_heads(text, head_line, by_name)
+    heads = _read_heads(text, head_line, {plain_name(column.name): column for column in known})
     _check_units(text, head_line + 1, heads)
     rows, lines = _read_rows(text, head_line + 2, heads, count)
     columns = {column.name: rows[:, place].copy() for place, column in enumerate(heads)}
     check_order(text, lines, heads[0].name, columns[heads[0].name])
     for column in heads:
-        _check_positive(text, lines, column, columns[column.name])
+        values = columns[column.name]
+        if column.positive and (bad := np.flatnonzero(values <= 0)).size:
+            found = f"{values[bad[0]]:g} {column.unit}"
+            raise text.refusal(lines[bad[0]], f"expected {column.name} above 0, found {found}")
     return Stations(columns, {column.name: column.unit for column in heads}, lines)
 
 
@@ -191,12 +193,6 @@ def check_order(text: DataText, lines: Sequence[int], name: str, stations: np.nd
         raise text.refusal(lines[0], f"expected {name} = 0, the root, found {stations[0]:g}")
     if stations[-1] != 1:
         raise text.refusal(lines[-1], f"expected {name} = 1, the tip, found {stations[-1]:g}")
-
-
-def _check_positive(text: DataText, lines: Sequence[int], column: DeckColumn, values: np.ndarray) -> None:
-    if column.positive and (bad := np.flatnonzero(values <= 0)).size:
-        found = f"{values[bad[0]]:g} {column.unit}"
-        raise text.refusal(lines[bad[0]], f"expected {column.name} above 0, found {found}")
 
 
 # Blades -------------------------------------------------------------------------------------------

@@ -239,8 +239,7 @@ class UserMotion(Motion):
     def __post_init__(self) -> None:
         function("function", self.function, "it takes an array of times [s] and returns a MotionSample")
         set_fields(self, breakpoints=as_breakpoints(self.breakpoints))
-        for_ever = isinstance(self.t_end, float) and self.t_end == math.inf
-        if not for_ever:
+        if not (isinstance(self.t_end, float) and self.t_end == math.inf):
             set_fields(self, t_end=positive("t_end", self.t_end, "s"))
             check_consistent(self, self.t_end)
 

@@ -11,31 +11,15 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self, get_args
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import (
-    function,
-    moderate,
-    one_of,
-    real,
-    real_array,
-    refuse,
-    set_fields,
-    size,
-)
+from beamdyn.common.inputs import checks
 from beamdyn.common.inputs.described import Described
-from beamdyn.scene.motion.base import (
-    Kinematics,
-    Motion,
-    MotionSample,
-    as_breakpoints,
-    check_consistent,
-    check_times,
-)
+from beamdyn.scene.motion import base
 
 if TYPE_CHECKING:  # scipy.interpolate is slow to import, and only tables need it
     from scipy.interpolate import PPoly
 
 
-class Rotation(Motion):
+class Rotation(base.Motion):
     """Base class of rotations about a fixed centre.
 
     Examples
@@ -45,17 +29,17 @@ class Rotation(Motion):
     """
 
     @abstractmethod
-    def kinematics(self, t: np.ndarray) -> Kinematics:
+    def kinematics(self, t: np.ndarray) -> base.Kinematics:
         """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
 
-    def at(self, t: np.ndarray) -> MotionSample:
+    def at(self, t: np.ndarray) -> base.MotionSample:
         """Sample the motion at times t [s], of any shape."""
-        t = check_times(t, self.end)
-        return MotionSample(*self.kinematics(t), np.zeros((*t.shape, 3)))
+        t = base.check_times(t, self.end)
+        return base.MotionSample(*self.kinematics(t), np.zeros((*t.shape, 3)))
 
 
 @dataclass(frozen=True)
-class TurningMotion(Motion):
+class TurningMotion(base.Motion):
     """Base class of motions with a moving centre; a field holds the carrier's `Rotation`.
 
     Examples
@@ -70,8 +54,10 @@ class TurningMotion(Motion):
         """Check the field with the rotation; replace a speed [rad/s] in it by a steady rotation."""
         given = getattr(self, self.turned_by)
         if not isinstance(given, Rotation):
-            speed = real(self.turned_by, given, "rad/s", "or a rotation, such as SpinUp(speed, duration)")
-            set_fields(self, **{self.turned_by: SteadyRotation(speed)})
+            speed = checks.real(
+                self.turned_by, given, "rad/s", "or a rotation, such as SpinUp(speed, duration)"
+            )
+            checks.set_fields(self, **{self.turned_by: SteadyRotation(speed)})
 
     @property
     def turning(self) -> Rotation:
@@ -122,7 +108,7 @@ class SteadyRotation(Rotation):
     speed: Annotated[float, Described("rad/s", "omega", "angular speed of the carrier")]
 
     def __post_init__(self) -> None:
-        set_fields(self, speed=moderate("speed", self.speed, "rad/s"))
+        checks.set_fields(self, speed=checks.moderate("speed", self.speed, "rad/s"))
 
     @property
     def final_speed(self) -> float:
@@ -139,7 +125,7 @@ class SteadyRotation(Rotation):
         """Rate of the rotation, which is its speed [rad/s]: see `Motion.rates`."""
         return (self.speed,)
 
-    def kinematics(self, t: np.ndarray) -> Kinematics:
+    def kinematics(self, t: np.ndarray) -> base.Kinematics:
         """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         return self.speed * t, np.full(t.shape, self.speed), np.zeros(t.shape)
 
@@ -185,10 +171,10 @@ class SpinUp(Rotation):
     law: Annotated[Law, Described(meaning="law of the spin-up")] = "smooth"
 
     def __post_init__(self) -> None:
-        one_of("law", self.law, get_args(Law))
+        checks.one_of("law", self.law, get_args(Law))
         remedy = "for a constant speed from the start give SteadyRotation(speed)"
-        duration = size("duration", self.duration, "s", remedy)
-        set_fields(self, speed=moderate("speed", self.speed, "rad/s"), duration=duration)
+        duration = checks.size("duration", self.duration, "s", remedy)
+        checks.set_fields(self, speed=checks.moderate("speed", self.speed, "rad/s"), duration=duration)
 
     @property
     def final_speed(self) -> float:
@@ -205,7 +191,7 @@ class SpinUp(Rotation):
         """Time at which the spin-up ends [s]."""
         return self.duration
 
-    def kinematics(self, t: np.ndarray) -> Kinematics:
+    def kinematics(self, t: np.ndarray) -> base.Kinematics:
         """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         x = np.clip(t / self.duration, 0.0, 1.0)
         # After the spin-up the value at its end is used for all times.
@@ -221,7 +207,7 @@ class SpinUp(Rotation):
         return replace(self, speed=speed)
 
 
-def _smooth(x: np.ndarray) -> Kinematics:
+def _smooth(x: np.ndarray) -> base.Kinematics:
     """Compute the integral, value and derivative of the speed x - sin(2 pi x)/(2 pi), for 0 <= x <= 1."""
     y, sine = np.pi * x, np.sin(np.pi * x)
     # x^2/2 - sin(pi x)^2/(2 pi^2) as a product, because the difference cancels at small x.
@@ -229,12 +215,12 @@ def _smooth(x: np.ndarray) -> Kinematics:
     return integral, _angle_minus_sine(2 * y, np.sin(2 * y)) / (2 * np.pi), 2 * sine**2
 
 
-def _linear(x: np.ndarray) -> Kinematics:
+def _linear(x: np.ndarray) -> base.Kinematics:
     """Compute the integral, value and derivative of a speed that is linear in x."""
     return x**2 / 2, x, np.ones_like(x)
 
 
-_LAWS: dict[str, Callable[[np.ndarray], Kinematics]] = {"smooth": _smooth, "linear": _linear}
+_LAWS: dict[str, Callable[[np.ndarray], base.Kinematics]] = {"smooth": _smooth, "linear": _linear}
 
 
 def _angle_minus_sine(y: np.ndarray, sine: np.ndarray) -> np.ndarray:
@@ -290,9 +276,16 @@ class SampledRotation(Rotation):
     ] = "cubic"
 
     def __post_init__(self) -> None:
-        one_of("interpolation", self.interpolation, get_args(Interpolation))
-        times, speeds = _check_table(self.times, self.speeds)
-        set_fields(self, times=tuple(times.tolist()), speeds=tuple(speeds.tolist()))
+        checks.one_of("interpolation", self.interpolation, get_args(Interpolation))
+        t, v = checks.real_array("times", self.times), checks.real_array("speeds", self.speeds)
+        if len(t) != len(v) or len(t) < 2:
+            raise ValueError(f"times, speeds: {len(t)} times and {len(v)} speeds; give as many, at least two")
+        bound, remedy = "it follows {limit}", "sort the table, drop repeats"
+        checks.refuse(np.diff(t) <= 0, "times", t[1:], "s", bound, remedy, limit=t[:-1])
+        checks.refuse(
+            t[0] != 0, "times", t[0], "s", "a motion begins at t = 0", f"subtract {t[0]:g} s from all"
+        )
+        checks.set_fields(self, times=tuple(t.tolist()), speeds=tuple(v.tolist()))
 
     def __reduce__(self) -> tuple[type, tuple[object, ...]]:
         return type(self), (self.times, self.speeds, self.interpolation)  # the cached splines are not pickled
@@ -320,7 +313,7 @@ class SampledRotation(Rotation):
         """Last time of the table [s]."""
         return self.times[-1]
 
-    def kinematics(self, t: np.ndarray) -> Kinematics:
+    def kinematics(self, t: np.ndarray) -> base.Kinematics:
         """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         angle, speed, acceleration = self._splines
         return angle(t), speed(t), acceleration(t)
@@ -337,17 +330,6 @@ class SampledRotation(Rotation):
         """Copy the rotation with all speeds scaled so that the last is another speed [rad/s]."""
         _check_scalable(self.final_speed)
         return replace(self, speeds=[v / self.final_speed * speed for v in self.speeds])
-
-
-def _check_table(times: Sequence[float], speeds: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Check the times and speeds of a table, and convert them to arrays."""
-    t, v = real_array("times", times), real_array("speeds", speeds)
-    if len(t) != len(v) or len(t) < 2:
-        raise ValueError(f"times, speeds: {len(t)} times and {len(v)} speeds; give as many, at least two")
-    bound, remedy = "it follows {limit}", "sort the table, drop repeats"
-    refuse(np.diff(t) <= 0, "times", t[1:], "s", bound, remedy, limit=t[:-1])
-    refuse(t[0] != 0, "times", t[0], "s", "a motion begins at t = 0", f"subtract {t[0]:g} s from all")
-    return t, v
 
 
 def _check_scalable(final_speed: float) -> None:
@@ -400,10 +382,10 @@ class RotationFunction(Rotation):
 
     def __post_init__(self) -> None:
         for name in ("angle", "speed", "acceleration"):
-            function(name, getattr(self, name), "it takes an array of times [s]")
-        t_end, scale = size("t_end", self.t_end, "s"), moderate("scale", self.scale)
-        set_fields(self, t_end=t_end, scale=scale, breakpoints=as_breakpoints(self.breakpoints))
-        check_consistent(self, t_end)
+            checks.function(name, getattr(self, name), "it takes an array of times [s]")
+        t_end, scale = checks.size("t_end", self.t_end, "s"), checks.moderate("scale", self.scale)
+        checks.set_fields(self, t_end=t_end, scale=scale, breakpoints=base.as_breakpoints(self.breakpoints))
+        base.check_consistent(self, t_end)
 
     @property
     def final_speed(self) -> float:
@@ -415,7 +397,7 @@ class RotationFunction(Rotation):
         """Time up to which the motion is defined [s]."""
         return self.t_end
 
-    def kinematics(self, t: np.ndarray) -> Kinematics:
+    def kinematics(self, t: np.ndarray) -> base.Kinematics:
         """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         functions = ("angle", self.angle), ("speed", self.speed), ("acceleration", self.acceleration)
         angle, speed, acceleration = (self.scale * _evaluate(name, f, t) for name, f in functions)
@@ -424,7 +406,7 @@ class RotationFunction(Rotation):
     def with_speed(self, speed: float) -> RotationFunction:
         """Copy the rotation with all functions scaled so that it ends at another speed [rad/s]."""
         _check_scalable(self.final_speed)
-        return replace(self, scale=self.scale * real("speed", speed, "rad/s") / self.final_speed)
+        return replace(self, scale=self.scale * checks.real("speed", speed, "rad/s") / self.final_speed)
 
 
 def _evaluate(name: str, function: Callable, t: np.ndarray) -> np.ndarray:

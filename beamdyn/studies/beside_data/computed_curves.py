@@ -183,10 +183,7 @@ def _end_of_run(scene: Scene, last: float, more: float) -> float:
 
 
 def _delay(
-    at: Callable[[np.ndarray], np.ndarray],
-    data: MeasuredHistory,
-    limits: tuple[float, float],
-    period: float,
+    at: Callable[[np.ndarray], np.ndarray], data: MeasuredHistory, limits: tuple[float, float], period: float
 ) -> float:
     """Find the delay [s], between two limits, for which the computed curves agree best with measured ones.
 

@@ -164,20 +164,12 @@ class FittedModes:
     def derivative(self, pairs: np.ndarray) -> np.ndarray:
         """Compute derivatives (pairs, variables) of residuals of paired frequencies by the variables."""
         rows, columns = np.nonzero(pairs != NO_MODE)
-        of_modes = np.array([self._changes(change) for change in self._matrix_changes])
+        pencil, speeds = self.model.equations.steady(), self.fitting.data.speeds.tolist()
+        modes = [PerturbedModes.of(pencil, *each) for each in zip(speeds, *self._solved, strict=True)]
+        each = [[np.imag(at.derivatives(change)) * _HZ for at in modes] for change in self._matrix_changes]
+        of_modes = np.nan_to_num(np.array(each))
         found = of_modes[:, rows, pairs[rows, columns]] / self.fitting.weight[rows, columns]
         return found.T.reshape(len(rows), len(self.x))
-
-    def _changes(self, change: PencilChange) -> np.ndarray:
-        """Compute derivatives [Hz] of frequencies, for one variable, from those of matrices."""
-        each = [np.imag(modes.derivatives(change)) * _HZ for modes in self._perturbed]
-        return np.nan_to_num(np.array(each))
-
-    @cached_property
-    def _perturbed(self) -> list[PerturbedModes]:
-        pencil, (s, v) = self.model.equations.steady(), self._solved
-        speeds = self.fitting.data.speeds.tolist()
-        return [PerturbedModes.of(pencil, *each) for each in zip(speeds, s, v, strict=True)]
 
     @property
     def _matrix_changes(self) -> list[PencilChange]:

@@ -99,8 +99,7 @@ class FreeNumber:
             ends = (0.02, 5.0) if self.is_compliance else (0.5, 2.0)
             x = ends[0] * (ends[1] / ends[0]) ** share
         else:
-            middle = self.variable(self.given)
-            x = max(middle - 0.5, low) + share
+            x = max(self.variable(self.given) - 0.5, low) + share
         return min(max(x, low), high)
 
 

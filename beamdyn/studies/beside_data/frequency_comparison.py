@@ -177,12 +177,8 @@ class FrequencyComparison(Result):
             side = f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'} of"
         left_out, own = (float(each[k] / self.computed[k]) for each in (self.model_error, self.allowance))
         said = outside(left_out, own) if words == OUTSIDE else words.format(left_out=percent(left_out))
-        start = f"{self.label[k]} at "
-        return Words(
-            start,
-            Speeds(self.speed[k]),
-            f": {self.measured[k]:.{_DIGITS}g} Hz is {side} {computed}, {said}",
-        )
+        found = f": {self.measured[k]:.{_DIGITS}g} Hz is {side} {computed}, {said}"
+        return Words(f"{self.label[k]} at ", Speeds(self.speed[k]), found)
 
     def _explained(self) -> Iterator[str]:
         good = [each for each in self.explanations if each.explains]

@@ -130,8 +130,7 @@ class Identification(Result):
         remain = f"The deviations that remain are {percent(self.scatter)} of the frequencies"
         yield (remain if self.scatter > NOTHING else "No deviations remain") + more
         yield from (f"Outlier, but not omitted: {each}." for each in self.outliers)
-        alone = [k for k, mode in enumerate(self.comparison.mode) if not mode]
-        for k in alone:
+        for k in np.flatnonzero(self.comparison.mode == 0):
             yield f"{self.comparison.label[k]}: the model has no such mode; it was not used."
 
     def says(self, k: int) -> Words:

@@ -37,11 +37,7 @@ _NOTHING = 1e-20  # sum of squared relative deviations below which data count as
 
 
 def identify(
-    scene: Scene,
-    data: MeasuredFrequencies,
-    free: Mapping[str, Bounds | None],
-    starts: int = 4,
-    seed: int = 0,
+    scene: Scene, data: MeasuredFrequencies, free: Mapping[str, Bounds | None], starts: int = 4, seed: int = 0
 ) -> Identification:
     """Identify numbers of a scene from measured natural frequencies, by bounded least squares.
 
@@ -93,8 +89,7 @@ def identify(
         bound = f"there are {len(numbers)} unknowns for {data.count} frequencies"
         raise InvalidValue("free", ", ".join(free), bound, "free fewer, or measure more")
     known = bool(np.isfinite(data.uncertainty[np.isfinite(data.frequency)]).all())
-    weight = data.uncertainty if known else data.frequency
-    fitting = Fitting(scene, data, numbers, weight)
+    fitting = Fitting(scene, data, numbers, data.uncertainty if known else data.frequency)
     enough = _likely_sum(max(data.count - len(numbers), 1)) if known else _NOTHING
     most = MOST_SOLVES * len(numbers)
     found = fit(fitting, count("starts", starts), count("seed", seed, 0), most, enough)
@@ -256,7 +251,8 @@ class _Told:
         comparison = beside(fitting.scene_at(self.fit.modes.x), fitting.data)
         covariance, correlation = self._covariances
         standardized = np.full(len(comparison.label), np.nan)
-        standardized[comparison_rows(fitting, self.fit.pairs)] = self._standardized
+        has_mode = (self.fit.pairs != NO_MODE)[np.isfinite(fitting.data.frequency)]
+        standardized[has_mode] = self._standardized
         relative = self._residual * fitting.weight[self.fit.pairs != NO_MODE] / self._measured
         low, high = self._intervals.T
         provenance = comparison.provenance
@@ -279,8 +275,3 @@ class _Told:
             provenance=Provenance.since(start, provenance.method, provenance.compared_with),
             scene=fitting.scene,
         )
-
-
-def comparison_rows(fitting: Fitting, pairs: np.ndarray) -> np.ndarray:
-    """Return which of the finite measured values have a mode."""
-    return (pairs != NO_MODE)[np.isfinite(fitting.data.frequency)]

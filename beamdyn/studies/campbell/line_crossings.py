@@ -106,8 +106,7 @@ def find_crossings(
     if not roots:
         return []
     low, high = (-np.inf, np.inf) if operating is None else operating
-    speeds = np.array([root.speed for root in roots])
-    omega, shares = _solve(locus, speeds)
+    omega, shares = _solve(locus, np.array([root.speed for root in roots]))
     found = []
     for root, frequencies, share in zip(roots, omega, shares, strict=True):
         if (mode := _tracked_mode(locus, root, frequencies[root.place])) is None:

@@ -84,25 +84,19 @@ def design(
     """
     start = perf_counter()
     check_scene(scene)
-    inputs, targets = _check_free(scene, free), _check_targets(targets)
+    if not isinstance(free, Mapping) or not 0 < len(free) <= MOST_NUMBERS:
+        bound = f"give 1 to {MOST_NUMBERS} numbers with their bounds"
+        raise InvalidValue("free", free, bound, 'such as {"beam.thickness": (1e-4, 4e-4)}')
+    inputs = tuple(_check_bounds(scene, path, bounds) for path, bounds in free.items())
+    for corner in Designs(inputs).extremes():  # a scene must exist for each combination of bounds
+        with_numbers(scene, corner)
+    targets = _check_targets(targets)
     ranges = Ranges(inputs)
     given = np.array([number_at(scene, each.name) or 0.0 for each in inputs])
     middle = ranges.values(np.full(len(inputs), 0.5))
     own = ranges.shares(np.where(np.isfinite(given), given, middle))
     search = Search(scene, ranges, targets, own, discretization, tolerance)
-    x = search.run(count("seed", seed, 0))
-    return _BestDesign(search, x).with_unmoved().result(given, start)
-
-
-def _check_free(scene: Scene, free: Mapping[str, tuple[float, float] | None]) -> tuple[VariedInput, ...]:
-    """Check the free numbers and their bounds; a scene must exist for each combination of bounds."""
-    if not isinstance(free, Mapping) or not 0 < len(free) <= MOST_NUMBERS:
-        bound = f"give 1 to {MOST_NUMBERS} numbers with their bounds"
-        raise InvalidValue("free", free, bound, 'such as {"beam.thickness": (1e-4, 4e-4)}')
-    inputs = tuple(_check_bounds(scene, path, bounds) for path, bounds in free.items())
-    for corner in Designs(inputs).extremes():
-        with_numbers(scene, corner)
-    return inputs
+    return _BestDesign(search, search.run(count("seed", seed, 0))).with_unmoved().result(given, start)
 
 
 def _check_bounds(scene: Scene, path: str, bounds: object) -> VariedInput:

@@ -159,7 +159,10 @@ class Proofs:
 
     def _one_factor(self) -> str:
         """State why no common factor of the design's results meets all targets; empty if one may."""
-        if not self._are_similar:
+        # A common factor needs that only the length and common factors of the sections' properties vary.
+        scene, names = self.search.scene, {*self._names}
+        alone = names <= POWERS.keys() and is_bare(scene.beam) and is_clamped(scene)
+        if not (alone and scene.physics == Physics() and differ_in_numbers_only(scene, names)):
             return ""
         limits = [self._in_the_bounds(), *self._by_targets()]
         least, most = max(limits, key=lambda each: each.least), min(limits, key=lambda each: each.most)
@@ -168,13 +171,6 @@ class Proofs:
         said = "all designs are similar: their results differ by one common factor, and "
         apart = f" is {100 * np.expm1(least.least - most.most):.3g} % above the largest by "
         return Words(f"{said}the least factor by ", least.says, apart, most.says)
-
-    @property
-    def _are_similar(self) -> bool:
-        """Whether only the length and common factors of the sections' stiffness and mass vary."""
-        scene, names = self.search.scene, {*self._names}
-        alone = names <= POWERS.keys() and is_bare(scene.beam) and is_clamped(scene)
-        return alone and scene.physics == Physics() and differ_in_numbers_only(scene, names)
 
     def _in_the_bounds(self) -> _Limits:
         """Return the range of factors between results of designs within the bounds, from the corners."""

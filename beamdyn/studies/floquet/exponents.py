@@ -204,8 +204,7 @@ def _over_first(p: np.ndarray) -> np.ndarray:
 
 def _turned(B: np.ndarray, angle: float) -> np.ndarray:
     """Interpolate matrices at evenly spaced phases to phases shifted by an angle, by a Fourier series."""
-    orders = np.fft.fftfreq(len(B), 1 / len(B))
-    factor = np.exp(1j * orders * angle)[:, None, None]
+    factor = np.exp(1j * np.fft.fftfreq(len(B), 1 / len(B)) * angle)[:, None, None]
     return np.fft.ifft(np.fft.fft(B, axis=0) * factor, axis=0).real
 
 

@@ -63,17 +63,14 @@ class Multipliers:
         if self.sign is None:
             stable = (self.size + self.error < 1).all(axis=1)
         else:
-            stable = ~self._may_leave(self.sign)
+            # Multipliers of undamped motion leave the unit circle only where two of unlike signs meet.
+            reach = self.error[:, :, None] + self.error[:, None, :]
+            meet = np.abs(self.value[:, :, None] - self.value[:, None, :]) <= reach
+            of_one_sign = self.sign[:, :, None] * self.sign[:, None, :] > 0
+            meet &= ~of_one_sign & ~np.eye(self.value.shape[1], dtype=bool)
+            beside = np.abs(self.size - 1) > self.error
+            stable = ~np.asarray((meet.any(axis=2) | beside).any(axis=1))
         return np.select([outside, stable], [UNSTABLE, STABLE], UNDECIDED)
-
-    def _may_leave(self, sign: np.ndarray) -> np.ndarray:
-        """Return for each matrix whether undamped multipliers that meet may leave the unit circle."""
-        reach = self.error[:, :, None] + self.error[:, None, :]
-        meet = np.abs(self.value[:, :, None] - self.value[:, None, :]) <= reach
-        of_one_sign = sign[:, :, None] * sign[:, None, :] > 0
-        meet &= ~of_one_sign & ~np.eye(self.value.shape[1], dtype=bool)
-        beside = np.abs(self.size - 1) > self.error
-        return np.asarray((meet.any(axis=2) | beside).any(axis=1))
 
     @cached_property
     def growth(self) -> tuple[np.ndarray, np.ndarray]:

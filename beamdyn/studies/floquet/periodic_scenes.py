@@ -101,8 +101,7 @@ def check_periodic(
     if scene.chooses_physics:
         extremes = Designs(inputs).extremes() if inputs else [{}]
         each = PeriodicScenes(scene, modes, discretization)
-        chosen = [_choose_physics(each.at(numbers), modes) for numbers in extremes]
-        most = max(chosen, key=_needs)
+        most = max([_choose_physics(each.at(numbers), modes) for numbers in extremes], key=_needs)
         scene = replace(scene, physics=most.physics, physics_choice=most.physics_choice)
     if scene.physics.large_deflection:
         raise InvalidValue("physics.large_deflection", True, _STRAIGHT, "leave it out")

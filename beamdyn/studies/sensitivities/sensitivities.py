@@ -6,8 +6,7 @@ are estimated as for frequencies, from the same derivatives of the coarser model
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
 from time import perf_counter
 from typing import Any
 
@@ -107,10 +106,9 @@ def frequency_sensitivities(
     # The derivative is proportional to the frequency, and so also has the frequency's relative error.
     error += np.where(lost, 0.0, found.error) * np.abs(derivative)
     derivative[:, lost], error[:, lost] = np.nan, np.inf
-    answer = (f"mode {k}" for k in range(1, modes + 1)), "Hz", found.frequency
-    warnings = (*found.warnings, *words, *changes.refusals)
-    made = _result(start, model, model.scene, *answer, numbers, derivative, error, warnings)
-    return replace(made, speed=found.speed)
+    answers = tuple(f"mode {k}" for k in range(1, modes + 1))
+    result = numbers, derivative, error, (*found.warnings, *words, *changes.refusals), _since(start, model)
+    return Sensitivities(answers, "Hz", found.frequency, *result, model.scene, speed=found.speed)
 
 
 @repeatable
@@ -163,9 +161,8 @@ def critical_speed_sensitivities(
     speeds = model.solver.critical_speed, model.coarse_solver.critical_speed
     each = [(P, at, critical_vector(P, at)) for P, at in zip(_pencils(model), speeds, strict=True)]
     derivative, error = _compared(changes, lambda k, dP: critical_derivative(*each[k], dP), found.speed)
-    answer = ["critical speed"], "rad/s", np.array([found.speed])
-    warnings = (*found.warnings, *changes.refusals)
-    return _result(start, model, model.scene, *answer, numbers, derivative, error, warnings)
+    result = numbers, derivative, error, (*found.warnings, *changes.refusals), _since(start, model)
+    return Sensitivities(("critical speed",), "rad/s", np.array([found.speed]), *result, model.scene)
 
 
 @repeatable
@@ -226,28 +223,14 @@ def crossing_sensitivities(
     none = np.zeros((len(numbers), 0))
     columns = [(none, none), *(_crossing_derivatives(model, changes, c, modes) for c in crossings)]
     derivative, error = (np.hstack(parts) for parts in zip(*columns, strict=True))
-    answers = (label_crossing(c.line, c.kind, c.mode, c.second_mode) for c in crossings)
-    answer = answers, "rad/s", np.array([c.speed for c in crossings])
-    warnings = (*crossings.warnings, *changes.refusals)
-    return _result(start, model, scene, *answer, numbers, derivative, error, warnings)
+    answers = tuple(label_crossing(c.line, c.kind, c.mode, c.second_mode) for c in crossings)
+    result = numbers, derivative, error, (*crossings.warnings, *changes.refusals), _since(start, model)
+    return Sensitivities(answers, "rad/s", np.array([c.speed for c in crossings]), *result, scene)
 
 
-def _result(
-    start: float,
-    model: Model,
-    scene: Scene,
-    answers: Iterable[str],
-    unit: str,
-    value: np.ndarray,
-    numbers: tuple[sensitivity_result.SceneNumber, ...],
-    derivative: np.ndarray,
-    error: np.ndarray,
-    warnings: tuple[str, ...],
-) -> Sensitivities:
-    names = str(model.discretization), str(model.coarser.discretization)
-    provenance = Provenance.since(start, *names)
-    of = tuple(answers), unit, value
-    return Sensitivities(*of, numbers, derivative, error, warnings, provenance, scene)
+def _since(start: float, model: Model) -> Provenance:
+    """State how sensitivities were computed since a time: by a model, compared with its coarser one."""
+    return Provenance.since(start, str(model.discretization), str(model.coarser.discretization))
 
 
 # Frequencies --------------------------------------------------------------------------------------

@@ -119,8 +119,7 @@ def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str
         bounds = frequency_bounds(exact.model.scene, speed, modes)
     except ValueError:  # bounds are not available with stretch or damping
         return "the guaranteed bounds do not cover this model"
-    s = exact.eigen.eigenvalue[-1]
-    squared = np.sort(-np.real(s**2))
+    squared = np.sort(-np.real(exact.eigen.eigenvalue[-1] ** 2))
     slack = 2 * exact.error.max() * np.abs(squared)
     below, above = squared < bounds.lower_squared - slack, squared > bounds.upper_squared + slack
     if below.any() or above.any():
@@ -290,8 +289,7 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
 
 def pick(found: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Return the frequencies nearest to the requested ones, each used once."""
-    order = assign(np.abs(np.log(wanted[:, None] / found[None, :])))
-    return found[order]
+    return found[assign(np.abs(np.log(wanted[:, None] / found[None, :])))]
 
 
 def _names(choices: list[Choice]) -> str:
@@ -338,8 +336,7 @@ def _combined(scene: Scene, choices: list[Choice]) -> Scene | None:
     """Return the scene with all effects of several choices; None if no beam has the data for all."""
     added = {}
     for choice in choices:
-        physics = choice.scene.physics
-        added |= {k: v for k, v in vars(physics).items() if v != getattr(scene.physics, k)}
+        added |= {k: v for k, v in vars(choice.scene.physics).items() if v != getattr(scene.physics, k)}
     for beam in (scene.beam, *(c.scene.beam for c in choices)):
         with suppress(InvalidValue):
             return _with(replace(scene, beam=beam), **added)
