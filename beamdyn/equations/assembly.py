@@ -45,7 +45,7 @@ def assemble_over(scene: Scene, spaces: Spaces) -> Equations:
     within = [start + places for start, places in zip(starts, coarse, strict=True) if places is not None]
     equations = Equations(
         blocks=blocks,
-        terms=tuple(t for field in fields.values() for t in field.terms if t.factor and t.matrix.any()),
+        terms=tuple(t for f in fields.values() for t in f.terms if t.factor and np.count_nonzero(t.matrix)),
         loads=tuple(f for field in fields.values() for f in field.loads if f.factor),
         mount=scene.mount,
         gravity=scene.gravity,

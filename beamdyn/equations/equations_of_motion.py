@@ -78,7 +78,7 @@ class SteadyPencil:
     @cached_property
     def conservative(self) -> bool:
         """Whether the equations have neither damping nor gyroscopic coupling."""
-        return not (self.C.any() or self.G.any())
+        return not (np.count_nonzero(self.C) or np.count_nonzero(self.G))
 
 
 @dataclass(frozen=True)
@@ -284,16 +284,14 @@ class Equations:
 
     @cached_property
     def _steady(self) -> SteadyPencil:
-        rotating, parts = root_at_unit_speed(self.mount), []
-        nothing = np.zeros((self.size, self.size))
-        # Constant matrix, and the sum of the matrices added by steady rotation.
-        for of_order in self.matrices:
-            moving: dict[Quantity, np.ndarray] = {q: A for q, A in of_order.items() if q != "unity"}
-            turning = _sum_over_quantities(moving, rotating, nothing.shape) if moving else nothing
-            parts.append((of_order.get("unity", nothing), turning))
-        (K0, K2), (C, G), (M, _) = parts
-        load = _sum_over_quantities(self.vectors, rotating, (self.size,))
-        return SteadyPencil(M, C, G, K0, K2, load, self.shift, self.planes)
+        rotating, nothing = root_at_unit_speed(self.mount), np.zeros((self.size, self.size))
+        K0, C, M = (of_order.get("unity", nothing) for of_order in self.matrices)
+        K2, G = (
+            sum((float(getattr(rotating, q)) * A for q, A in of_order.items() if q != "unity"), nothing)
+            for of_order in self.matrices[:2]
+        )
+        loads = (float(getattr(rotating, q)) * f for q, f in self.vectors.items())
+        return SteadyPencil(M, C, G, K0, K2, sum(loads, np.zeros(self.size)), self.shift, self.planes)
 
     @cached_property
     def separate(self) -> tuple[SteadyPencil, ...]:
@@ -318,8 +316,9 @@ class Equations:
         """Sets of coordinate blocks that are coupled by any term."""
         set_of = {name: {name} for name in self.blocks}
         for term in self.terms:
-            joined = set_of[term.rows] | set_of[term.columns]
-            set_of.update(dict.fromkeys(joined, joined))
+            if term.columns not in set_of[term.rows]:
+                joined = set_of[term.rows] | set_of[term.columns]
+                set_of.update(dict.fromkeys(joined, joined))
         ordered = (tuple(each for each in self.blocks if each in set_of[name]) for name in self.blocks)
         return tuple(dict.fromkeys(ordered))
 

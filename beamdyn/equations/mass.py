@@ -159,6 +159,7 @@ def axial_tension(beam: Beam) -> tuple[Profile, Profile]:
 PLACES = np.linspace(0.0, 1.0, 101)  # positions x/L from root to tip at which the axial force is evaluated
 
 
+@lru_cache(maxsize=64)
 def steady_tension(beam: Beam, mount: Mount) -> np.ndarray:
     """Compute the axial force in steady rotation, over squared speed [N s2], at `PLACES`: shape (101,)."""
     n_a, n_b = _sampled_tension(beam)

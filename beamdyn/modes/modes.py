@@ -296,7 +296,8 @@ def natural_modes(
     equations, s = solution.model.equations_at(speeds[0]), solution.eigen.eigenvalue[0]
     kinds = kinds_of_modes(equations, solution.eigen.vector)
     vectors = _with_signs(equations, solution.eigen.vector[0], None if kinds is None else kinds[0])
-    along, across = np.real([equations.tips[0] @ vectors, equations.tips[-1] @ vectors])
+    tips, accelerated = equations.tips, (f(d) for f in (equations.P, equations.Q) for d in (0, 1))
+    along, across, *loads = np.real(np.array([tips[0], tips[-1], *accelerated]) @ vectors)
     deflection, strain = static_load(solution.model, speeds)
     growth_rate = np.real(s) + 0.0
     warnings = warn_of_modes(
@@ -312,10 +313,10 @@ def natural_modes(
         tip=along,
         tip_across=across if equations.planes == 2 else np.zeros_like(along),
         plane_share=plane_share(equations, vectors[None])[0],
-        load=np.real(equations.P(0) @ vectors),
-        load_across=np.real(equations.P(1) @ vectors),
-        angular_load=np.real(equations.Q(0) @ vectors),
-        angular_load_across=np.real(equations.Q(1) @ vectors),
+        load=loads[0],
+        load_across=loads[1],
+        angular_load=loads[2],
+        angular_load_across=loads[3],
         static_deflection=float(deflection[0]),
         axial_strain=float(strain[0]),
         warnings=tuple(warnings),
@@ -336,8 +337,8 @@ def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | N
     larger = tips[np.abs(tips).argmax(axis=0), np.arange(tips.shape[1])]
     if kinds is not None:
         larger = np.where(kinds == BENDING, larger, equations.corner @ vectors)
-    larger[larger == 0] = 1.0
-    return vectors / (larger / np.abs(larger))
+    direction = np.sign(larger)
+    return vectors / np.where(direction == 0, 1.0, direction)
 
 
 _STATUS = np.array(["overdamped", "stable", "divergence", "flutter", "neutral"])

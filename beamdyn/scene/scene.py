@@ -208,10 +208,9 @@ class Scene(OneLine):
     @property
     def bends_in_space(self) -> bool:
         """Whether large deflection needs a beam in space, not the elastica in one plane."""
-        chosen, mount = self.physics, self.mount
-        is_oblique = mount.precone or min(map(abs, aligned_cos_sin(mount.bending_angle))) != 0
+        chosen, eta, psi = self.physics, self.mount.precone, self.mount.bending_angle
         others = self.beam.is_curved or chosen.planes == 2 or chosen.shear or chosen.stretch or chosen.torsion
-        return chosen.large_deflection and bool(others or is_oblique)
+        return chosen.large_deflection and bool(others or eta or min(map(abs, aligned_cos_sin(psi))))
 
     @property
     def twists_in_space(self) -> bool:

@@ -55,10 +55,10 @@ class StepSize:
 
     def count_steps_of_each(self, system: ModalSystem, ends: np.ndarray) -> list[int]:
         """Count the equal steps of neighbouring segments with given ends [s]."""
-        t = np.linspace(ends[:-1], ends[1:], 9, axis=1)
-        speed = np.abs(system.motion.at(t).speed).max(axis=1)
+        sample = system.motion.at(np.linspace(ends[:-1], ends[1:], 9, axis=1))
+        speed = np.abs(sample.speed).max(axis=1)
         multiple = max((line.multiple for line in system.motion.lines), default=0.0)
-        _, K, _ = system.coefficients(t)
+        _, K, _ = system.assemble(system.equations.root(sample))
         # The eigenvalue 0 belongs to the flux of a circuit, a coordinate without stiffness.
         first = int(system.equations.voltage is not None)
         squared = np.sort(np.abs(np.linalg.eigvals(K)), axis=-1)[:, :, max(self.modes - 1, first)]

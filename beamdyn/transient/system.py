@@ -77,9 +77,9 @@ class ModalSystem:
         Planes without loads and coupling are omitted; loads are sampled over the run and each smooth
         interval.
         """
-        spread = t_end * (_GOLDEN * np.arange(SPEED_SAMPLES) % 1)
-        ends = np.clip([0.0, *motion.breakpoints, t_end], 0.0, t_end)
         if len(equations.connected) > 1:
+            spread = t_end * (_GOLDEN * np.arange(SPEED_SAMPLES) % 1)
+            ends = np.clip([0.0, *motion.breakpoints, t_end], 0.0, t_end)
             t = np.concatenate([spread, (ends[1:] + ends[:-1]) / 2])
             loaded = (equations.load(equations.root(motion.at(t))) != 0).any(axis=0)
             parts = [names for names in equations.connected if not loaded[equations.places(names)].any()]

@@ -161,8 +161,9 @@ class _StepMapSeries:
         # Terms in which e_k acts first, and then e_l acts on the resulting motion.
         pairs = (left[:, None] @ W).reshape(P, m * s, m * s, 2 * n, columns)
         rows, cols = _pairs(m * s)
-        twice = np.where(rows == cols, 0.5, 1.0)[:, None, None]
-        return -(pairs[:, rows, cols] + pairs[:, cols, rows]) * twice
+        found = pairs[:, rows, cols]
+        found += pairs[:, cols, rows]
+        return np.multiply(found, np.where(rows == cols, -0.5, -1.0)[:, None, None], out=found)
 
     def ratio(self) -> np.ndarray:
         """Bound the ratio of successive terms of the series, per unit of each factor e."""
@@ -209,10 +210,10 @@ class _Expansion:
         largest, ratio = _LARGEST_SAMPLED * np.abs(e).max(axis=0), point.every(3).ratio()
         rows, columns = _scales(system, point.constant(), first, table)
         maps, allowed = [], accuracy / count
-        orders = point.constant(), point.first(), point.every(2).second()
+        orders = point.constant, point.first, point.every(2).second
         monomials = _monomials_by_order(np.repeat(largest, len(table.c))[None])
         for k, (order, factor) in enumerate(zip(orders, monomials, strict=True)):
-            values = chebyshev.expand(order)
+            values = chebyshev.expand(order())
             size = (np.abs(values * (rows[:, None] * columns)).max(axis=(2, 3)) * factor).sum(axis=1)
             if len(size) > 1 and size[-1] > allowed:  # more Chebyshev points are needed
                 return None

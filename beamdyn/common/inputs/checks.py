@@ -180,9 +180,9 @@ def refuse(
     InvalidValue
         For the first invalid case; the message also has the number of invalid cases.
     """
-    bad = np.asarray(bad)
-    if not bad.any():
+    if not np.count_nonzero(bad):
         return
+    bad = np.asarray(bad)
     more = f" (and {int(bad.sum()) - 1} more of {bad.size} cases)" if bad.sum() > 1 else ""
     values, limits = np.broadcast_to(value, bad.shape), None
     if limit is not None:

@@ -106,8 +106,7 @@ class Saved:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the result as plain numbers, lists and strings; complex numbers as [real, imaginary]."""
-        fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]  (subclasses are dataclasses)
-        return {f.name: plain(getattr(self, f.name)) for f in fields if f.repr}
+        return plain(self)
 
     def loadable(self) -> Saved | None:
         """Return the result that `load` would make from the JSON of this one; None if it cannot be loaded."""

@@ -12,6 +12,7 @@ import dataclasses
 import hashlib
 import pickle
 from collections.abc import Iterator
+from functools import cache
 from importlib import import_module
 from itertools import chain
 from pathlib import Path
@@ -38,19 +39,24 @@ def make_read_only(value: Any) -> Any:
     """
     if isinstance(value, np.ndarray):
         view = value.view()
-        view.flags.writeable = False
+        view.setflags(write=False)
         return view
     if type(value) is tuple and any(map(_may_hold_arrays, value)):
         return tuple(map(make_read_only, value))
     if type(value) is dict:
         return {key: make_read_only(item) for key, item in value.items()}
-    if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        for each in (field for field in dataclasses.fields(value) if field.repr):
-            held = getattr(value, each.name)
-            # The arrays of a nested result are read-only already.
-            if not isinstance(held, ReadOnlyArrays) and (viewed := make_read_only(held)) is not held:
-                object.__setattr__(value, each.name, viewed)
+    for name in _public_fields(type(value)):
+        held = getattr(value, name)
+        # The arrays of a nested result are read-only already.
+        if not isinstance(held, ReadOnlyArrays) and (viewed := make_read_only(held)) is not held:
+            object.__setattr__(value, name, viewed)
     return value
+
+
+@cache
+def _public_fields(kind: type) -> tuple[str, ...]:
+    """List the names of the public fields of a dataclass; none of another class."""
+    return tuple(f.name for f in dataclasses.fields(kind) if f.repr) if dataclasses.is_dataclass(kind) else ()
 
 
 def _may_hold_arrays(value: Any) -> bool:
@@ -81,7 +87,7 @@ def plain(value: Any) -> Any:
     if isinstance(value, np.generic):
         return plain(value.item())
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        return {f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value) if f.repr}
+        return {name: plain(getattr(value, name)) for name in _public_fields(type(value))}
     if isinstance(value, tuple | list):
         return [plain(v) for v in value]
     if isinstance(value, dict):

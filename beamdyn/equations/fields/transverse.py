@@ -109,15 +109,15 @@ class Trial:
         (d, n), (cosine, sine) = plane_components(self.scene), exact_cos_sin(self.scene.mount.precone)
         sections = section_tensor(beam, "rotary_inertia") if self.field.rotates else {}
         P, moment = loads_by_mass(beam, space)
-        P = P + tip.mass * self.centre
-        moment = moment + tip.mass * (beam.length + tip.offset) * self.centre
-        tilting = []  # angular accelerations tilt sections and tip body in either direction
-        for k, inertia in enumerate(self.inertia.tilting[i]):
-            load = inertia * self.rotation
-            tilting.append(load + space.load(sections[i, k], 1) if (i, k) in sections else load)
-        Q, Q_across = moment + tilting[i], tilting[1 - i]
+        of_body = tip.mass * self.centre
+        # Angular accelerations tilt sections and tip body in either direction.
+        tilted = np.outer(self.inertia.tilting[i], self.rotation)
+        for k in (k for k in range(2) if (i, k) in sections):
+            tilted[k] += space.load(sections[i, k], 1)
+        P, moment = P + of_body, moment + (beam.length + tip.offset) * of_body
+        Q, Q_across = moment + tilted[i], tilted[1 - i]
         loads = [Load("angular acceleration", name, Q, "acceleration", cosine * d[i])]
-        if Q_across.any():
+        if np.count_nonzero(Q_across):
             loads.append(Load("angular acceleration", name, Q_across, "acceleration", cosine * d[1 - i]))
         if sine:
             pressed = (self.inertia.centrifugal[i] @ np.array(n)) * self.rotation
@@ -143,22 +143,18 @@ class Pair:
         Directions in which the two fields deflect the beam.
     rotate : bool
         Whether both fields rotate the sections.
-    tilts : ndarray, shape (functions, functions)
-        Products of the two fields' rotations D at the tip [1/m2].
     """
 
     rows: Trial
     columns: Trial
     directions: tuple[int, int]
     rotate: bool
-    tilts: np.ndarray
 
     @classmethod
     def of(cls, rows: Trial, columns: Trial) -> Pair:
-        """Pair the trial functions of two fields, and multiply their rotations at the tip."""
+        """Pair the trial functions of two fields."""
         directions = rows.field.direction, columns.field.direction
-        rotate = rows.field.rotates and columns.field.rotates
-        return cls(rows, columns, directions, rotate, np.outer(rows.rotation, columns.rotation))
+        return cls(rows, columns, directions, rows.field.rotates and columns.field.rotates)
 
     def term(
         self, name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: float = 1.0, order: int = 0
@@ -183,13 +179,22 @@ class Pair:
         return matrix if self.directions == (0, 1) else -matrix
 
     @cached_property
+    def tilts(self) -> np.ndarray:
+        """Products of the two fields' rotations D at the tip [1/m2]: shape (functions, functions)."""
+        return np.outer(self.rows.rotation, self.columns.rotation)
+
+    def with_tilts(self, matrix: np.ndarray, factor: float) -> np.ndarray:
+        """Add a factor times the products of rotations at the tip to a matrix."""
+        return matrix + factor * self.tilts if factor else matrix
+
+    @cached_property
     def translation(self) -> np.ndarray:
         """Mass matrix [kg] of sections, point masses and tip body for the motion of their mass centres."""
         rows, columns = self.rows, self.columns
         by_mass = self.integrate(rows.beam.mass_per_length, 0)
         if rows.beam.point_masses:
             by_mass = by_mass + product_at_lumps(rows.beam, rows.space, columns.space)
-        return by_mass + rows.tip.mass * np.outer(rows.centre, columns.centre)
+        return by_mass + rows.tip.mass * np.outer(rows.centre, columns.centre) if rows.tip.mass else by_mass
 
 
 class TransverseField(Field):
@@ -281,8 +286,8 @@ def _terms(pair: Pair) -> Iterator[Term]:
     rows, columns, (i, j) = pair.rows, pair.columns, pair.directions
     scene, beam, tip, sections = rows.scene, rows.beam, rows.tip, section_tensor(rows.beam, "rotary_inertia")
     cosine, sine = exact_cos_sin(scene.mount.precone)
-    tilted = rows.inertia.tilting[i, j] * pair.tilts
-    yield pair.term("mass", pair.translation + tilted if i == j else tilted, order=2)
+    mass = pair.translation if i == j else np.zeros_like(pair.tilts)
+    yield pair.term("mass", pair.with_tilts(mass, rows.inertia.tilting[i, j]), order=2)
     if pair.rotate and (i, j) in sections:
         yield pair.term("rotary inertia of sections", pair.integrate(sections[i, j], 1), order=2)
     yield from columns.field.own_stiffness(pair)
@@ -293,8 +298,8 @@ def _terms(pair: Pair) -> Iterator[Term]:
             yield pair.term("point springs", held)
         # Tension acts on the slope of the total deflection, shear included (Engesser).
         (n_a, n_b), reach = axial_tension(beam), beam.length + tip.offset
-        KGB = pair.integrate(n_b, 1) + tip.mass * reach * tip.offset * pair.tilts
-        KGA = pair.integrate(n_a, 1) + tip.mass * tip.offset * pair.tilts
+        KGB = pair.with_tilts(pair.integrate(n_b, 1), tip.mass * reach * tip.offset)
+        KGA = pair.with_tilts(pair.integrate(n_a, 1), tip.mass * tip.offset)
         yield pair.term("centrifugal stiffening", KGB, "speed_squared", cosine**2)
         yield pair.term("tension by root acceleration", KGA, "root_axial", -1.0)
     yield from _spin(pair, cosine, sine)
@@ -307,16 +312,17 @@ def _spin(pair: Pair, cosine: float, sine: float) -> Iterator[Term]:
     (i, j), beam, (d, n) = pair.directions, pair.rows.beam, plane_components(pair.rows.scene)
     if softening := d[i] * d[j] + sine**2 * n[i] * n[j]:
         yield pair.term("spin softening", pair.translation, "speed_squared", -softening)
-    if not pair.rotate:
-        return
     body, sections = pair.rows.inertia.centrifugal, section_tensor(beam, "rotary_inertia")
-    B = np.zeros((2, 2))  # coefficients of B_pq in the matrix of C^2 u3' (B u')_3 - S^2 u'^T B u'
+    if not (pair.rotate and (sections or beam.tip)):
+        return
+    # Coefficients of B_pq in the matrix of C^2 u3' (B u')_3 - S^2 u'^T B u'.
+    B = [[0.0, 0.0], [0.0, 0.0]]
     for q in range(2):
-        B[q, j] += cosine**2 * n[i] * n[q] / 2
-        B[q, i] += cosine**2 * n[j] * n[q] / 2
-    B[i, j] -= sine**2
+        B[q][j] += cosine**2 * n[i] * n[q] / 2
+        B[q][i] += cosine**2 * n[j] * n[q] / 2
+    B[i][j] -= sine**2
     for p, q in ((0, 0), (1, 1), (0, 1)):
-        if factor := float(B[p, q] if p == q else B[0, 1] + B[1, 0]):
+        if factor := B[p][q] if p == q else B[0][1] + B[1][0]:
             yield pair.term("spin of the tip body", body[p, q] * pair.tilts, "speed_squared", factor)
             if (p, q) in sections:
                 matrix = pair.integrate(sections[p, q], 1)

@@ -92,10 +92,7 @@ class Eigensolver(ABC):
 
     def energies_at_rest(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Compute the products v K v at rest and v M v of vectors v in rows: one number for each vector."""
-        of_stiffness, of_mass = (
-            np.real(v.conj() * (v @ A)).sum(axis=1) for A in (self.pencil.K0, self.pencil.M)
-        )
-        return of_stiffness, of_mass
+        return np.real(np.vecdot(v, v @ self.pencil.K0)), np.real(np.vecdot(v, v @ self.pencil.M))
 
     @cached_property
     @abstractmethod
@@ -223,16 +220,11 @@ class Solver(Eigensolver):
                 return Eigen(*(np.array(values) for values in zip(*modes, strict=True)))
             if (factored := self.factor(speeds)) is None:
                 return self._solve_diagonal(speeds, count)
-            L, A = factored
-            mu, y, _, _, failed = dsyevr(A, range="I", il=self.size - count + 1, iu=self.size)
+            mu, y, _, _, failed = dsyevr(factored[1], range="I", il=self.size - count + 1, iu=self.size)
             if failed:
                 raise np.linalg.LinAlgError
             mu = above_rounding(mu[:count][::-1])
-            v, squared = solve_lower_transposed(L, y[:, ::-1]) / np.sqrt(mu), 1 / mu
-            by_matrices = rounding_of_factored(self.pencil, speeds[0], squared, v)
-            found = squared[None], np.abs(v)[None], by_matrices[None]
-            rounding = forward_error(mu) + rounding_of_scene(self.pencil, speeds, *found)
-            return Eigen(1j * np.sqrt(squared)[None], v[None], rounding)
+            return modes_of_factored(self.pencil, speeds, factored[0], mu, y[:, ::-1])
 
     def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
         """Compute the eigenvalues at each speed, without vectors where conservative equations allow it."""
@@ -408,25 +400,28 @@ def _symmetric(A: np.ndarray) -> np.ndarray:
     return (A + A.T) / 2
 
 
-def rounding_of_factored(
-    pencil: SteadyPencil, speed: float, squared: np.ndarray, v: np.ndarray
-) -> np.ndarray:
-    """Estimate the relative rounding error (k,) of a clamped beam's frequencies from its matrices.
+def modes_of_factored(
+    pencil: SteadyPencil, speeds: np.ndarray, L: np.ndarray, mu: np.ndarray, y: np.ndarray
+) -> Eigen:
+    """Build the modes of a clamped beam at one speed, and estimate the rounding errors of its frequencies.
 
     Parameters
     ----------
     pencil : SteadyPencil
-        Equations whose stiffness was factored at a speed.
-    speed : float
+        Equations whose stiffness was factored at the speed.
+    speeds : ndarray, shape (1,)
         The speed [rad/s].
-    squared : ndarray, shape (k,)
-        Squared frequencies.
-    v : ndarray, shape (coordinates, k)
-        Mass-normalised modes.
+    L : ndarray, shape (coordinates, coordinates)
+        Cholesky factor of the stiffness.
+    mu, y : ndarray, shapes (k,) and (coordinates, k)
+        Largest eigenvalues, descending, and eigenvectors of L^-1 M L^-T.
     """
-    size = np.abs(v)
-    spin = speed**2 * (size * (np.abs(pencil.K2) @ size)).sum(axis=0)
-    by_terms = ((v * (pencil.K0 @ v)).sum(axis=0) + spin) / squared
-    mass = (size * (np.abs(pencil.M) @ size)).sum(axis=0)  # modal mass, if no terms cancelled
+    v, squared = solve_lower_transposed(L, y) / np.sqrt(mu), 1 / mu
+    size = np.abs(v.T)
+    spin = speeds[0] ** 2 * np.vecdot(size, size @ np.abs(pencil.K2))
+    by_terms = (np.vecdot(v.T, v.T @ pencil.K0) + spin) / squared
+    mass = np.vecdot(size, size @ np.abs(pencil.M))  # modal mass, if no terms cancelled
     growth = max(1.0, len(v) / ROUNDING_SIZE)  # rounding errors accumulate over the functions
-    return growth * (BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)
+    by_matrices = growth * (BACKWARD * (by_terms + np.sqrt(by_terms)) + _EPS * mass)
+    rounding = rounding_of_scene(pencil, speeds, squared[None], size.T[None], by_matrices[None])
+    return Eigen(1j * np.sqrt(squared)[None], v[None], forward_error(mu) + rounding)

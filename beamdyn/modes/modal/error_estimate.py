@@ -108,7 +108,8 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
     compared = coarse.shape[1]  # there may be fewer independent moment functions than modes
     s = fine.eigenvalue[:, :compared]
-    squared, distance = s**2, s**2 - coarse**2
+    squared, of_coarse = s**2, coarse**2
+    distance = squared - of_coarse
     order = model.discretization.order
     if order is not None:  # Richardson extrapolation removes the leading term of the error
         # If one value is 0 within rounding, the distance counts as 0.
@@ -117,26 +118,27 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         extrapolated = np.concatenate([_root(squared, s), fine.eigenvalue[:, compared:]], axis=1)
         fine = Eigen(extrapolated, fine.vector, fine.rounding)
     with np.errstate(divide="ignore", invalid="ignore"):
-        relative = np.abs(distance) / (2 * np.abs(squared))
+        half, size = np.abs(distance) / 2, np.abs(squared)
         if order is not None:
-            before = coarse**2 - _coarsest_squares(model, speeds, compared)
+            before = of_coarse - _coarsest_squares(model, speeds, compared)
             truncation = _mesh_error(model, fine, squared, distance, before)
             truncation = truncation + _error_across(model, speeds, s**2)
         else:
-            truncation = _basis_error(model, fine, squared, distance)
-    error = truncation + ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
-    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)  # this is False for nan, too
+            truncation = _basis_error(model, fine, half, size)
+        rounding = ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
+        error = truncation + rounding
+        resolved = (half / size < UNRESOLVED) & (error < UNRESOLVED)  # this is False for nan, too
     # A root without a spring may turn freely at rest, or if it lies on the axis: a frequency within rounding
     # of 0 is then taken as 0.
-    if (neutral := s == 0).any():
+    if not s.all():
         free = 0.0 in mount.root_stiffnesses[: scene.physics.planes]
-        neutral &= (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
-        resolved |= neutral
+        neutral = (s == 0) & (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
+        resolved, error = resolved | neutral, np.where(neutral, 0.0, error)
     if not resolved.all():
         resolved &= ~_may_be_passed(squared, distance, resolved)
     resolved &= model.exceeds_coarser
     stated = np.full((len(speeds), modes), np.inf)
-    stated[:, :compared][resolved] = np.where(neutral, 0.0, error)[resolved]
+    stated[:, :compared] = np.where(resolved, error, np.inf)
     return EstimatedModes(model, fine, stated)
 
 
@@ -173,21 +175,21 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
     return BASES_OF_PLATES.factor * np.abs(squared - fewer**2) / (2 * np.abs(squared))
 
 
-def _basis_error(model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray) -> np.ndarray:
-    """Estimate the relative truncation error of squared eigenvalues from a smaller basis."""
+def _basis_error(model: Model, fine: Eigen, half: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Estimate the relative truncation error as `_ritz_error` does."""
     # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
-    size, bound = np.abs(squared), (stiffness / mass).min() + model.equations.shift
+    bound = (stiffness / mass).min() + model.equations.shift
     # The lowest square matters only if a mode below this bound has the largest relative distance.
     if is_needed := size.min() < _ABOVE * bound:
-        relative, below = np.abs(distance) / size, size < bound
+        relative, below = half / size, size < bound
         of_below, of_others = (np.where(each, relative, 0.0).max(axis=1) for each in (below, ~below))
         is_needed = not (of_below <= of_others).all()
     lowest = np.asarray(model.solver.lowest_at_rest if is_needed else 0.0)
     is_slender = model.scene.is_slender_beam_in_one_plane
     margin = SLOW_BASES.factor if is_slender or model.lacks_one else BASES_OF_FIELDS.factor
     parts = _BY_ONE if model.lacks_one else parts_of_distances(model.scene, model.discretization)
-    return _ritz_error(distance, squared, lowest, margin, parts)
+    return _ritz_error(half, size, lowest, margin, parts)
 
 
 def extrapolation_error(
@@ -269,11 +271,9 @@ def error_of_assumed_modes(
     """
     margin = SLOW_BASES.factor if is_slender else BASES_OF_FIELDS.factor
     with np.errstate(divide="ignore", invalid="ignore"):
-        relative = np.abs(distance) / (2 * np.abs(squared))
-        error = (
-            _ritz_error(distance, squared, lowest_at_rest, margin, parts) + ROUNDING_OF_TWO.factor * rounding
-        )
-    resolved = (relative < UNRESOLVED) & (error < UNRESOLVED)
+        half, size = np.abs(distance) / 2, np.abs(squared)
+        error = _ritz_error(half, size, lowest_at_rest, margin, parts) + ROUNDING_OF_TWO.factor * rounding
+        resolved = (half / size < UNRESOLVED) & (error < UNRESOLVED)
     if not resolved.all():
         resolved &= ~_may_be_passed(squared, distance, resolved)
     return np.where(resolved, error, np.inf)
@@ -307,19 +307,18 @@ def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarr
 
 
 def _ritz_error(
-    distance: np.ndarray, squared: np.ndarray, lowest: np.ndarray, of_few: float, parts: Parts
+    half: np.ndarray, size: np.ndarray, lowest: np.ndarray, of_few: float, parts: Parts
 ) -> np.ndarray:
     """Estimate the relative truncation error of Ritz eigenvalues from the squares of a smaller basis.
 
-    Squares, distances and error have shape (speeds, modes); the lowest squared frequency at rest is one
-    number, or one for each speed. Usually further functions change an eigenvalue by less than the last ones
-    did.  Exceptions are modes that only every other function changes, and modes whose distance is small by
-    chance.  If convergence is slow, a margin is therefore added, which was measured on random scenes: a
-    fraction of the distances of all modes, relative to the higher mode of two.  The fraction is `of_few` if
-    one field may have too few functions.  If an eigenvalue vanishes, its error is relative to the lowest
-    squared frequency at rest.
+    Half of each distance, the sizes of the squares and the error have shape (speeds, modes); the lowest
+    squared frequency at rest is one number, or one for each speed.  Usually further functions change an
+    eigenvalue by less than the last ones did.  Exceptions are modes that only every other function changes,
+    and modes whose distance is small by chance.  If convergence is slow, a margin is therefore added, which
+    was measured on random scenes: a fraction of the distances of all modes, relative to the higher mode of
+    two.  The fraction is `of_few` if one field may have too few functions.  If an eigenvalue vanishes, its
+    error is relative to the lowest squared frequency at rest.
     """
-    half, size = np.abs(distance) / 2, np.abs(squared)
     scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), lowest[..., None, None])
     largest = (half[:, None, :] / scale).max(axis=2)
     relative = half / size

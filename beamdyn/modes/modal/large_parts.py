@@ -17,8 +17,8 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
 
 from beamdyn.common.numerics import solve_lower, solve_lower_transposed
-from beamdyn.modes.modal.diagonal_stiffness import LEAST_STIFFNESS, forward_error, rounding_of_scene
-from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, Solver, explained, rounding_of_factored
+from beamdyn.modes.modal.diagonal_stiffness import LEAST_STIFFNESS
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, Solver, explained, modes_of_factored
 from beamdyn.modes.modal.quadratic_eigenproblem import select_lowest
 from beamdyn.modes.modal.springs import solve_definite
 
@@ -94,11 +94,8 @@ class LargeSolver(Eigensolver):
         mu, x = self._largest(L, count)
         if 1 / mu[0] < LEAST_STIFFNESS * self.lowest_at_rest:
             return None
-        v, squared = solve_lower_transposed(L, x) / np.sqrt(mu), 1 / mu
-        by_matrices = rounding_of_factored(self.pencil, speed, squared, v)
-        found = squared[None], np.abs(v)[None], by_matrices[None]
-        rounding = forward_error(mu) + rounding_of_scene(self.pencil, np.array([speed]), *found)[0]
-        return 1j / np.sqrt(mu), v, rounding
+        eigen = modes_of_factored(self.pencil, np.array([speed]), L, mu, x)
+        return eigen.eigenvalue[0], eigen.vector[0], eigen.rounding[0]
 
     def _largest(self, L: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
         """Compute the largest eigenvalues of the mass matrix in the stiffness' Cholesky coordinates.

@@ -116,9 +116,8 @@ class Model(FieldsOnly):
         coarse = self.equations.coarse
         if coarse is None:
             return self.coarser.equations.size < self.equations.size
-        added = np.ones(self.equations.size, dtype=bool)
-        added[coarse] = False
-        return all(added[block].any() for block in self.equations.blocks.values())
+        kept = {*coarse.tolist()}
+        return not any(kept.issuperset(range(b.start, b.stop)) for b in self.equations.blocks.values())
 
     def equations_at(self, speed: float) -> Equations:
         """Build the equations of small motions at a steady speed [rad/s], about the equilibrium there."""

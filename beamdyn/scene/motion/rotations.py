@@ -230,12 +230,11 @@ def _angle_minus_sine(y: np.ndarray, sine: np.ndarray) -> np.ndarray:
     below = y < 1
     if below.any():
         small = y[below]
-        square, series = small**2, np.ones_like(small)
-        for n in range(18, 2, -2):
+        square, series = small**2, np.zeros_like(small)
+        for n in range(8, -1, -1):
             series *= square
-            series *= -1 / (n * (n + 1))
-            series += 1
-        difference[below] = square * small / 6 * series
+            series += (-1) ** n / math.factorial(2 * n + 3)
+        difference[below] = square * small * series
     return difference
 
 
