@@ -23,7 +23,7 @@ _FREQUENCY = "motion.frequency"
 _AMPLITUDES = "motion.fluctuation", "motion.along_n1", "motion.along_n2", "motion.along_n3"
 # Initial options of the screens: frequencies and amplitudes around a region of instability.
 _TONGUE = "--vary", "motion.frequency=118:130:61 Hz", "--vary", "motion.fluctuation=0:0.2:41"
-_FEW = 9  # number of values of each input in a preliminary chart
+_FEW = 7  # number of values of each input in a preliminary chart
 _VALUES = 41  # number of amplitudes, if none are given
 
 Varied = Annotated[

@@ -231,7 +231,7 @@ def _project(f: Callable, a: float, b: float, t: np.ndarray, w: np.ndarray) -> t
 
 def mean(profile: Profile) -> float:
     """Compute the mean of a property over the length of the beam."""
-    return float(profile.outboard_integral()(np.zeros(1))[0])
+    return float(np.diff(profile.breakpoints) @ profile.series[0])
 
 
 ONE = Profile((0.0, 1.0), ((1.0,),))

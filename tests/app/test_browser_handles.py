@@ -9,6 +9,9 @@ sync_api = pytest.importorskip("playwright.sync_api", reason=NO_PLAYWRIGHT)
 expect = sync_api.expect
 expect.set_options(timeout=1e3 * PATIENCE)
 pytestmark = IN_BROWSER
+# Whether each chart shows a curve: a path of many points.
+HAVE_CURVES = """(charts) => charts.every((each) =>
+  [...each.querySelectorAll('path')].some((path) => path.getAttribute('d').length > 500))"""
 NEAR = 2.0  # [px]: a picture is a tenth of a millimetre or less a pixel, to which what is written is rounded
 
 
@@ -113,6 +116,7 @@ def test_slider_pulled_by_the_mouse_is_followed_and_stays(opened, screen):
     redrawn(page, before)
     expect(shown(page, "The drawing follows; the tables wait.")).to_be_visible()
     place = at_rest(page, lambda: radius.input_value())
+    assert page.locator(".chart:visible").evaluate_all(HAVE_CURVES)
     page.mouse.up()
     expect(shown(page, "Up to date.")).to_be_visible()
     assert radius.input_value() == place

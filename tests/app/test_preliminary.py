@@ -1,6 +1,7 @@
 """What a screen shows first, while the whole answer is on its way: a picture, few digits, nothing fitted."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from beamdyn.analyses.about_motion import harvest
 from beamdyn.app.program import BEAMDYN
 from beamdyn.app.scene_screen import bar
 from beamdyn.common.edge.console import table
-from beamdyn.common.edge.rendering import html, in_haste, picture, svg
+from beamdyn.common.edge.rendering import html, in_haste, picture, svg, svg_in_haste
 from beamdyn.common.results.columns import ShownUnit
 from beamdyn.common.results.one_line import few_digits, number
 from beamdyn.common.results.pictures import new_figure
@@ -89,6 +90,26 @@ def test_a_picture_in_haste_has_the_layout_of_the_last_one():
     assert len(second.axes[0].xaxis.get_minorticklocs()) > 0  # a decade keeps its small ticks
     with_label = drawn(1e6, "two lines\nof a label").axes[0].get_position()
     assert with_label.x0 > second.axes[0].get_position().x0
+
+
+def test_a_picture_in_haste_reuses_a_frame_that_has_not_changed():
+    def drawn(highest, title):
+        figure = new_figure(4.0, 3.0)
+        ax = figure.subplots()
+        ax.plot([0.0, 1.0], [0.0, highest])
+        ax.set(xlabel="a frame", ylim=(0.0, 10 * np.ceil(highest / 10)), title=title)
+        return figure
+
+    def texts(made):
+        return sorted(re.findall("<!-- (.*) -->", made))
+
+    for highest, title in ((7.0, "seen once"), (8.0, "twice"), (99.0, "another"), (9.0, "again")):
+        made, usual = svg_in_haste(drawn(highest, title)), svg(in_haste(drawn(highest, title)))
+        assert texts(made) == texts(usual) and {"a frame", title} <= {*texts(made)}
+        assert made.startswith("<?xml") and made.count("<svg") == made.count("</svg>") == 1
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("matplotlib.axis.Axis.draw", lambda it, _: it.get_visible() and pytest.fail("drawn"))
+        assert texts(svg_in_haste(drawn(6.0, "again"))) == texts(made)
 
 
 def test_a_broad_picture_takes_the_whole_width_of_a_page():

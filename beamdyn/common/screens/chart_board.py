@@ -49,7 +49,8 @@ class _ShownChart:
             self.element.props["aria-label"] = chart.words
         if self._writer.is_ahead:
             others = {name: value for name, value in self._options.items() if last.get(name) != value}
-            self._writer.write(self.element, {"options": _without_scripts(others) | _NO_TOOLBOX})
+            changed = _without_scripts(others) | {"series": series} | _NO_TOOLBOX
+            self._writer.write(self.element, {"options": changed})
             self._writer.tell_later(self)
         else:
             self.update()

@@ -175,6 +175,11 @@ class BusyRow:
             ui.button("Cancel", on_click=cancel).props("dense outline no-caps size=sm")
         self._row.set_visibility(False)
 
+    @property
+    def parts(self) -> tuple[Any, ...]:
+        """Return the elements that `show` changes."""
+        return self._row, self._time
+
     def show(self, busy: bool, time: str = "") -> None:
         """Show the row with the elapsed time, or hide it."""
         self._row.set_visibility(busy)

@@ -130,7 +130,10 @@ window.writeChanges = (changes) => {
         (shown.querySelector("input, textarea") ?? shown).value = value;
       } else if (name === "place") getElement(id).at = value;
       else if (name === "options") {
-        getElement(id).chart?.setOption(value, {replaceMerge: ["series"], lazyUpdate: true});
+        // First without series: in one step the media options, which have none, would remove the new series, too.
+        const chart = getElement(id).chart;
+        chart?.setOption({series: []}, {replaceMerge: ["series"], lazyUpdate: true});
+        chart?.setOption(value, {lazyUpdate: true});
       } else put(shown, name, value);
     }
   }

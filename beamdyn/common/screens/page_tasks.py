@@ -16,7 +16,7 @@ from beamdyn.common.edge.console import FittedTable
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.html_report import further, report_page
 from beamdyn.common.edge.input_sweep import InputSweep
-from beamdyn.common.edge.rendering import csv_text, drawing, html, in_haste, picture, png
+from beamdyn.common.edge.rendering import csv_text, drawing, html, picture, png, svg, svg_in_haste
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.results.one_line import few_digits
 from beamdyn.common.screens import form_entries
@@ -58,7 +58,7 @@ def solve_for_drawing(
     if screen.picture is None or not isinstance(found, ShownAnswer) or found.is_whole:
         return found
     with few_digits() if found.is_rough else nullcontext():
-        return replace(found, picture=_picture(screen, found.answer, narrow, in_haste))
+        return replace(found, picture=_picture(screen, found.answer, narrow, svg_in_haste))
 
 
 def sweep(
@@ -95,10 +95,10 @@ def picture_part(document: Document, screen: Screen, answer: Any, narrow: bool) 
     return _picture(screen, answer, narrow)
 
 
-def _picture(screen: Screen, answer: Any, narrow: bool, *finish: Callable[[Figure], Figure]) -> str:
+def _picture(screen: Screen, answer: Any, narrow: bool, write: Callable[[Figure], str] = svg) -> str:
     draw = screen.picture
     assert draw is not None
-    return picture(drawing(lambda: draw(answer, narrow), *finish), f"{screen.name}: picture of the result")
+    return picture(drawing(lambda: draw(answer, narrow), write), f"{screen.name}: picture of the result")
 
 
 def rows_file(document: Document, screen: Screen, answer: Any) -> str:

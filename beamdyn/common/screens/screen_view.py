@@ -20,7 +20,7 @@ from beamdyn.common.results.one_line import few_digits
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.chart_board import ChartBoard
 from beamdyn.common.screens.compared_designs import with_other_curves
-from beamdyn.common.screens.computations import SOON, BusyRow, LatestComputation, download
+from beamdyn.common.screens.computations import BusyRow, LatestComputation, download
 from beamdyn.common.screens.controls import BranchChoice, Player
 from beamdyn.common.screens.draggable_drawing import DraggableDrawing
 from beamdyn.common.screens.find_panel import FindPanel
@@ -48,6 +48,7 @@ _NO_FILE = "No file is made: the present entries have no answer, or a preliminar
 _STALE = "Stale: for the entries before."
 # Time between pictures of charts beside a moving drawing: a browser takes 5 to 10 ms for each [s].
 _CHARTS_APART = 0.1
+_MUCH = 0.05  # computing time of tables and notes above which the drawing is shown before them [s]
 
 
 class ScreenView:
@@ -258,7 +259,7 @@ class ScreenView:
         completes = drawn is not None and not drawn.is_whole and self.work.drawn(self.screen)
         if completes and not held:
             self._way.want(partial(self._make, page_tasks.solve, entries, drawn), gives_way=True)
-        elif self.screen.picture is not None or (drawn is not None and (held or drawn.rest > SOON)):
+        elif self.screen.picture is not None or (drawn is not None and (held or drawn.rest > _MUCH)):
             self._draw_first(entries, held)
         else:
             self._way.want(partial(self._make, page_tasks.solve, entries))
@@ -332,13 +333,13 @@ class ScreenView:
         stale, drawn = self.work.stale(self.screen), self.work.drawn(self.screen)
         failed = bool(self.work.mistakes.get(self.screen.name))
         follows = not failed and ((held and not slow) or (drawn and busy))
-        self._busy.show(slow, self._way.words)
         words = _STALE if self._answered else "No result yet."
         state = "Computing. " if busy else "Refused. " if failed else ""
         now = f"{state}{words}" if stale else state.strip() or "Up to date."
         waits = "The drawing follows; the tables wait." if held else "The tables follow."
         waits = f"Preliminary. {waits}" if self._answered and self._answered.is_rough else waits
-        with self._writer.writing(self._head, self._good, self._status):
+        with self._writer.writing(self._head, self._good, self._status, *self._busy.parts):
+            self._busy.show(slow, self._way.words)
             toggle(self._head, "stale", stale and not follows)
             toggle(self._good, "greyed", stale and (failed or (slow and not drawn) or not (busy or held)))
             toggle(self._good, "refused", stale and failed)
