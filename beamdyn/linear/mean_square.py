@@ -137,16 +137,18 @@ def pole_integrals(
         return piece(f) * (2 * np.pi * (f + shift)) ** order
 
     whole, by_pole = 0.0, np.zeros(len(mu), dtype=complex)
-    for piece in (part for each in spectrum.pieces() for part in each.divided()):
-        half = (piece.end - piece.start) / 2
-        f, w = (piece.start + piece.end) / 2 + half * _POINTS, half * _WEIGHTS
+    for piece in spectrum.pieces():
+        start, end = piece.divided()
+        half = (end - start) / 2
+        f, w = (start + end) / 2 + half * _POINTS, half * _WEIGHTS
         S = weighted(piece, f)
-        near = np.abs(mu - np.clip(np.real(mu), piece.start, piece.end)) < _NEAR * 2 * half
-        whole += float(w @ S)
-        by_pole[~near] += (w * S) @ (1 / (f[:, None] - mu[~near]))
-        at_pole = weighted(piece, mu[near])
-        smooth = w @ ((S[:, None] - at_pole) / (f[:, None] - mu[near]))
-        by_pole[near] += smooth + at_pole * np.log((piece.end - mu[near]) / (piece.start - mu[near]))
+        near = np.abs(mu - np.clip(np.real(mu), start, end)) < _NEAR * 2 * half
+        # Far from all parts, a power law may be too large to be computed.
+        at_pole = near * weighted(piece, np.where(near.any(axis=0), mu, piece.end))
+        smooth = (S[..., None] - at_pole[:, None]) / (f[..., None] - mu)
+        whole += float((w * S).sum())
+        by_pole += np.einsum("pf,pfm->m", w, smooth)
+        by_pole += (at_pole * np.log((end - mu) / (start - mu))).sum(axis=0)
     return PoleIntegrals(whole, by_pole)
 
 

@@ -21,7 +21,7 @@ from beamdyn.accuracy.refinement import LINEAR_MESHES, THREE_DISCRETIZATIONS, er
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.words import Named, Setting, Words
-from beamdyn.equations.circuit import BENDS, coupling_of, strain_of
+from beamdyn.equations.circuit import BENDS, strain_of
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.equations.fields.transverse import plane_components
@@ -267,7 +267,7 @@ class ModelAtSpeed(FieldsOnly):
             row[full.blocks[BENDS]] = strain_of(beam, bends, place)[:, 0]
             return row, 0, row @ self.shapes
         found, voltage = observation.rows(electrodes, beam.length), self.equations.voltage
-        for name, theta in coupling_of(beam, full.deflections, full.sections).items():
+        for name, theta in self.model.coupling.items():
             row[full.blocks[name]] = found.factor * theta
         if voltage is None:
             return row, found.order, row @ self.shapes

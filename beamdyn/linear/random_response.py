@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from time import perf_counter
@@ -18,7 +18,7 @@ from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import announced_of_plain_beam
 from beamdyn.linear import inputs_outputs, mean_square, spectra
 from beamdyn.linear.convergence import Refined, check_linear, evaluate_accurately, evaluate_also, with_forces
-from beamdyn.linear.model_at_speed import ModelAtSpeed
+from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.transfer import check_stable
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
@@ -192,7 +192,11 @@ def random_response(
     else:
         f = ascending("frequencies", frequencies)
         refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
-    of_psd = evaluate_also(refined, lambda model: _density(_expand(model, drive, seen), spectrum, speed, f))
+
+    def density(model: ModelAtSpeed) -> np.ndarray:
+        return _density(_expand(model, model.drives(drive), seen), spectrum, speed, f)
+
+    of_psd = evaluate_also(refined, density)
     parametric = mean_square.parametric_term(model, drive, spectrum)
     return RandomResponse(
         speed=speed,
@@ -264,7 +268,9 @@ def rms_by(
     outputs: Sequence[inputs_outputs.Observation],
 ) -> np.ndarray:
     """Compute the root mean squares by one model; arguments as for `root_mean_squares`."""
-    squares = (_mean_square(_expand(model, drive, seen), spectrum, model.speed) for seen in outputs)
+    check_stable(model)
+    drives = model.drives(drive)
+    squares = (_mean_square(_expand(model, drives, seen), spectrum, model.speed) for seen in outputs)
     return np.sqrt([*squares])
 
 
@@ -289,10 +295,9 @@ def _frequencies(
 
 
 def _expand(
-    model: ModelAtSpeed, drive: inputs_outputs.Excitation, seen: inputs_outputs.Observation
+    model: ModelAtSpeed, drives: Mapping[int, HarmonicDrive], seen: inputs_outputs.Observation
 ) -> dict[int, mean_square.PartialFractions]:
-    check_stable(model)
-    return {h: mean_square.partial_fractions(model, each, seen) for h, each in model.drives(drive).items()}
+    return {h: mean_square.partial_fractions(model, each, seen) for h, each in drives.items()}
 
 
 def _mean_square(

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
@@ -69,14 +68,16 @@ class SpectrumPiece:
             return self.constant * (f / self.start) ** self.power
         return self.constant + self.slope * f
 
-    def divided(self) -> Iterator[SpectrumPiece]:
-        """Yield smaller intervals, on each of which a power law is nearly a polynomial."""
-        if not self.power:
-            yield self
-            return
-        parts = math.ceil(math.log(self.end / self.start, _WIDEST))
-        for a, b in pairwise(np.geomspace(self.start, self.end, parts + 1).tolist()):
-            yield SpectrumPiece(a, b, float(self(np.array(a))), 0.0, self.power)
+    def divided(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return starts and ends [Hz], (P, 1) each, of P shorter intervals.
+
+        On each of them a power law is nearly a polynomial.
+        """
+        ends = np.array([[self.start], [self.end]])
+        if self.power:
+            parts = math.ceil(math.log(self.end / self.start, _WIDEST))
+            ends = np.geomspace(self.start, self.end, parts + 1)[:, None]
+        return ends[:-1], ends[1:]
 
 
 @dataclass(frozen=True)
@@ -153,12 +154,11 @@ class PowerSpectrum:
     def rms(self) -> float:
         """Root mean square of the input [unit of the input]."""
         nodes, weights = np.polynomial.legendre.leggauss(16)
+        parts = [(piece, *piece.divided()) for piece in self.pieces()]
         each = (
-            (p.end - p.start) / 2 * weights @ p((p.start + p.end) / 2 + nodes * (p.end - p.start) / 2)
-            for piece in self.pieces()
-            for p in piece.divided()
+            (b - a) / 2 * piece((a + b) / 2 + nodes * (b - a) / 2) @ weights[:, None] for piece, a, b in parts
         )
-        return math.sqrt(math.fsum(float(v) for v in each))
+        return math.sqrt(math.fsum(v for values in each for v in values[:, 0].tolist()))
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from beamdyn.linear.spectra import RoadRoughness
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.steady.harvest import ElectricLines, Harvest, electrodes_of, harvested
-from beamdyn.steady.response import steady_response
+from beamdyn.steady.response import SteadyResponse, steady_response
 from beamdyn.steady.road_harvest import check_road, harvest_on_road
 
 _DECADES = 4.0  # decades of resistance that are tried first, either side of 1/(omega capacitance)
@@ -181,33 +181,28 @@ def sought(
     response = steady_response(loaded, [speed], modes, None, tolerance, discretization)
     if not response.stable[0]:
         raise BeyondModel("speed", speed, f"{response.status[0]}: no steady response", "", "rad/s")
-    request = response.request
-    request = replace(request, discretization=request.model.discretization)
+    request = replace(response.request, discretization=response.request.model.discretization)
+    response = replace(response, request=request)
     first = math.sqrt(request.model.solver.lowest_at_rest)
     middle = math.log10(1 / (first * electrodes.capacitance(scene.beam.length)))
 
     tried: dict[float, float] = {}
 
-    def lost(decade: float) -> float:
-        resistance = 10.0 ** float(decade)
-        other = replace(request, scene=with_resistance(request.scene, resistance))
-        tried[resistance] = float(ElectricLines.of(other).power[0])
-        if road is not None:
-            with_load = replace(response, request=other)
-            on_road, _ = harvest_on_road(with_load, road, discretization, compared=False)
-            tried[resistance] += float(on_road.power[0])
-        return -tried[resistance]
+    def powers(decades: np.ndarray) -> np.ndarray:
+        found = _powers(response, road, resistances := 10.0**decades)
+        tried.update(zip(resistances.tolist(), found.tolist(), strict=True))
+        return found
 
     grid = np.linspace(middle - _DECADES, middle + _DECADES, search.tried)
-    lowest = [lost(each) for each in grid]
-    k = int(np.argmin(lowest))
-    if not lowest[k] < 0:
+    k = int(np.argmax(highest := powers(grid)))
+    if not highest[k] > 0:
         bound, remedy = "nothing vibrates at this speed", "give gravity, or a wavy road"
         if electrodes.coupling == 0:
             bound, remedy = "the layers do not couple: no voltage follows", "give e31 or d31"
         raise InvalidValue("speed", speed, bound, remedy, "rad/s")
     bounds = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
-    best = minimize_scalar(lost, bounds=bounds, method="bounded", options={"xatol": search.tolerance / 3})
+    near = {"bounds": bounds, "method": "bounded", "options": {"xatol": search.tolerance / 3}}
+    best = minimize_scalar(lambda decade: -powers(np.array([decade]))[0], **near)
     chosen = with_resistance(scene, 10.0 ** float(best.x))
     found = harvested(chosen, [speed], modes, tolerance, discretization, road, compared=search.compared)
     resistances, power = np.array(sorted(tried.items())).T
@@ -216,6 +211,19 @@ def sought(
     made = BestResistance(**values, resistances=resistances, tried_power=power)
     vars(made)["again"] = vars(found)["again"]  # the model error is computed with this resistance
     return made
+
+
+def _powers(response: SteadyResponse, road: RoadRoughness | None, resistances: np.ndarray) -> np.ndarray:
+    """Compute the mean power [W] with each of several load resistances [ohm], also that by a random road."""
+    request = response.request
+    found = ElectricLines.of_resistances(request, resistances).power
+    if road is None:
+        return found
+    for k, resistance in enumerate(resistances.tolist()):
+        other = replace(request, scene=with_resistance(request.scene, resistance))
+        with_load = replace(response, request=other)
+        found[k] += harvest_on_road(with_load, road, request.discretization, compared=False)[0].power[0]
+    return found
 
 
 def with_resistance(scene: Scene, resistance: float) -> Scene:

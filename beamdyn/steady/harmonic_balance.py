@@ -161,6 +161,8 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     """
     S, n = len(system.rates), system.size
     response, settled = np.full((S, len(harmonics), n), np.nan, dtype=complex), np.zeros(S, dtype=bool)
+    if system.is_free(np.array(harmonics)).any():  # such a coordinate has no compliance in the static part
+        return response, settled
     try:
         mean = MeanModes.of_system(system)
     except np.linalg.LinAlgError:

@@ -25,13 +25,19 @@ from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.harvested import electric_rows, strain_rows
 from beamdyn.linear.spectra import RoadRoughness
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.modes.modal.model import reduce_to_modes
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.harvester import Electrodes
 from beamdyn.scene.motion import RollingWheel
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import list_speeds
 from beamdyn.steady.largest_over_phases import largest_over_phases
-from beamdyn.steady.periodic_system import check_steady_state
+from beamdyn.steady.periodic_system import (
+    PeriodicSystem,
+    check_steady_state,
+    periodic_system,
+    split_uncoupled,
+)
 from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.steady.response import ResponseRequest, steady_response
 from beamdyn.steady.road_harvest import SEVERAL, RoadHarvest, check_road, harvest_on_road
@@ -383,11 +389,35 @@ class ElectricLines:
     @classmethod
     def of(cls, request: ResponseRequest) -> ElectricLines:
         """Solve for all coordinates of a request's modal basis."""
-        motion, speeds = check_steady_state(request.scene.motion), request.speeds
         equations = request.model.modal_equations(request.basis)
-        vibration = vibration_of(request.model, request.basis, motion, speeds)
+        motion = check_steady_state(request.scene.motion)
+        vibration = vibration_of(request.model, request.basis, motion, request.speeds)
+        return cls.of_parts(request, request.speeds, equations, vibration.parts)
+
+    @classmethod
+    def of_resistances(cls, request: ResponseRequest, resistances: np.ndarray) -> ElectricLines:
+        """Solve for S load resistances [ohm] in place of S speeds, at the one speed of a request."""
+        mechanical = reduce_to_modes(request.model.equations, request.basis)
+        assert mechanical.circuit is not None, "the beam has a load"
+        circuits = (replace(mechanical.circuit, resistance=each) for each in resistances.tolist())
+        equations = [replace(mechanical, circuit=each).with_flux() for each in circuits]
+        speeds = np.full(len(equations), request.speeds[0])
+        system = periodic_system(equations, request.scene.motion, speeds)
+        lines = cls.of_parts(request, speeds, equations[0], split_uncoupled(system, equations[0]))
+        return replace(lines, current=lines.voltage / resistances[:, None])
+
+    @classmethod
+    def of_parts(
+        cls,
+        request: ResponseRequest,
+        speeds: np.ndarray,
+        equations: Equations,
+        parts: list[tuple[PeriodicSystem, np.ndarray]],
+    ) -> ElectricLines:
+        """Solve for all coordinates of uncoupled parts of equations at speeds (S,)."""
+        motion = check_steady_state(request.scene.motion)
         every = np.broadcast_to(np.eye(equations.size), (len(speeds), equations.size, equations.size))
-        used, c, truncation = solve_parts(vibration.parts, every, request.harmonics, request.tolerance)
+        used, c, truncation = solve_parts(parts, every, request.harmonics, request.tolerance)
         pairs, q = combine_pairs(c, used, motion)
         rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
         omega = rates @ pairs.T  # angular frequency of each line
@@ -427,13 +457,14 @@ class HarvestedPowers:
         equations, pairs, q, velocity = lines.equations, lines.pairs, lines.coordinates, lines.velocity
         C = equations.matrices[1].get("unity", np.zeros((equations.size, equations.size)))
         spent = np.real(np.einsum("sil,ij,sjl->sl", velocity.conj(), C, velocity)) @ lines.halves
-        rows = strain_rows(equations, request.scene.beam)
+        strain = strain_rows(equations, request.scene.beam) @ q
+        largest = largest_over_phases(np.concatenate(strain)[:, None], pairs)
         return cls(
             power=lines.power,
             input_power=spent,
             voltage=largest_over_phases(lines.voltage[:, None], pairs),
             current=largest_over_phases(lines.current[:, None], pairs),
-            strain=np.max([largest_over_phases(row[None] @ q, pairs) for row in rows], axis=0),
+            strain=largest.reshape(strain.shape[:2]).max(axis=1),
             truncation=lines.truncation,
         )
 

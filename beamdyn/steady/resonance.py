@@ -25,7 +25,7 @@ from beamdyn.modes.modal.eigenproblem import Eigensolver
 from beamdyn.modes.modal.error_estimate import solve_with_error
 from beamdyn.modes.modal.line_roots import ROUNDING, coincides, find_roots
 from beamdyn.modes.modal.model import Model, plane_share
-from beamdyn.modes.modal.solvers import UncoupledSolver, track
+from beamdyn.modes.modal.solvers import UncoupledSolver, solve_over_speeds, track
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.motion import Line
 from beamdyn.scene.names_elsewhere import WITH_WHEEL
@@ -271,9 +271,9 @@ class _Loci:
         self.modes = len(numbers)
         nodes = _BENT_NODES if model.scene.physics.large_deflection else _NODES
         self.speeds = np.linspace(0, top, nodes + 1)
-        self.values = self.frequencies(self.speeds)
-        vectors = self.solver.solve(self.speeds, self.modes).vector
-        self.order, _ = track(vectors, self.solver.pencil.M)
+        found = solve_over_speeds(self.solver, self.speeds, self.modes)
+        self.values = np.abs(np.imag(found.eigenvalue))
+        self.order, _ = track(found.vector, self.solver.pencil.M)
 
     @property
     def tracked(self) -> np.ndarray:

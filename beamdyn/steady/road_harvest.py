@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
 
 from beamdyn.common.inputs.checks import kind
 from beamdyn.common.results.statements import LIMITS, Statement
-from beamdyn.linear.convergence import model_at_speed, with_forces
+from beamdyn.linear.convergence import model_at_speed
 from beamdyn.linear.inputs_outputs import DeflectionAt, HarvestedCurrent, HarvestedVoltage, LayerStrain
 from beamdyn.linear.mean_square import check_damped, parametric_term
 from beamdyn.linear.random_response import rms_by, root_mean_squares
@@ -94,12 +94,14 @@ def harvest_on_road(
     rms, error = np.full((2, len(outputs), len(speeds)), np.nan)
     rms[:, speeds == 0], error[:, speeds == 0] = 0.0, 0.0
     change, missed = np.zeros(len(speeds)), np.zeros(len(speeds), dtype=bool)
+    quick = None  # one model for all speeds
+    if not compared and modes is not None:
+        quick = model_at_speed(scene, float(np.abs(speeds).max()), modes, discretization)
     for k in np.flatnonzero(response.stable & (speeds != 0)).tolist():
         speed = float(speeds[k])
         drive, density = random_input(scene, speed, roughness, None)
-        if not compared and modes is not None:
-            model = model_at_speed(with_forces(scene, [drive]), speed, modes, discretization)
-            rms[:, k], error[:, k] = rms_by(model, drive, density, outputs), np.nan
+        if quick is not None:
+            rms[:, k], error[:, k] = rms_by(replace(quick, speed=speed), drive, density, outputs), np.nan
             continue
         found = root_mean_squares(
             scene, speed, drive, density, outputs, modes or "auto", _TOLERANCE, discretization

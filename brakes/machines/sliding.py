@@ -30,7 +30,9 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from brakes.machines.machine import Lining, Machine
 
-_HALVINGS = 56  # number of bisections, which reduce an angle below 2 pi to its rounding
+# Numbers of bisections, which reduce a step of friction to its rounding, and an angle below 2 pi to 1e-10: a
+# Newton step then squares the error.
+_HALVINGS, _HALVINGS_OF_ANGLE = 52, 36
 _FRICTIONS = np.linspace(0.0, 3.0, 61)  # friction coefficients among which self-locking is sought
 # Angle of contact [rad] below which the lining counts as touching only at its edge, where the shoe has no
 # equilibrium.
@@ -167,13 +169,19 @@ class Sliding(Machine):
         first, last = self._weight(self.lining_start, mu, s), self._weight(self.lining_end, mu, s)
         low = self.lining_start - np.pi + 0 * first
         high = self.lining_end + 0 * first
-        for _ in range(_HALVINGS):
+        for _ in range(_HALVINGS_OF_ANGLE):
             middle = (low + high) / 2
             before = self._residual(middle, mu, s) * first > 0
             low, high = np.where(before, middle, low), np.where(before, high, middle)
-        delta = (low + high) / 2
+        with np.errstate(divide="ignore", invalid="ignore"):  # without equilibrium
+            delta = np.clip(self._newton((low + high) / 2, mu, s), low, high)
         begin, end = self._contact(delta)
         return np.where((first * last < 0) & (end - begin > _LEAST_CONTACT), delta, np.nan)
+
+    def _newton(self, delta: np.ndarray, mu: Numbers, s: float) -> Any:
+        """Improve the angle of zero pressure [rad] by a Newton step; complex friction adds its derivative."""
+        slope = self._residual(delta + 1j * _TURN_STEP, np.real(mu), s).imag / _TURN_STEP
+        return delta - self._residual(delta, mu, s) / slope
 
     @cached_property
     def locking(self) -> Mapping[bool, Numbers]:
@@ -210,15 +218,10 @@ class Sliding(Machine):
         return self._moment(self._integrals(delta), mu, s) / self.arm
 
     def _shoe(self, mu: Numbers, leads: bool) -> Lining:
-        """Make the lining of one shoe.
-
-        One Newton step for the angle of zero pressure adds the angle's complex-step derivative.
-        """
+        """Make the lining of one shoe."""
         s, delta = -1.0 if leads else 1.0, self.zero(mu, leads)
         held = np.isfinite(delta)
-        delta = np.where(held, delta, self.lining_start)
-        slope = self._residual(delta + 1j * _TURN_STEP, np.real(mu), s).imag / _TURN_STEP
-        delta = delta - self._residual(delta, mu, s) / slope
+        delta = self._newton(np.where(held, delta, self.lining_start), mu, s)
         K, S, C = found = self._integrals(delta)
         area = self.face_width * np.asarray(self.drum_radius) / self._peak(delta)
         force = area * self._moment(found, mu, s) / self.arm

@@ -49,6 +49,7 @@ _STALE = "Stale: for the entries before."
 # Time between pictures of charts beside a moving drawing: a browser takes 5 to 10 ms for each [s].
 _CHARTS_APART = 0.1
 _MUCH = 0.05  # computing time of tables and notes above which the drawing is shown before them [s]
+_DRAWN_FIRST = 0.03  # time after which charts follow a drawing that the slider moves: it is painted first [s]
 
 
 class ScreenView:
@@ -427,14 +428,26 @@ class ScreenView:
         self._drawn = True
         plays = self._player is not None and self._player.plays
         moves = plays or (self.dragged and made.view is not None)
-        if screen.charts is not None and (not moves or monotonic() - self._charted >= _CHARTS_APART):
-            self._charted = monotonic()
-            with few_digits() if answered.is_rough else nullcontext():
-                charts = screen.charts(answer, place)
-            if there is not None:
-                charts = with_other_curves(charts, screen.charts(there.answer, place), name)
-            self._charts.show(charts)
         self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
+        if screen.charts is None or (moves and monotonic() - self._charted < _CHARTS_APART):
+            return
+        self._charted = monotonic()
+        if self._plays and made.view is not None:
+            asyncio.get_running_loop().call_later(_DRAWN_FIRST, self._show_charts)
+        else:
+            self._show_charts()
+
+    def _show_charts(self) -> None:
+        """Show the charts of the latest result."""
+        answered, screen, place = self._answered, self.screen, self.progress
+        if answered is None or screen.charts is None or self._left.is_deleted:
+            return
+        there, name = self.work.other_answer(screen), self.work.other.name if self.work.other else ""
+        with few_digits() if answered.is_rough else nullcontext():
+            charts = screen.charts(self._drawn_answer(answered), place)
+        if there is not None:
+            charts = with_other_curves(charts, screen.charts(there.answer, place), name)
+        self._charts.show(charts)
 
     def _drawn_answer(self, answered: ShownAnswer) -> Any:
         """Return the result with the chosen solution branch, for the drawing."""

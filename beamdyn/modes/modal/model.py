@@ -23,6 +23,7 @@ from beamdyn.common.results.result import Result
 from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.results.statements import OUTSIDE, Statement
 from beamdyn.equations.assembly import assemble_over
+from beamdyn.equations.circuit import coupling_of
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
 from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
@@ -73,6 +74,11 @@ class Model(FieldsOnly):
         beam = self.scene.modelled_beam
         scene = replace(self.scene, beam=beam) if self.scene.bends_in_space else self.scene
         return assemble_over(scene, self.discretization.spaces(beam))
+
+    @cached_property
+    def coupling(self) -> dict[str, np.ndarray]:
+        """Moment of the layers by a unit voltage, per function of each field: see `coupling_of`."""
+        return coupling_of(self.scene.beam, self.equations.deflections, self.equations.sections)
 
     @cached_property
     def solver(self) -> Eigensolver:
