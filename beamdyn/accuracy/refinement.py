@@ -147,9 +147,8 @@ def error_of_finest(
     size, larger = np.abs(distance), np.where(np.isfinite(before), np.abs(before), 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         remains = np.where(2 * size < larger, size / (larger - size), 1.0)
-    return margin.factor * np.maximum(
-        np.maximum(remains * size, _LEAST_SHARE * larger), np.minimum(size, rounding)
-    )
+    least = np.minimum(size, rounding)
+    return margin.factor * np.maximum(np.maximum(remains * size, _LEAST_SHARE * larger), least)
 
 
 Answer = TypeVar("Answer")

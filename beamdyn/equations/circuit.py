@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -131,8 +131,5 @@ def open_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> list[Term
 
     The terms are theta theta^T / Cp, with a coupling vector theta of each block and the capacitance Cp.
     """
-    return [
-        Term("piezoelectric stiffness", a, b, 0, np.outer(of_a, of_b) / circuit.capacitance)
-        for a, of_a in coupled.items()
-        for b, of_b in coupled.items()
-    ]
+    pairs, C = product(coupled.items(), repeat=2), circuit.capacitance
+    return [Term("piezoelectric stiffness", a, b, 0, np.outer(u, v) / C) for (a, u), (b, v) in pairs]

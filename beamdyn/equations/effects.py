@@ -157,10 +157,8 @@ TORSION = Effect(
 LARGE_DEFLECTION = Effect(
     "large deflection", "the equations are linear about the straight beam", "large_deflection", bends=True
 )
-_OFFSETS, _LINE = (
-    "offsets of sections",
-    "their centres of gravity, tension and shear are on one straight line",
-)
+_OFFSETS = "offsets of sections"
+_LINE = "their centres of gravity, tension and shear are on one straight line"
 # Offsets are given, but torsion is not modelled.
 OFFSETS = Effect(_OFFSETS, _LINE, "torsion", needs=("torsion_stiffness",))
 _IN_LINE = Effect(_OFFSETS, _LINE)  # no offsets are given

@@ -40,10 +40,8 @@ class SampledScene:
         if not math.isfinite(start):
             start = max(_HORIZON, *motion.breakpoints, 0.0)
         speed = abs(motion.final_speed)  # also sample some revolutions at the final speed
-        times = (
-            np.linspace(0, start, _SAMPLES),
-            np.linspace(0, _TURNS * 2 * math.pi / (speed or np.inf), _SAMPLES),
-        )
+        turns = np.linspace(0, _TURNS * 2 * math.pi / (speed or np.inf), _SAMPLES)
+        times = np.linspace(0, start, _SAMPLES), turns
         return motion.at(np.unique(np.minimum(np.concatenate([times[0], start + times[1]]), motion.end)))
 
     @cached_property
@@ -139,9 +137,8 @@ def say_tension(scene: SampledScene) -> str:
 
 def say_softening(scene: SampledScene) -> str:
     """Explain why rotation increases a deflection away from the rotation axis."""
-    return (
-        "it bends in the plane of rotation" if IN_PLANE.is_met(scene) else "the precone has it bend outward"
-    )
+    in_plane = IN_PLANE.is_met(scene)
+    return "it bends in the plane of rotation" if in_plane else "the precone has it bend outward"
 
 
 def say_static_load(scene: SampledScene) -> str:
@@ -227,13 +224,10 @@ TILTED = Condition(lambda s: PRECONED.is_met(s) or OUT_OF_PLANE.is_met(s), OUT_O
 DAMPED = Condition(lambda s: s.scene.is_damped, "no damping: the damping ratio is 0")
 ON_POINTS = Condition(lambda s: bool(s.scene.beam.point_springs), "no springs along the beam")
 TIP_BODY = Condition(lambda s: s.scene.beam.tip is not None, "no tip body")
-TIP_INERTIA = Condition(
-    _has_different_inertias,
-    "the tip body's inertias about the beam and about the direction of bending are the same",
-)
+_ROUND = "the tip body's inertias about the beam and about the direction of bending are the same"
+TIP_INERTIA = Condition(_has_different_inertias, _ROUND)
 TENSIONED = Condition(lambda s: s.is_nonzero("root_axial"), _say_untensioned)
 LOADED = Condition(lambda s: any(map(s.is_nonzero, _transverse(s))), _say_unloaded)
-OBLIQUE = Condition(
-    _has_oblique_inertia, "sections and tip body have no product of inertia about the axis of rotation"
-)
+_ALIGNED = "sections and tip body have no product of inertia about the axis of rotation"
+OBLIQUE = Condition(_has_oblique_inertia, _ALIGNED)
 ON_SPRINGS = Condition(_is_on_springs, _say_root)

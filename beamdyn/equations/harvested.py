@@ -41,7 +41,6 @@ def strain_rows(equations: Equations, beam: Beam) -> np.ndarray:
     assert beam.electrodes is not None, "electrodes stand on a layer"
     xi, shape = beam.electrodes.inside(np.linspace(0, 1, _FACES)), equations.shapes[BENDS]
     rows = np.zeros((_FACES, equations.size))
-    rows[:, equations.blocks[shape.block]] = (
-        strain_of(beam, equations.deflections[BENDS], xi).T @ shape.matrix
-    )
+    strain = strain_of(beam, equations.deflections[BENDS], xi)
+    rows[:, equations.blocks[shape.block]] = strain.T @ shape.matrix
     return rows

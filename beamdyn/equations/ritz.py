@@ -253,10 +253,8 @@ def _integrated_legendre(
     """
     if order > derivatives:
         raise ValueError(f"order = {order}: the functions have derivatives up to order {derivatives}")
-    segments = pairwise(ends)
-    return np.concatenate(
-        [_integrate_on_segment(functions, a, b, xi, derivatives - order) for a, b in segments]
-    )
+    times = derivatives - order  # number of integrations
+    return np.concatenate([_integrate_on_segment(functions, a, b, xi, times) for a, b in pairwise(ends)])
 
 
 def _integrate_on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -> np.ndarray:

@@ -100,9 +100,8 @@ def strain_per_moment(scene: Scene) -> float:
 def _weighted_sum(parts: Sequence[Mapping[Quantity, Any]], factors: list[float]) -> dict[Quantity, Any]:
     """Sum values of each quantity times factors, one factor for each part; a missing quantity counts as 0."""
     names: dict[Quantity, None] = dict.fromkeys(name for part in parts for name in part)
-    return {
-        name: sum(f * part.get(name, 0.0) for f, part in zip(factors, parts, strict=True)) for name in names
-    }
+    pairs = [*zip(factors, parts, strict=True)]
+    return {name: sum(f * part.get(name, 0.0) for f, part in pairs) for name in names}
 
 
 @dataclass(frozen=True)
@@ -185,9 +184,8 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
         matrices = full.matrices[order].items()
         return {quantity: -length * (rotation @ A @ kept) for quantity, A in matrices}
 
-    load: dict[Quantity, float] = {
-        quantity: length * float(rotation @ f) for quantity, f in full.vectors.items()
-    }
+    loads = full.vectors.items()
+    load: dict[Quantity, float] = {quantity: length * float(rotation @ f) for quantity, f in loads}
     position = rows(0)
     if math.isfinite(spring):
         slope = kept[full.blocks[name].start] / length  # slope by bending, without shear

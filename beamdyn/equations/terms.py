@@ -158,9 +158,8 @@ def terms(scene: Scene) -> Terms:
     sampled, assembled = SampledScene(scene), _terms_by_name(straight)
     modelled = (field for field in FIELDS if field.is_modelled(straight))
     complete = reduce(lambda scene, field: field.complete(scene), modelled, straight)
-    entries = [
-        _describe(every, assembled.get(name, []), sampled) for name, every in _terms_by_name(complete).items()
-    ]
+    terms = _terms_by_name(complete)
+    entries = [_describe(every, assembled.get(name, []), sampled) for name, every in terms.items()]
     if scene.physics.large_deflection:
         entries.append(_ANY_SLOPE)
     lines = scene.motion.lines if scene.motion is not None else ()
@@ -193,15 +192,8 @@ def _describe(every: list[Term | Load], assembled: list[Term | Load], scene: Sam
     )
 
 
-_ANY_SLOPE = Entry(
-    name="large deflection",
-    symbol="cos θ, sin θ",
-    fields=("bending",),
-    quantity="1",
-    largest=1.0,
-    present=True,
-    reason="slopes of any size are modelled; the other terms are what they are for a straight beam",
-)
+_MODELLED = "slopes of any size are modelled; the other terms are what they are for a straight beam"
+_ANY_SLOPE = Entry("large deflection", "cos θ, sin θ", ("bending",), "1", 1.0, True, _MODELLED)
 _EXPLANATIONS = {name: text for field in FIELDS for name, text in field.explanations.items()}
 
 _QUANTITY = {

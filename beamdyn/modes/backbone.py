@@ -219,9 +219,8 @@ class FreeVibration:
         state = solver.elastica.at(solver.equilibria(np.array([speed]))[0])
         v = found.vector[0][:, mode - 1].astype(complex)
         size = longer_semi_axis(state.bent.tip_motions.T @ v)
-        return cls(
-            state, speed, float(found.eigenvalue[0, mode - 1].imag), v * state.of.beam.stations.length / size
-        )
+        frequency = float(found.eigenvalue[0, mode - 1].imag)
+        return cls(state, speed, frequency, v * state.of.beam.stations.length / size)
 
     def coefficient(self, small: float) -> float:
         """Compute the relative frequency change over the squared relative amplitude, in the limit of 0."""
@@ -237,12 +236,8 @@ class FreeVibration:
     def _dynamic(self, harmonic: int) -> np.ndarray:
         """Compute the dynamic stiffness matrix at a multiple of the frequency."""
         state, w, pencil = self.state, harmonic * self.omega, self.state.linearized().steady()
-        return (
-            pencil.K0
-            + self.speed**2 * pencil.K2
-            + 1j * w * self.speed * state.gyroscopic
-            - w**2 * state.bent.mass
-        )
+        K = pencil.K0 + self.speed**2 * pencil.K2
+        return K + 1j * w * self.speed * state.gyroscopic - w**2 * state.bent.mass
 
     def _shift(self, eps: float) -> float:
         """Compute the change of the angular frequency, divided by eps^2 [rad/s], at a small amplitude eps."""

@@ -40,6 +40,7 @@ _PROOF_SIZES = (24, 48, 96)
 _CLOSE = 1 - 1e-6  # fraction of the squared Ritz value above which a bound is close enough
 # Fractions of the squared critical speed by Ritz's method that are tried as lower bounds.
 _SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
+_HOW = "upper: Rayleigh-Ritz; lower: Rayleigh-Ritz minus a bound of the coupling to all other functions"
 _OF_DEFLECTION = 1e-3  # relative error of the model that computes the static deflection
 
 
@@ -190,10 +191,8 @@ def _frequency(squared: np.ndarray, units: int) -> np.ndarray:
 
 
 def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[Statement]:
-    missing = (
-        "no lower bound of ",
-        ": the error of the remaining functions could not be bounded, even with the largest basis",
-    )
+    why = ": the error of the remaining functions could not be bounded, even with the largest basis"
+    missing = "no lower bound of ", why
     unstable = "", " are unstable: see the bounds of the squares"
     undecided = "", " may be stable or not: the bounds of the squares enclose zero"
     for mask, kind, (begin, end) in (

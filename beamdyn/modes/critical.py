@@ -279,8 +279,7 @@ def _is_lower(bending: critical_search.FoundSpeed, found: critical_search.FoundS
 
 def _made_by(found: critical_search.FoundSpeed, start: float) -> Provenance:
     """Build the provenance record of a search that began at a given time."""
-    names = str(found.model.discretization), str(found.coarse.discretization)
-    return Provenance.since(start, *names)
+    return Provenance.since(start, str(found.model.discretization), str(found.coarse.discretization))
 
 
 def _of_bent_beam(
@@ -293,21 +292,18 @@ def _of_bent_beam(
     warnings = [*warn_of_left_out(scene)]
     if is_lost and tolerance is not None:
         warnings += warn_of_missed_tolerance(found.error, tolerance)
+    bending = "its load bends or compresses" if scene.tip_load.acts else "rotation bends"
     return CriticalPoint(
         speed=found.speed if is_lost else np.inf,
         error=found.error if is_lost else 0.0,
         none_below=found.speed,
-        reason=(_LOST if is_lost else _KEPT).format(_bending(scene)),
+        reason=(_LOST if is_lost else _KEPT).format(bending),
         warnings=tuple(warnings),
         provenance=_made_by(found, start),
         scene=scene,
         model=None,
         of_bent_beam=True,
     )
-
-
-def _bending(scene: Scene) -> str:
-    return "its load bends or compresses" if scene.tip_load.acts else "rotation bends"
 
 
 def _is_loaded_across(scene: Scene) -> bool:
@@ -320,12 +316,11 @@ def _is_loaded_across(scene: Scene) -> bool:
 
 def _refuse_without_potential(scene: Scene) -> None:
     """Raise an error for a tip load that may cause flutter, which a singular stiffness does not show."""
-    load = scene.tip_load
-    name = "follows" if load.follows else "moment"
     if scene.may_flutter_by_load:
+        name = "follows" if scene.tip_load.follows else "moment"
         bound = "under such a load, which has no potential, a beam may flutter with a regular stiffness"
         remedy = "look where a growth rate of natural_modes or frequency_locus becomes positive"
-        raise InvalidValue(f"tip_load.{name}", getattr(load, name), bound, remedy)
+        raise InvalidValue(f"tip_load.{name}", getattr(scene.tip_load, name), bound, remedy)
 
 
 def _is_within_theory(model: Model) -> bool:
@@ -339,11 +334,9 @@ def _is_within_theory(model: Model) -> bool:
 
 def _argued(scene: Scene, buckling: Buckling, start: float) -> CriticalPoint:
     """Build the critical point that follows from a theoretical argument alone, without a search."""
-    provenance = Provenance.since(start, "an argument", "nothing")
-    speed = np.inf if buckling.speed is None else buckling.speed
-    none_below = buckling.none_below or speed
-    warnings = tuple(warn_of_left_out(scene))
-    return CriticalPoint(speed, 0.0, none_below, buckling.why, warnings, provenance, scene, None)
+    speed, said = np.inf if buckling.speed is None else buckling.speed, tuple(warn_of_left_out(scene))
+    argued = Provenance.since(start, "an argument", "nothing")
+    return CriticalPoint(speed, 0.0, buckling.none_below or speed, buckling.why, said, argued, scene, None)
 
 
 def _warnings(

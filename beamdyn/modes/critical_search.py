@@ -122,9 +122,8 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
 
 def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
     """Find the speed of loss of stability, the error by the coarser model, and whether a speed was found."""
-    (squared, is_lost), (of_coarse, also) = (
-        find_loss_of_stability(each.deflected.load) for each in (model, model.compared)
-    )
+    lost = (find_loss_of_stability(each.deflected.load) for each in (model, model.compared))
+    (squared, is_lost), (of_coarse, also) = lost
     distance = abs(of_coarse - squared)
     error = _margin(model) * distance / (2 * squared) + _ROUNDING_OF_BENT if distance else _ROUNDING_OF_BENT
     error = error if is_lost and also else np.inf

@@ -398,10 +398,7 @@ def _collect(name: str, load: Loading, start: continuation.Point, top: float) ->
     # At a turning point the stiffness is singular; the point counts as stable if the branch before it is.
     judged = [b if b.p_rate else a for a, b in zip([start, *points], points, strict=False)]
     tips = load.elastica.beam.at(np.array([point.q for point in points])).tip
-    return EquilibriumBranch(
-        name,
-        np.sqrt([max(point.p, 0.0) for point in points]),
-        _in_space(tips, load.elastica.linear.mount),
-        np.array([continuation.count_negative(load, point.q, point.p) == 0 for point in judged]),
-        np.sqrt([point.p for point in points if not point.p_rate]),
-    )
+    stable = np.array([continuation.count_negative(load, point.q, point.p) == 0 for point in judged])
+    speeds = np.sqrt([max(point.p, 0.0) for point in points])
+    turning = np.sqrt([point.p for point in points if not point.p_rate])
+    return EquilibriumBranch(name, speeds, _in_space(tips, load.elastica.linear.mount), stable, turning)

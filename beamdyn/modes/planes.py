@@ -50,11 +50,8 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
         moments = tip.inertia_about_bending_direction, tip.inertia, tip.axial_inertia
         tip = TipMass(tip.mass, tip.offset, *moments)
     second = replace(first, bending_stiffness=beam.second_bending_stiffness, tip=tip, outer_fibre=None)
-    bent = zip(
-        (first, second)[:: -1 if quarters % 2 else 1],
-        (angle, angle - math.copysign(_QUARTER, angle)),
-        strict=True,
-    )
+    angles = angle, angle - math.copysign(_QUARTER, angle)
+    bent = zip((first, second)[:: -1 if quarters % 2 else 1], angles, strict=True)
     return tuple(
         replace(scene, beam=each, mount=replace(scene.mount, bending_angle=at), physics=Physics())
         for each, at in bent

@@ -134,10 +134,8 @@ class Enclosure(ABC):
         """Compute lower and upper bounds of the lowest eigenvalues z (squared frequencies), (modes,) each."""
         mass = self._sum(self.mass)
         starts = -np.real(self._solver.solve(np.array([self.speed]), modes).eigenvalue[0] ** 2)
-        lower, upper = (
-            [_search_bound(form, mass, k, z, side) for k, z in enumerate(starts)]
-            for form, side in ((self.lower_form, -1), (self.upper_form, 1))
-        )
+        lower = [_search_bound(self.lower_form, mass, k, z, -1) for k, z in enumerate(starts)]
+        upper = [_search_bound(self.upper_form, mass, k, z, 1) for k, z in enumerate(starts)]
         return np.array(lower), np.array(upper)
 
     @cached_property

@@ -365,9 +365,8 @@ class CoupledRitzPart(RitzPart):
         slope = nodes.integrate(self._turned(curvatures, nodes, 1))[..., :-1]
         mass, tension = (self.at(p, nodes) for p in (self.beam.mass_per_length, axial_tension(self.beam)[1]))
         inertia = self.from_tip(mass * nodes.integrate(slope)[..., :-1], nodes)
-        return np.concatenate(
-            [polynomials, self.from_tip(inertia, nodes), self.from_tip(tension * slope, nodes)]
-        )
+        of_loads = self.from_tip(inertia, nodes), self.from_tip(tension * slope, nodes)
+        return np.concatenate([polynomials, *of_loads])
 
     @cached_property
     def bending(self) -> np.ndarray:

@@ -22,12 +22,9 @@ from brakes.planar.system import OppositeTravelError
 
 CABLE, RIGHT_PAD, LEFT_PAD = "cable", "right pad", "left pad"
 _FINGER = 40.0  # usual force of the hand on a brake lever [N], a firm squeeze
-_PAD = OneWay(
-    "pad",
-    "pull",
-    "contact opens",
-    "the caliper is past its toggle position, or the pad's direction is reversed; give a shorter travel",
-)
+_PADS = Described(meaning="forces on the right and left pad", required=True)
+_PAST = "the caliper is past its toggle position, or the pad's direction is reversed; give a shorter travel"
+_PAD = OneWay("pad", "pull", "contact opens", _PAST)
 
 Split = Annotated[Literal["equal force", "equal work"], Described(meaning="how the rim loads the two pads")]
 LeverRatio = Annotated[float, Described(meaning="travel of the finger over that of the cable", above=0)]
@@ -77,10 +74,7 @@ class Caliper:
     mechanism: Mechanism
     centring: tuple[Joint, ...] = ()
     cable: Annotated[str, Described(meaning="load that closes the brake", required=True)] = CABLE
-    pads: Annotated[tuple[str, str], Described(meaning="forces on the right and left pad", required=True)] = (
-        RIGHT_PAD,
-        LEFT_PAD,
-    )
+    pads: Annotated[tuple[str, str], _PADS] = (RIGHT_PAD, LEFT_PAD)
     split: Split = "equal force"
     lever_ratio: LeverRatio = 4.0
     clearance: Clearance = 1.25e-3
@@ -152,10 +146,8 @@ class Caliper:
         """
         travel = self.contact if travel is None else travel
         if np.ndim(travel) == 0:
-            values = np.linspace(0.0, real("travel", travel, "m"), count("points", points, 2, MOST_POSITIONS))
-        else:
-            values = travel
-        motion = stroke(self.free, self.cable, real_array("travel", values))  # pyright: ignore[reportArgumentType]
+            travel = np.linspace(0.0, real("travel", travel, "m"), count("points", points, 2, MOST_POSITIONS))
+        motion = stroke(self.free, self.cable, real_array("travel", travel))  # pyright: ignore[reportArgumentType]
         finger = positive("finger", finger, "N")
         tension = self.lever_ratio * finger
         forces = self._forces(motion.position, tension)
@@ -192,9 +184,8 @@ class Caliper:
         return solve(self._with(tension, None if np.isnan(right) else right, None), position)
 
     def _with(self, tension: float | None, right: float | None, left: float | None) -> Mechanism:
-        return _with_magnitudes(
-            self.mechanism, dict(zip((self.cable, *self.pads), (tension, right, left), strict=True))
-        )
+        magnitudes = zip((self.cable, *self.pads), (tension, right, left), strict=True)
+        return _with_magnitudes(self.mechanism, dict(magnitudes))
 
     def _forces(self, position: Position, tension: float) -> dict[str, Any]:
         """Compute forces at a cable tension [N], as a mapping by attribute of `CaliperStroke`.

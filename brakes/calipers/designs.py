@@ -132,9 +132,8 @@ class EeBrake(Design):
         )
         cable = CablePair(caliper.CABLE, upper, GROUND, self.housing, self.cable_anchor)
         bodies = (right, left, upper, strut, link)
-        return self._caliper(
-            Mechanism(bodies, joints, (cable, *pads(self.pad, right, left))), split=self.split
-        )
+        loads = (cable, *pads(self.pad, right, left))
+        return self._caliper(Mechanism(bodies, joints, loads), split=self.split)
 
 
 @dataclass(frozen=True, kw_only=True)

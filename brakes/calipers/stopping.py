@@ -23,9 +23,8 @@ EQUAL = 1e-9  # relative difference of two values that counts as rounding
 TyreFriction = Annotated[float, Described("", "mu_t", "friction of the tyre on the road", above=0, most=2)]
 Wheelbase = Annotated[float, Described("m", "L", "distance of the axles", above=0)]
 Height = Annotated[float, Described("m", "h", "height of the centre of gravity, with rider", above=0)]
-Behind = Annotated[
-    float, Described("m", "x", "centre of gravity, with rider, behind the front axle", above=0)
-]
+_BEHIND = Described("m", "x", "centre of gravity, with rider, behind the front axle", above=0)
+Behind = Annotated[float, _BEHIND]
 
 
 @dataclass(frozen=True)

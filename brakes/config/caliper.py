@@ -77,6 +77,8 @@ QUANTITIES = {DescribedPoint: PointQuantity, DescribedDirection: DirectionQuanti
 # The stroke of a caliper, and the stop ------------------------------------------------------------
 
 
+_DRIVER = Field(description="load that drives a plain mechanism; with friction, its motion is squeezing")
+_FRICTION = Quantity("", "mu", "friction of the pins that have none of their own", least=0, most=10)
 _Loss = Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]
 
 
@@ -84,15 +86,10 @@ class RunInput(Section):
     """Table [run] of a file: the stroke, the finger's force, and further quantities to compute."""
 
     finger: Annotated[float, Quantity("N", "P", "force of the finger on the hand lever", above=0)] = 40.0
-    driver: Annotated[
-        str | None,
-        Field(description="load that drives a plain mechanism; with friction, its motion is squeezing"),
-    ] = None
+    driver: Annotated[str | None, _DRIVER] = None
     travel: Annotated[float | None, TravelQuantity("m", "", "travel of the cable or of the driver")] = None
     points: Annotated[int, WholeNumber(meaning="positions of the stroke", least=2, most=2000)] = 100
-    friction: Annotated[
-        float, Quantity("", "mu", "friction of the pins that have none of their own", least=0, most=10)
-    ] = 0.0
+    friction: Annotated[float, _FRICTION] = 0.0
     wear: Annotated[list[_Loss], Field(max_length=100)] = []  # noqa: RUF012
 
 
@@ -132,15 +129,15 @@ class DimensionsInput(MadeSection):
         return self.made(**self.given).build()
 
 
+_Name = Literal["eebrake", "single-pivot", "dual-pivot", "centre-pull", "cantilever", "v-brake"]
+
+
 class CaliperInput(Section):
     """File of a named caliper: name, and dimensions that differ from the usual values."""
 
     model_config = SHORT_TEXTS
 
-    caliper: Annotated[
-        Literal["eebrake", "single-pivot", "dual-pivot", "centre-pull", "cantilever", "v-brake"],
-        Field(description="name"),
-    ]
+    caliper: Annotated[_Name, Field(description="name")]
     title: Annotated[str, Field(description="title")] = ""
     run: RunInput = RunInput()
     stop: CaliperStopInput | None = None
@@ -156,10 +153,8 @@ class CaliperInput(Section):
 def model_of(name: str) -> type[CaliperInput]:
     """Make the description of the file of a named caliper, with the dimensions of its design."""
     design = NAMED[name]
-    dimensions = section_of(design, tables=QUANTITIES, base=DimensionsInput)
-    return create_model(
-        f"{design.__name__}Input", __base__=CaliperInput, dimensions=(dimensions, dimensions())
-    )
+    made = section_of(design, tables=QUANTITIES, base=DimensionsInput)
+    return create_model(f"{design.__name__}Input", __base__=CaliperInput, dimensions=(made, made()))
 
 
 def named(name: str) -> CaliperInput:

@@ -87,8 +87,7 @@ class LeversInput(MadeSection):
 def _slope_of_road(**described: Any) -> SlopeQuantity:
     """Make the description of a slope in files, within the bounds of a road."""
     bounds: dict[str, Any] = {"above": None, "below": None, "least": -STEEPEST, "most": STEEPEST}
-    bounds["remedy"] = "no road is steeper"
-    return SlopeQuantity(**{**described, **bounds})
+    return SlopeQuantity(**{**described, **bounds, "remedy": "no road is steeper"})
 
 
 if TYPE_CHECKING:
@@ -108,29 +107,19 @@ else:
     _HeatInput = create_model("_Heat", __base__=Section, **REPEATED)
 
 
+_BY_FOOT = "force of the piston on the trailing shoe; by [pedal] and [line] if given"
+_PISTON = Quantity("N", "P_T", _BY_FOOT, above=0)
+_TORQUE = Quantity("N m", "T", "torque of one brake; if not given, that of the stop", above=0)
+_COMPARED = "friction of the linings: compared with what the torque needs, or gives the torque"
+_LINING = Quantity("", "mu_l", _COMPARED, above=0, most=10, remedy="40 % is 0.4")
+
+
 class ForcesInput(Section):
     """Table [forces] of a file: piston force, torque and lining friction for the forces in one brake."""
 
-    piston_force: Annotated[
-        float | None,
-        Quantity(
-            "N", "P_T", "force of the piston on the trailing shoe; by [pedal] and [line] if given", above=0
-        ),
-    ] = None
-    torque: Annotated[
-        float | None, Quantity("N m", "T", "torque of one brake; if not given, that of the stop", above=0)
-    ] = None
-    lining_friction: Annotated[
-        float | None,
-        Quantity(
-            "",
-            "mu_l",
-            "friction of the linings: compared with what the torque needs, or gives the torque",
-            above=0,
-            most=10,
-            remedy="40 % is 0.4",
-        ),
-    ] = None
+    piston_force: Annotated[float | None, _PISTON] = None
+    torque: Annotated[float | None, _TORQUE] = None
+    lining_friction: Annotated[float | None, _LINING] = None
 
 
 class ForkliftInput(Section):

@@ -9,37 +9,30 @@ from pydantic import Field, model_validator
 from beamdyn.common.edge.inputs import Quantity, Section
 from brakes.common.loads import wheel_cylinder_force
 
+_DIRECTION = Field(description="direction of the drum")
+_FRICTION = Quantity("", "mu", "friction of the linings", least=0, most=10, remedy="35 % is 0.35")
+_FORCE = Quantity("N", "P", "actuating force: on each shoe, pad or lever", above=0)
+_BORE = Quantity("m", "d", "bore of the cylinder, with line_pressure in place of a force", above=0)
+_PRESSURE = Quantity("Pa", "p_h", "pressure in the line, with cylinder_bore", above=0)
+_TORQUE = Quantity("N m", "M", "torque that the brake is to give, in place of a force", above=0)
+_PEAK = Quantity("Pa", "p_max", "largest pressure on any lining, in place of a force", above=0)
+
 
 class RubbingInput(Section):
     """Table [brake] of a file: direction of rotation, and friction of the linings."""
 
-    direction: Annotated[Literal["forward", "reverse"], Field(description="direction of the drum")] = (
-        "forward"
-    )
-    friction: Annotated[
-        float, Quantity("", "mu", "friction of the linings", least=0, most=10, remedy="35 % is 0.35")
-    ]
+    direction: Annotated[Literal["forward", "reverse"], _DIRECTION] = "forward"
+    friction: Annotated[float, _FRICTION]
 
 
 class LoadInput(Section):
     """Table [load] of a file: actuating force, or the wanted torque or pressure."""
 
-    force: Annotated[
-        float | None, Quantity("N", "P", "actuating force: on each shoe, pad or lever", above=0)
-    ] = None
-    cylinder_bore: Annotated[
-        float | None,
-        Quantity("m", "d", "bore of the cylinder, with line_pressure in place of a force", above=0),
-    ] = None
-    line_pressure: Annotated[
-        float | None, Quantity("Pa", "p_h", "pressure in the line, with cylinder_bore", above=0)
-    ] = None
-    torque: Annotated[
-        float | None, Quantity("N m", "M", "torque that the brake is to give, in place of a force", above=0)
-    ] = None
-    peak_pressure: Annotated[
-        float | None, Quantity("Pa", "p_max", "largest pressure on any lining, in place of a force", above=0)
-    ] = None
+    force: Annotated[float | None, _FORCE] = None
+    cylinder_bore: Annotated[float | None, _BORE] = None
+    line_pressure: Annotated[float | None, _PRESSURE] = None
+    torque: Annotated[float | None, _TORQUE] = None
+    peak_pressure: Annotated[float | None, _PEAK] = None
 
     ONE: ClassVar[str] = "give one of force, torque, peak_pressure, or cylinder_bore with line_pressure"
 

@@ -121,9 +121,8 @@ class MechanismInput(config.CoreSection):
                 raise InvalidInput("run.friction", friction, bound)
             rubs = made.friction or "friction" in self.run.model_fields_set  # friction may be 0 in a sweep
             if self.run.driver is not None and self.run.travel is None and not rubs:
-                raise config.MissingValue(
-                    "run.travel", None, "give the travel of the driver, or leave out driver"
-                )
+                remedy = "give the travel of the driver, or leave out driver"
+                raise config.MissingValue("run.travel", None, remedy)
             return made
         roles = self.caliper
         missing = [name for name in roles.centring if name not in {joint.name for joint in joints}]

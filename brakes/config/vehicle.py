@@ -16,15 +16,14 @@ from brakes.vehicle.stop import SlopeAngle
 __all__ = ["VehicleInput"]
 
 
+_OF_FRONT = "share of the front wheels in the braking force"
+_SHARE = Quantity("", "phi", _OF_FRONT, least=0, most=1, remedy="60 % is 0.6")
+
+
 class BrakingInput(Section):
     """Table [braking] of a file: share of the front wheels, and the wheels that the parking brake holds."""
 
-    front_share: Annotated[
-        float,
-        Quantity(
-            "", "phi", "share of the front wheels in the braking force", least=0, most=1, remedy="60 % is 0.6"
-        ),
-    ]
+    front_share: Annotated[float, _SHARE]
     parked_by: Annotated[Braked, Field(description="axles whose wheels the parking brake holds")] = "both"
 
 

@@ -25,6 +25,11 @@ from brakes.common.locking import LEAST_MARGIN
 from brakes.forklift.levers import HasLevers, Levers
 from brakes.vehicle.axles import ACUTE, ROUNDING
 
+_CONTACT = Described("rad", "", "where the lining touches first, up from the horizontal", **ACUTE)
+_BOTTOM = Described("m", "", "travel of a piston from rest to its bottom, inward", above=0)
+_FARTHEST = "largest travel of a piston from rest, outward; not checked if not given"
+_STROKE = Described("m", "", _FARTHEST, above=0)
+
 
 @dataclass(frozen=True)
 class DuoServo(HasLevers):
@@ -72,18 +77,9 @@ class DuoServo(HasLevers):
         Annotated[Numbers, Described("m", "y_a", "pin of the adjuster, above the centre: negative", below=0)],
     ]
     face_tilt: Annotated[Numbers, Described("rad", "alpha", "tilt of the pistons' faces", **ACUTE)]
-    contact_angle: Annotated[
-        Numbers, Described("rad", "", "where the lining touches first, up from the horizontal", **ACUTE)
-    ]
-    piston_bottom: Annotated[
-        Numbers, Described("m", "", "travel of a piston from rest to its bottom, inward", above=0)
-    ]
-    piston_stroke: Annotated[
-        Numbers | None,
-        Described(
-            "m", "", "largest travel of a piston from rest, outward; not checked if not given", above=0
-        ),
-    ] = None
+    contact_angle: Annotated[Numbers, _CONTACT]
+    piston_bottom: Annotated[Numbers, _BOTTOM]
+    piston_stroke: Annotated[Numbers | None, _STROKE] = None
 
     def __post_init__(self) -> None:
         keep_checked(self)

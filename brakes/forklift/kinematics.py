@@ -22,8 +22,20 @@ import numpy as np
 from beamdyn.common.inputs.checks import count, kind, positive
 from beamdyn.common.results.one_line import number, warned
 from beamdyn.common.results.result import Result, plain
-from brakes import planar
 from brakes.forklift.duo_servo import DuoServo
+from brakes.planar import (
+    GROUND,
+    CablePair,
+    Force,
+    Joint,
+    Mechanism,
+    Moment,
+    Pin,
+    Position,
+    RotationLock,
+    Slot,
+    stroke,
+)
 from brakes.planar.kinematics import MOST_POSITIONS
 
 _RANK_TOLERANCE = 1e-9  # ratio of a singular value to the largest, below which it counts as zero
@@ -60,8 +72,8 @@ class Stage:
 
     field_units: ClassVar[dict[str, str]] = {"m": "travel", "rad": "turn"}
 
-    mechanism: planar.Mechanism = field(repr=False)
-    position: planar.Position = field(repr=False)
+    mechanism: Mechanism = field(repr=False)
+    position: Position = field(repr=False)
     travel: dict[str, np.ndarray]
     turn: np.ndarray
     rank: np.ndarray
@@ -180,7 +192,7 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
     seated, tips, events = {}, [], []
     for side in ("right", "left"):
         mechanism = build_seating_mechanism(geometry, c, side)
-        path = planar.stroke(mechanism, "clearance", np.linspace(0.0, -c, n))
+        path = stroke(mechanism, "clearance", np.linspace(0.0, -c, n))
         turn = path.position.angle(f"{side} shoe") * (-1 if side == "right" else 1)
         rank = constraint_rank(path.position)
         seated[side] = Stage(mechanism, path.position, {side: path.travel[side]}, turn, *rank)
@@ -193,7 +205,7 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
         events.append(Event("lining reaches the drum", 1, float(turn[-1]), message))
     mechanism = build_turning_mechanism(geometry, *tips)
     bottom = -float(seated["right"].travel["right"][-1]) - geometry.piston_bottom
-    path = planar.stroke(mechanism, "right", np.linspace(0.0, bottom, n))
+    path = stroke(mechanism, "right", np.linspace(0.0, bottom, n))
     travel, turn = {side: path.travel[side] for side in ("right", "left")}, path.travel["drum"]
     drum = Stage(mechanism, path.position, travel, turn, *constraint_rank(path.position))
     out = seated["left"].travel["left"][-1] + travel["left"][-1]
@@ -205,7 +217,7 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
     return Kinematics(geometry, c, **seated, drum=drum, events=tuple(events), interference=interference)
 
 
-def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "right") -> planar.Mechanism:
+def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "right") -> Mechanism:
     """Build the mechanism of stage 1 of one side, ``"right"`` or ``"left"``.
 
     The loads have zero magnitude: they measure the piston's travel and close the clearance.
@@ -222,20 +234,12 @@ def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "r
     drawn = geometry.tip, geometry.adjuster, _contact(geometry, clearance)
     tip, adjuster, contact = (_on_side(side, p) for p in drawn)
     names = f"{side} shoe", f"{side} dummy", f"{side} piston"
-    return planar.Mechanism(
-        bodies=names,
-        joints=(
-            planar.Pin(f"{side} adjuster pin", names[0], planar.GROUND, adjuster),
-            *_piston_side(geometry, side, tip),
-        ),
-        loads=(
-            _measure(side, tip),
-            planar.CablePair("clearance", names[0], planar.GROUND, contact, _ORIGIN, 0.0),
-        ),
-    )
+    joints = Pin(f"{side} adjuster pin", names[0], GROUND, adjuster), *_piston_side(geometry, side, tip)
+    loads = _measure(side, tip), CablePair("clearance", names[0], GROUND, contact, _ORIGIN, 0.0)
+    return Mechanism(names, joints, loads)
 
 
-def build_turning_mechanism(geometry: DuoServo, right_tip: Point, left_tip: Point) -> planar.Mechanism:
+def build_turning_mechanism(geometry: DuoServo, right_tip: Point, left_tip: Point) -> Mechanism:
     """Build the mechanism of stage 2, drawn with seated linings and with the tips at given points [m].
 
     References
@@ -251,36 +255,36 @@ def build_turning_mechanism(geometry: DuoServo, right_tip: Point, left_tip: Poin
     """
     sides = {"right": right_tip, "left": left_tip}
     parts = [f"{side} {part}" for side in sides for part in ("shoe", "dummy", "piston")]
-    joints: list[planar.Joint] = [
-        planar.Pin("drum bearing", "drum", planar.GROUND, _ORIGIN),
-        planar.Pin("weld", "right shoe", "drum", _contact(geometry, 0.0)),
-        planar.RotationLock("weld angle", "right shoe", "drum"),
-        planar.Pin("seated lining", "left shoe", planar.GROUND, _ORIGIN),
+    joints: list[Joint] = [
+        Pin("drum bearing", "drum", GROUND, _ORIGIN),
+        Pin("weld", "right shoe", "drum", _contact(geometry, 0.0)),
+        RotationLock("weld angle", "right shoe", "drum"),
+        Pin("seated lining", "left shoe", GROUND, _ORIGIN),
     ]
     for side, tip in sides.items():
-        joints.append(
-            planar.Pin(f"{side} adjuster pin", f"{side} shoe", "adjuster", _on_side(side, geometry.adjuster))
-        )
+        at = _on_side(side, geometry.adjuster)
+        joints.append(Pin(f"{side} adjuster pin", f"{side} shoe", "adjuster", at))
         joints += _piston_side(geometry, side, tip)
-    loads = (*(_measure(side, tip) for side, tip in sides.items()), planar.Moment("drum", "drum", 0.0))
-    return planar.Mechanism(("drum", "adjuster", *parts), tuple(joints), loads)
+    loads = (*(_measure(side, tip) for side, tip in sides.items()), Moment("drum", "drum", 0.0))
+    return Mechanism(("drum", "adjuster", *parts), tuple(joints), loads)
 
 
-def _piston_side(geometry: DuoServo, side: str, tip: Point) -> tuple[planar.Joint, ...]:
+def _piston_side(geometry: DuoServo, side: str, tip: Point) -> tuple[Joint, ...]:
     """Make one side's joints from shoe to cylinder: tip pin, sliders on tilted face and in cylinder."""
     tilt, dummy, piston = geometry.face_tilt, f"{side} dummy", f"{side} piston"
+    face = _on_side(side, (np.sin(tilt), np.cos(tilt)))
     return (
-        planar.Pin(f"{side} tip", f"{side} shoe", dummy, tip),
-        planar.Slot(f"{side} face", dummy, piston, tip, _on_side(side, (np.sin(tilt), np.cos(tilt)))),
-        planar.RotationLock(f"{side} face angle", dummy, piston),
-        planar.Slot(f"{side} cylinder", piston, planar.GROUND, tip, (1.0, 0.0)),
-        planar.RotationLock(f"{side} cylinder angle", piston, planar.GROUND),
+        Pin(f"{side} tip", f"{side} shoe", dummy, tip),
+        Slot(f"{side} face", dummy, piston, tip, face),
+        RotationLock(f"{side} face angle", dummy, piston),
+        Slot(f"{side} cylinder", piston, GROUND, tip, (1.0, 0.0)),
+        RotationLock(f"{side} cylinder angle", piston, GROUND),
     )
 
 
-def _measure(side: str, tip: Point) -> planar.Force:
+def _measure(side: str, tip: Point) -> Force:
     """Make a load of zero magnitude that measures the outward travel of a side's piston."""
-    return planar.Force(side, f"{side} piston", tip, _on_side(side, (1.0, 0.0)), 0.0)
+    return Force(side, f"{side} piston", tip, _on_side(side, (1.0, 0.0)), 0.0)
 
 
 def _on_side(side: str, p: Point) -> Point:
@@ -294,7 +298,7 @@ def _contact(geometry: DuoServo, c: float) -> Point:
     return radius * np.cos(angle), radius * np.sin(angle)
 
 
-def constraint_rank(position: planar.Position) -> tuple[np.ndarray, np.ndarray]:
+def constraint_rank(position: Position) -> tuple[np.ndarray, np.ndarray]:
     """Compute the rank of the constraints at each position, and their smallest singular value.
 
     Parameters

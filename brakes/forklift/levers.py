@@ -92,9 +92,8 @@ class Levers(HasLevers):
         keep_checked(self)
         for name, value in (("alpha1 + gamma", self.phi1), ("alpha2 - gamma", self.phi2)):
             bound = "the piston's force and the adjuster's are more than a right angle apart"
-            refuse(
-                np.abs(value) > np.pi / 2 + LEAST_MARGIN, name, value, "rad", bound, "angles are in {unit}"
-            )
+            past = np.abs(value) > np.pi / 2 + LEAST_MARGIN
+            refuse(past, name, value, "rad", bound, "angles are in {unit}")
 
     @property
     def in_radii(self) -> Levers:

@@ -109,7 +109,6 @@ def brake_procedure(
     """
     kind("motion", motion, ShoeMotion, "DuoServo.move_shoes gives one")
     stopped = stop(truck, conditions)
-    forces = internal_forces(
-        motion.levers, piston_force=piston_force, torque=stopped.torque_per_brake, friction=lining_friction
-    )
+    given = {"torque": stopped.torque_per_brake, "friction": lining_friction}
+    forces = internal_forces(motion.levers, piston_force=piston_force, **given)
     return Procedure(stopped, motion, forces)

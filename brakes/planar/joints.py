@@ -14,7 +14,19 @@ from typing import Annotated
 import numpy as np
 
 from beamdyn.common.inputs.described import Described
-from brakes.planar import part
+from brakes.planar.part import (
+    BetweenPoints,
+    Coefficient,
+    DescribedBody,
+    DescribedPoint,
+    Direction,
+    DrawnPoint,
+    Joint,
+    Length,
+    OneWay,
+    OnTwoBodies,
+    Shape,
+)
 from brakes.planar.rows import (
     GROUND,
     End,
@@ -32,11 +44,15 @@ from brakes.planar.rows import (
 
 _NORMAL = 0.9999  # least cosine of the angle between the normal of a round face and the line to its centre
 _TURNS = 0.1  # rotation of a straight face over a stroke above which there is a warning [deg]
-SLACK = part.OneWay("cable", "push", "cable slackens", "it is slack; remove it, or reverse the loads")
+_PIVOT = Described("m", "r", "radius of the pivot", least=0, remedy="give the radius of the pivot")
+_CENTRE = DescribedPoint("m", meaning="centre of a round face; straight if not given")
+_OPEN = "it is open, or its normal is reversed; remove or turn it"
+_ROUND = Described("m", "R", "radius of a round face, if not the drawing's", above=0)
+SLACK = OneWay("cable", "push", "cable slackens", "it is slack; remove it, or reverse the loads")
 
 
 @dataclass(frozen=True)
-class Pin(part.OnTwoBodies, part.Joint):
+class Pin(OnTwoBodies, Joint):
     """A pin joint: a point of one body stays on a point of another.
 
     Parameters
@@ -64,12 +80,10 @@ class Pin(part.OnTwoBodies, part.Joint):
     label = "pins"
     is_hinge = True
 
-    at: part.DrawnPoint
-    at_other: part.DrawnPoint | None = None
-    radius: Annotated[
-        float, Described("m", "r", "radius of the pivot", least=0, remedy="give the radius of the pivot")
-    ] = 0.0
-    friction: part.Coefficient = 0.0
+    at: DrawnPoint
+    at_other: DrawnPoint | None = None
+    radius: Annotated[float, _PIVOT] = 0.0
+    friction: Coefficient = 0.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -94,13 +108,13 @@ class Pin(part.OnTwoBodies, part.Joint):
         """Copy the pin with a radius [m] and a coefficient of friction, unless it already has friction."""
         return self if self.friction else replace(self, radius=self.radius or radius, friction=friction)
 
-    def shapes(self) -> tuple[part.Shape, ...]:
+    def shapes(self) -> tuple[Shape, ...]:
         """Return the drawing of the joint: a pin at its points."""
-        return (part.Shape("pin", self._ends),)
+        return (Shape("pin", self._ends),)
 
 
 @dataclass(frozen=True)
-class Bar(part.BetweenPoints, part.Joint):
+class Bar(BetweenPoints, Joint):
     """A two-force link of constant length between points of two bodies.
 
     Parameters
@@ -124,19 +138,19 @@ class Bar(part.BetweenPoints, part.Joint):
     remedy = "move one of its ends, or join the bodies by a pin"
     style = "bar"
 
-    length: part.Length | None = None
+    length: Length | None = None
 
     def rows(self) -> tuple[Row, ...]:
         """Return one row, whose multiplier is positive in tension."""
         return (self.path(self.length),)
 
-    def shapes(self) -> tuple[part.Shape, ...]:
+    def shapes(self) -> tuple[Shape, ...]:
         """Return the drawing of a bar with pins at its ends."""
-        return (*super().shapes(), *(part.Shape("pin", (end,)) for end in self.path().ends))
+        return (*super().shapes(), *(Shape("pin", (end,)) for end in self.path().ends))
 
 
 @dataclass(frozen=True)
-class Slot(part.OnTwoBodies, part.Joint):
+class Slot(OnTwoBodies, Joint):
     """A point of a body slides along a straight slot of another body, which holds it in both directions.
 
     Parameters
@@ -165,10 +179,10 @@ class Slot(part.OnTwoBodies, part.Joint):
 
     label = "slots"
 
-    at: part.DrawnPoint
-    along: part.Direction
-    on: part.DrawnPoint | None = None
-    friction: part.Coefficient = 0.0
+    at: DrawnPoint
+    along: Direction
+    on: DrawnPoint | None = None
+    friction: Coefficient = 0.0
 
     def rows(self) -> tuple[Row, ...]:
         """Return one row: the force on the body, positive to the left of `along`."""
@@ -179,13 +193,13 @@ class Slot(part.OnTwoBodies, part.Joint):
         """Return a friction force against the sliding."""
         return (FrictionLaw(_line(self, unit_vector("along", self.along)), self.friction),)
 
-    def shapes(self) -> tuple[part.Shape, ...]:
+    def shapes(self) -> tuple[Shape, ...]:
         """Return the drawing of a short line along the slot."""
-        return (part.Shape("face", ((self.body, self.at),), self.other, self.along),)
+        return (Shape("face", ((self.body, self.at),), self.other, self.along),)
 
 
 @dataclass(frozen=True)
-class Contact(part.OnTwoBodies, part.Joint):
+class Contact(OnTwoBodies, Joint):
     """A point of a body pushes on a straight or round face of another body.
 
     Parameters
@@ -219,21 +233,14 @@ class Contact(part.OnTwoBodies, part.Joint):
     """
 
     label = "contacts"
-    one_way = part.OneWay(
-        "contact", "pull", "contact opens", "it is open, or its normal is reversed; remove or turn it"
-    )
+    one_way = OneWay("contact", "pull", "contact opens", _OPEN)
 
-    at: part.DrawnPoint
-    normal: part.Direction | None = None
-    on: part.DrawnPoint | None = None
-    friction: part.Coefficient = 0.0
-    centre: (
-        Annotated[Point, part.DescribedPoint("m", meaning="centre of a round face; straight if not given")]
-        | None
-    ) = None
-    radius: (
-        Annotated[float, Described("m", "R", "radius of a round face, if not the drawing's", above=0)] | None
-    ) = None
+    at: DrawnPoint
+    normal: Direction | None = None
+    on: DrawnPoint | None = None
+    friction: Coefficient = 0.0
+    centre: Annotated[Point, _CENTRE] | None = None
+    radius: Annotated[float, _ROUND] | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -241,15 +248,13 @@ class Contact(part.OnTwoBodies, part.Joint):
             if self.normal is None:
                 raise ValueError(f"{self.title} has no normal: give it, or the centre of a round face")
             if self.radius is not None:
-                raise ValueError(
-                    f"{self.title} has a radius but no centre: give the centre of its round face"
-                )
+                remedy = "give the centre of its round face"
+                raise ValueError(f"{self.title} has a radius but no centre: {remedy}")
             return
         check_distinct(self.title, (self.at, self.centre), "move the point or the centre of the face")
         if self.on is not None:
-            raise ValueError(
-                f"{self.title} has a round face: give no `on`, which is a point of a straight one"
-            )
+            remedy = "give no `on`, which is a point of a straight one"
+            raise ValueError(f"{self.title} has a round face: {remedy}")
         if abs(self._cosine) < _NORMAL:
             raise ValueError(
                 f"{self.title}: its normal must point from the centre of the round face or towards it; "
@@ -290,16 +295,16 @@ class Contact(part.OnTwoBodies, part.Joint):
                 "right for a flat face; of a round one, such as a drum, give the centre, not the normal"
             )
 
-    def shapes(self) -> tuple[part.Shape, ...]:
+    def shapes(self) -> tuple[Shape, ...]:
         """Return the drawing of a short line along a straight face, or of an arc of a round one."""
         if self.centre is not None:
-            return (part.Shape("face", ((self.body, self.at), (self.other, self.centre))),)
+            return (Shape("face", ((self.body, self.at), (self.other, self.centre))),)
         x, y = unit_vector("normal", self.normal or (0.0, 1.0))
-        return (part.Shape("face", ((self.body, self.at),), self.other, (-y, x)),)
+        return (Shape("face", ((self.body, self.at),), self.other, (-y, x)),)
 
 
 @dataclass(frozen=True)
-class RotationLock(part.OnTwoBodies, part.Joint):
+class RotationLock(OnTwoBodies, Joint):
     """A gear: a body turns by `ratio` times the angle of another (1: no relative rotation; -1: mirrored).
 
     Parameters
@@ -325,7 +330,7 @@ class RotationLock(part.OnTwoBodies, part.Joint):
 
 
 @dataclass(frozen=True)
-class Cable(part.Joint):
+class Cable(Joint):
     """A taut cable of fixed length over frictionless eyes, with one tension, positive if it pulls.
 
     Parameters
@@ -349,9 +354,9 @@ class Cable(part.Joint):
     label = "cables of fixed length"
     one_way = SLACK
 
-    bodies: Annotated[tuple[str, ...], part.DescribedBody(meaning="body of each point")]
-    points: tuple[Annotated[Point, part.DescribedPoint("m", meaning="points in the drawing")], ...]
-    length: part.Length | None = None
+    bodies: Annotated[tuple[str, ...], DescribedBody(meaning="body of each point")]
+    points: tuple[Annotated[Point, DescribedPoint("m", meaning="points in the drawing")], ...]
+    length: Length | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -367,9 +372,9 @@ class Cable(part.Joint):
         length = path_length(self.points) if self.length is None else self.length
         return (Path(tuple(self.bodies), tuple(self.points), length),)
 
-    def shapes(self) -> tuple[part.Shape, ...]:
+    def shapes(self) -> tuple[Shape, ...]:
         """Return the drawing of a cable through its points."""
-        return (part.Shape("cable", self.rows()[0].ends),)
+        return (Shape("cable", self.rows()[0].ends),)
 
 
 def _line(joint: Slot | Contact, normal: Point) -> Line:

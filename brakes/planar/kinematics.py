@@ -278,9 +278,8 @@ def trace(mechanism: Mechanism, driver: str, length: float, points: int = 101) -
     array([0.04, 0.04, 0.04, 0.04, 0.04])
     """
     system, start, k = _start(mechanism, driver)
-    s = np.linspace(
-        0.0, positive("length", length, "m") / system.length, count("points", points, 2, MOST_POSITIONS)
-    )
+    end = positive("length", length, "m") / system.length
+    s = np.linspace(0.0, end, count("points", points, 2, MOST_POSITIONS))
     nodes, chords = [start], 0.0
     for node in follow(system, start):
         chords += float(np.linalg.norm(node.y - nodes[-1].y))

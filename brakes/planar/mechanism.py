@@ -89,12 +89,8 @@ class Mechanism:
     @cached_property
     def friction(self) -> dict[str, tuple[str, FrictionLaw]]:
         """Joint and friction law, by the joint's name, with the label of the law if there are several."""
-        return {
-            f"{joint.name} {law.label}".strip(): (joint.name, law)
-            for joint in self.joints
-            for law in joint.friction_laws()
-            if law.coefficient
-        }
+        laws = ((joint.name, law) for joint in self.joints for law in joint.friction_laws())
+        return {f"{name} {law.label}".strip(): (name, law) for name, law in laws if law.coefficient}
 
     @cached_property
     def system(self) -> System:
@@ -245,9 +241,8 @@ def follow(system: System, node: Node) -> Iterator[Node]:
         while (following := _advance(system, node, step)) is None:
             step /= 2
             if step < _LEAST:
-                raise OutOfReachError(
-                    "the curve of positions ends: two joints meet, or motions branch there", "end it before"
-                )
+                ends = "the curve of positions ends: two joints meet, or motions branch there"
+                raise OutOfReachError(ends, "end it before")
         yield following
         step = min(_LARGEST, step * min(2.0, 0.7 * _TURN / max(_angle(node, following), 1e-3)))
         node = following

@@ -117,20 +117,10 @@ Other = Annotated[str, DescribedBody(meaning="other body; the ground if not give
 DrawnPoint = Annotated[Point, DescribedPoint("m", meaning="point in the drawing")]
 Direction = Annotated[Point, DescribedDirection(meaning="direction, as a vector or an angle")]
 Length = Annotated[float, Described("m", meaning="length, if not the drawing's", above=0)]
-Coefficient = Annotated[
-    float,
-    Described(
-        symbol="mu",
-        meaning="coefficient of friction",
-        least=0,
-        remedy="friction opposes the motion by itself; give its size",
-    ),
-]
-
-
-_NEWTONS = Described(
-    "N", meaning="magnitude; unknown if not given", remedy="or None for an unknown amplitude"
-)
+_OPPOSES = "friction opposes the motion by itself; give its size"
+Coefficient = Annotated[float, Described("", "mu", "coefficient of friction", least=0, remedy=_OPPOSES)]
+_UNKNOWN = "or None for an unknown amplitude"
+_NEWTONS = Described("N", meaning="magnitude; unknown if not given", remedy=_UNKNOWN)
 Newtons = Annotated[float, _NEWTONS]
 NewtonMetres = Annotated[float, replace(_NEWTONS, unit="N m")]
 

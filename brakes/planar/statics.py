@@ -291,9 +291,8 @@ def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str
         if not joint.is_couple:
             force = (rows.force[:, own, system.bodies[joint.acts_on[0]]] * multiplier[:, own]).sum(axis=1)
             reactions[joint.name] = np.stack((force.real, force.imag), axis=-1)
-    amplitudes, friction = (
-        {name: physical[:, row] for name, row in each.items()} for each in (system.loads, system.friction)
-    )
+    both = system.loads, system.friction
+    amplitudes, friction = ({name: physical[:, row] for name, row in each.items()} for each in both)
     return {"reactions": reactions, "magnitudes": magnitudes, "amplitudes": amplitudes, "friction": friction}
 
 

@@ -167,9 +167,8 @@ class System:
         self.unit = np.array([self.length if row.is_couple else 1.0 for row in table])
         self.constant = np.array([row.constant(self.length) for row in table])
         own = [np.arange(self.joints[joint].start, self.joints[joint].stop) for joint, _ in friction.values()]
-        self.pressing = [
-            rows[list(law.pressing or range(len(rows)))] for rows, law in zip(own, laws, strict=True)
-        ]
+        pairs = zip(own, laws, strict=True)
+        self.pressing = [rows[list(law.pressing or range(len(rows)))] for rows, law in pairs]
         self.coefficient = np.array([law.coefficient for law in laws]) / self.unit[first + len(loads) :]
         entries = defaultdict(list)
         for r, row in enumerate(table):

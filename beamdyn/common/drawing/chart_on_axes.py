@@ -82,9 +82,8 @@ def plot_charts_of_one_x(
     heights : sequence of float
         Heights of the charts, relative to one another.
     """
-    cells = figure.add_gridspec(
-        len(charts), 1, height_ratios=heights, hspace=0.08, left=left, right=0.985, bottom=0.09, top=0.96
-    )
+    edges = {"left": left, "right": 0.985, "bottom": 0.09, "top": 0.96}
+    cells = figure.add_gridspec(len(charts), 1, height_ratios=heights, hspace=0.08, **edges)
     for row, chart in enumerate(charts):
         ax = plot_chart(figure.add_subplot(cells[row, 0]), chart)
         ax.set_title("")

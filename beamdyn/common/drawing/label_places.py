@@ -168,9 +168,8 @@ _SPREAD = 1 / np.abs(_WAYS).clip(1e-9)
 # Directions from the centre of a label's box to its corners.
 _CORNERS = np.array([(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)])
 _AWAY = np.concatenate([_WAYS, _CORNERS / np.sqrt(2.0)])
-_BESIDE = np.repeat(
-    [0.0, 12.0], [_TURNS, len(_CORNERS)]
-)  # cost [pt], by direction, of a place beside a point that the label should cover
+# Cost [pt], by direction, of a place beside a point that the label should cover.
+_BESIDE = np.repeat([0.0, 12.0], [_TURNS, len(_CORNERS)])
 
 
 def _candidates(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[_Candidates]:
@@ -325,9 +324,8 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
         now = chosen.choice.get(label, 0)
         if now and (best := chosen.best(label, now)) is not None:
             chosen.take(label, best)
-    return [
-        candidates[i].place(chosen.choice[i]) if i in chosen.choice else None for i in range(len(requests))
-    ]
+    numbers = map(chosen.choice.get, range(len(requests)))
+    return [None if k is None else own.place(k) for own, k in zip(candidates, numbers, strict=True)]
 
 
 def keep_places(

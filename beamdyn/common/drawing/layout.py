@@ -240,20 +240,11 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
 # Labels without a free place ----------------------------------------------------------------------
 
 
-class _Listed(NamedTuple):
-    """Labels listed below a drawing: their indices, top of the list [pt], scale, and places of all labels."""
-
-    labels: list[int]
-    bottom: float
-    fit: Fit
-    places: Sequence[Place | None]
-
-
 def _with_list(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[tuple[str, ...], list[Text], list[Rule], Fit]:
     """Make texts and leader lines of labels; a label without a free place is numbered, and listed below."""
-    listed, bottom, fit, places = _make_room(drawing, inner, _Listed([], inner[3], fit, places), held)
+    listed, bottom, fit, places = _make_room(drawing, inner, fit, places, held)
     numbers = {i: f"({number})" for number, i in enumerate(listed, 1)}
     texts, rules = [], []
     for i, (label, place) in enumerate(zip(drawing.labels, places, strict=True)):
@@ -271,13 +262,15 @@ def _with_list(
     return said, texts, rules, fit
 
 
-def _make_room(drawing: Drawing, inner: Frame, first: _Listed, held: Fit | None) -> _Listed:
+def _make_room(
+    drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
+) -> tuple[list[int], float, Fit, Sequence[Place | None]]:
     """Shrink the drawing until a list of the labels without a free place fits below it.
 
-    In the smaller drawing more labels may lack a free place: the steps are repeated until all
-    such labels are listed.
+    In the smaller drawing more labels may lack a free place: the steps are repeated until all such labels
+    are listed.  Returns the indices of these labels, the top of the list [pt], the scale, and all places.
     """
-    listed, bottom, fit, places = first
+    listed, bottom = [], inner[3]
     more = [i for i, place in enumerate(places) if place is None]
     while more:
         listed = sorted({*listed, *more})
@@ -292,7 +285,7 @@ def _make_room(drawing: Drawing, inner: Frame, first: _Listed, held: Fit | None)
             requests[i] = LabelRequest((width + 2, height), requests[i].anchors, requests[i].towards, 10)
         places = place_labels(requests, _obstacles(drawing, inside, fit))
         more = [i for i, place in enumerate(places) if place is None and i not in listed]
-    return _Listed(listed, bottom, fit, places)
+    return listed, bottom, fit, places
 
 
 def _list_lines(said: Sequence[str], inner: Frame, size: float) -> list[str]:
@@ -307,9 +300,8 @@ def _rows(lines: Sequence[str], left: float, top: float, size: float, role: str)
     """Yield lines of text below one another, aligned at the left."""
     for i, line in enumerate(lines):
         width, height = text_size(line, size)
-        yield Text(
-            np.array([left + width / 2, top + height * (i + 0.5)]), (width, height), (line,), "", role, size
-        )
+        middle = np.array([left + width / 2, top + height * (i + 0.5)])
+        yield Text(middle, (width, height), (line,), "", role, size)
 
 
 # Title, key and scales ----------------------------------------------------------------------------
@@ -470,10 +462,8 @@ def lay_out(rows: Rows, paper: Paper, before: Layout | None = None) -> list[Layo
     for number, row in enumerate(rows):
         frames = frames_of(row, paper, number)
         held = [before if not layouts and i == 0 else None for i in range(len(row))]
-        made = [
-            arrange(drawing, frame) if kept is None else follow(drawing, frame, kept)
-            for drawing, frame, kept in zip(row, frames, held, strict=True)
-        ]
+        places = zip(row, frames, held, strict=True)
+        made = [arrange(each, at) if kept is None else follow(each, at, kept) for each, at, kept in places]
         scale = min((each.fit.scale for each in made if not each.drawing.own_scale), default=0.0)
         free = [held[0] is not None or each.drawing.own_scale for each in made]
         layouts += [

@@ -196,9 +196,5 @@ _ANGULAR: dict[str, tuple[Any, bool, Callable[[str], Pen]]] = {
     "cross": ([[(-1, 0), (1, 0)], [(0, -1), (0, 1)]], False, lambda line: Pen(line, _THIN)),
     "diamond": ([[(0, -1), (1, 0), (0, 1), (-1, 0)]], True, lambda line: Pen(GROUND, fill=line)),
 }
-_SHAPES: dict[type[DrawnShape], Callable[[Any, Fit], Iterator[Stroke]]] = {
-    Outline: _outline,
-    Disc: _disc,
-    Symbol: _symbol,
-    Arrow: _arrow,
-}
+_Draw = Callable[[Any, Fit], Iterator[Stroke]]
+_SHAPES: dict[type[DrawnShape], _Draw] = {Outline: _outline, Disc: _disc, Symbol: _symbol, Arrow: _arrow}

@@ -342,18 +342,16 @@ class _TaskRun:
         self._report()
         for task in tasks:
             made = task.make()
-            pending = _Pending(task, made, self._key(made))
+            stored = self.runner.store is not None
+            # Results are stored under a hash of versions, function and task.
+            key = fingerprint(self.runner.versions, self.solve, made) if stored else ""
+            pending = _Pending(task, made, key)
             if (found := self._stored(pending.key)) is None:
                 yield pending
             else:
                 self.done += task.size
                 self.keep(task.place, found)
                 self._report()
-
-    def _key(self, made: Any) -> str:
-        """Return the key under which a result is stored: a hash of versions, function and task."""
-        stored = self.runner.store is not None
-        return fingerprint(self.runner.versions, self.solve, made) if stored else ""
 
     def _stored(self, key: str) -> Any:
         """Return the stored result of a task; None if it is missing or damaged."""

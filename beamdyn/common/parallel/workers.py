@@ -80,9 +80,8 @@ class Workers(ThreadPoolExecutor):
                 code = process.close()
                 self._own.process = None
                 if not self._stopped:
-                    _log.warning(
-                        "worker process %d died (exit code %d): its task runs again", process.pid, code
-                    )
+                    died = "worker process %d died (exit code %d): its task runs again"
+                    _log.warning(died, process.pid, code)
         raise WorkerDied(f"a task ended {ATTEMPTS} worker processes (exit code {code}): out of memory?")
 
     def _process(self) -> _Process:
@@ -100,12 +99,9 @@ class _Process:
     """A process that reads pickled tasks from its standard input, and writes results to its output."""
 
     def __init__(self) -> None:
-        self._popen = subprocess.Popen(
-            [sys.executable, "-P", "-c", _SERVE],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(p or os.getcwd() for p in sys.path)},
-        )
+        path = os.pathsep.join(p or os.getcwd() for p in sys.path)
+        command, env = [sys.executable, "-P", "-c", _SERVE], os.environ | {"PYTHONPATH": path}
+        self._popen = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=env)
         assert self._popen.stdin is not None and self._popen.stdout is not None
         self._tasks, self._answers = self._popen.stdin, self._popen.stdout
         self.pid, self.kill = self._popen.pid, self._popen.kill
@@ -168,12 +164,8 @@ def _receive(stream: BinaryIO | Any) -> bytes:
 # Threads of BLAS ----------------------------------------------------------------------------------
 
 
-@cache
-def _find_libraries() -> ThreadpoolController:
-    """Return the loaded libraries that start threads; cached, as the search takes milliseconds."""
-    return ThreadpoolController()
-
-
+# Finds the loaded libraries that start threads; cached, as the search takes milliseconds.
+_find_libraries = cache(ThreadpoolController)
 _blas_lock = threading.Lock()
 _blas_users = 0
 _blas_limits: Any = None

@@ -22,10 +22,8 @@ _LONGEST = 36  # characters of a legend entry, above which the legend has two co
 _SAME = 0.03
 _GREY, _DARK = "0.45", "0.1"  # colours of the lines 1P, 2P, ... and of other excitation lines
 _PER_REV = re.compile(r"\d+P")  # pattern of names such as 1P and 2P, multiples of the speed
-_MARKS: tuple[dict[str, Any], ...] = (
-    {"marker": "o", "color": "black", "markerfacecolor": "white", "markersize": 6},
-    {"marker": "s", "color": "black", "markerfacecolor": "white", "markersize": 6},
-)
+_OPEN: dict[str, Any] = {"color": "black", "markerfacecolor": "white", "markersize": 6}
+_MARKS: tuple[dict[str, Any], ...] = _OPEN | {"marker": "o"}, _OPEN | {"marker": "s"}
 _INSIDE: tuple[dict[str, Any], ...] = (
     {"marker": "o", "color": "black", "markerfacecolor": "black", "markersize": 6},
     {"marker": "o", "color": "0.5", "markerfacecolor": "white", "markersize": 4.5},
@@ -117,9 +115,8 @@ def plot_campbell(
     if rated is not None:
         text = f"rated speed {factor * rated:.4g} {unit}"
         ax.axvline(factor * rated, color="0.2", linewidth=1.1, linestyle=(0, (6, 3)), zorder=1.6, label=text)
-    for mark, (kind, points) in zip(
-        _MARKS if operating is None else _INSIDE, crossings.items(), strict=False
-    ):
+    marks = _MARKS if operating is None else _INSIDE
+    for mark, (kind, points) in zip(marks, crossings.items(), strict=False):
         if shown := [(factor * speed, frequency) for speed, frequency in points if frequency <= top]:
             ax.plot(*zip(*shown, strict=True), linestyle="none", label=kind, zorder=3, **mark)
     _name_hidden(ax, scenes, top)
@@ -187,9 +184,8 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
             draw_by_plane(ax, x, y, dashes, style)
             if np.isfinite(y[-1]) and y[-1] <= top:
                 changed = curves.directions if dashes[0] != dashes[-1] else None
-                more = (
-                    f" ({changed[0 if dashes[-1] else 1]})" if changed else ""
-                )  # direction in which the mode mainly bends at the highest speed
+                # The direction in which the mode mainly bends at the highest speed is named.
+                more = f" ({changed[0 if dashes[-1] else 1]})" if changed else ""
                 yield _CurveName(name + more, float(y[-1]), style["color"])
             elif (shown := np.flatnonzero(np.isfinite(y) & (y <= top))).size:
                 place = {"xytext": (4, 3), "textcoords": "offset points", "color": style["color"]}

@@ -74,8 +74,8 @@ def write_shapes(
     strip = _strip(x, width, shapes.shape[2])
     for label, deflection, sideways in zip(labels, shapes, aside, strict=True):
         name = label.replace(" ", "_") if kind == "vtk" else label
-        field = _displacement(deflection, len(strip.points), sideways)
-        strip.point_data[name] = _scale(field, _DRAWN_RATIO * (x[-1] - x[0]))
+        field = _displacement(deflection, len(strip.points), sideways)  # zeros stay zeros
+        strip.point_data[name] = field * (_DRAWN_RATIO * (x[-1] - x[0]) / (np.abs(field).max() or 1.0))
     with replacing(path) as aside:
         strip.write(aside, file_format=kind)
 
@@ -199,9 +199,8 @@ def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None, ro
         raise ValueError(f"x has {len(x)} position: a mesh needs at least two")
     full = np.asarray(_DRAWN_RATIO * (x[-1] - x[0]) if width is None else width, dtype=float)
     if full.shape not in ((), x.shape) or not (np.isfinite(full) & (full >= 0)).all():
-        raise ValueError(
-            f"width = {width}: give a width of 0 or more [m], or one for each of {len(x)} positions"
-        )
+        remedy = f"give a width of 0 or more [m], or one for each of {len(x)} positions"
+        raise ValueError(f"width = {width}: {remedy}")
     half, i = np.broadcast_to(full / 2, x.shape), np.arange(len(x) - 1)
     edge, rows = np.stack([x, half, np.zeros_like(x)], axis=1), max(rows, 2)
     if not half.any():
@@ -228,9 +227,8 @@ def _check_history(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     x, t, deflection = ascending("x", x), ascending("t", t), np.asarray(deflection, dtype=float)
     if deflection.ndim != 2 + over_width or deflection.shape[:2] != (len(t), len(x)):
-        raise ValueError(
-            f"deflection has shape {deflection.shape}: {len(t)} times and {len(x)} positions expected"
-        )
+        expected = f"{len(t)} times and {len(x)} positions expected"
+        raise ValueError(f"deflection has shape {deflection.shape}: {expected}")
     if not np.isfinite(deflection).all():
         raise ValueError("deflection: every value must be finite")
     return x, t, deflection
@@ -244,21 +242,14 @@ def _check_shapes(
     aside = np.zeros(shapes.shape[:2]) if across is None else np.asarray(across)
     for name, values, places in ("shapes", shapes, shapes.shape[2:]), ("across", aside, ()):
         if np.iscomplexobj(values) or not np.isfinite(values).all():
-            raise ValueError(
-                f"{name}: deflections must be real and finite; of a complex mode give the real part"
-            )
+            remedy = "of a complex mode give the real part"
+            raise ValueError(f"{name}: deflections must be real and finite; {remedy}")
         if values.shape != (len(labels), len(x), *places):
-            raise ValueError(
-                f"{name} has shape {values.shape}: {len(labels)} labels times {len(x)} positions expected"
-            )
+            expected = f"{len(labels)} labels times {len(x)} positions expected"
+            raise ValueError(f"{name} has shape {values.shape}: {expected}")
     if len(set(labels)) < len(labels):
         raise ValueError(f"labels {list(labels)}: two are alike; a mode's field needs a name of its own")
     return shapes, aside
-
-
-def _scale(field: np.ndarray, largest: float) -> np.ndarray:
-    """Scale displacements so that the largest component has a given value; zeros stay zeros."""
-    return field * (largest / (np.abs(field).max() or 1.0))
 
 
 def _displacement(deflection: np.ndarray, points: int, across: np.ndarray) -> np.ndarray:

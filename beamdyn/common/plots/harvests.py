@@ -111,9 +111,8 @@ def plot_harvest(
         ax.set_yscale("log")
     if radius:
         each = _KM_PER_HOUR * radius / speed.per_si  # velocity in km/h for one unit of the speed axis
-        above = ax.secondary_xaxis(
-            "top", functions=(lambda v: np.asarray(v) * each, lambda v: np.asarray(v) / each)
-        )
+        both_ways = lambda v: np.asarray(v) * each, lambda v: np.asarray(v) / each
+        above = ax.secondary_xaxis("top", functions=both_ways)
         above.set_xlabel("velocity of the vehicle [km/h]", fontsize=12)
     return add_legend(ax)
 

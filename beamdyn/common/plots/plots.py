@@ -237,9 +237,8 @@ def plot_response(
     Axes
     """
     speed, length = units.speed_unit(), units.length_unit()
-    ax = axes_and_lines.set_up_axes(
-        ax, axes_and_lines.speed_label(units), f"largest tip deflection [{length.name}]"
-    )
+    label = f"largest tip deflection [{length.name}]"
+    ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), label)
     bounds = {} if bound is None else {"sum of the lines": bound}
     rows = {"largest over both phases": amplitude, **bounds, **(by_direction or {})}
     drawn = (length.of(np.where(np.asarray(row) > 0, row, np.nan)) for row in rows.values())
@@ -278,9 +277,8 @@ def plot_sweep(
     Axes
     """
     speed, length = units.speed_unit(), units.length_unit()
-    ax = axes_and_lines.set_up_axes(
-        ax, axes_and_lines.speed_label(units), f"peak of the tip deflection [{length.name}]"
-    )
+    label = f"peak of the tip deflection [{length.name}]"
+    ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), label)
     axes_and_lines.draw_lines(ax, speed.of(np.asarray(speeds)), length.of(np.atleast_2d(peaks)), labels)
     ax.set_ylim(bottom=0)
     return add_legend(ax) if len(labels) > 1 else ax

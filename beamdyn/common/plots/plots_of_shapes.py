@@ -138,12 +138,12 @@ def plot_surfaces(
 
 def _panels_in_a_row(count: int, length: float, width: float) -> int:
     """Return the number of panels in a row at which strips of a given size are drawn largest."""
-    rows = ((columns, -(-count // columns)) for columns in range(1, count + 1))
-    sizes = {
-        columns: min((_PAGE[0] / columns - _MARGIN) / length, (_PAGE[1] / rows - _MARGIN) / width)
-        for columns, rows in rows
-    }
-    return max(sizes, key=lambda columns: sizes[columns])
+
+    def size(columns: int) -> float:
+        rows = -(-count // columns)
+        return min((_PAGE[0] / columns - _MARGIN) / length, (_PAGE[1] / rows - _MARGIN) / width)
+
+    return max(range(1, count + 1), key=size)
 
 
 def _draw_surface(
@@ -170,9 +170,8 @@ def _draw_surface(
 
 def _set_up_shapes(ax: Axes | None, units: DisplayUnits = SI_UNITS) -> Axes:
     """Label the axes for mode shapes divided by their largest deflection, and draw the beam at rest."""
-    ax = axes_and_lines.set_up_axes(
-        ax, axes_and_lines.position_label(units), "deflection / its largest value"
-    )
+    label = axes_and_lines.position_label(units)
+    ax = axes_and_lines.set_up_axes(ax, label, "deflection / its largest value")
     ax.axhline(0, color="0.4", linewidth=0.8)
     return ax
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from beamdyn.equations.beam_in_space.finite_rotations import UNIT, product, quaternions_by_vectors
+from beamdyn.equations.beam_in_space.finite_rotations import CONJUGATE, UNIT, product, quaternions_by_vectors
 from beamdyn.equations.discretization import ArcQuadrature, Sampler
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import ONE
@@ -29,5 +29,4 @@ def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np
     # Angles just inside both ends of each cell, as properties may jump between cells.
     a, b = (np.stack(angle.split(tuple(cells.ends)).end_values())[..., None] for angle in (sweep, prebend))
     begin, end = product(quaternions_by_vectors(b * [0, 0, 1]), quaternions_by_vectors(a * [0, -1, 0]))
-    before = np.concatenate([UNIT[None], end[:-1]]) * [1.0, -1.0, -1.0, -1.0]
-    return curvature, product(before, begin)
+    return curvature, product(np.concatenate([UNIT[None], end[:-1]]) * CONJUGATE, begin)

@@ -11,6 +11,7 @@ from beamdyn.common.numerics import gauss_rule
 from beamdyn.equations.discretization import Cells, integrals_between_points
 
 UNIT = np.array([1.0, 0.0, 0.0, 0.0])  # quaternion of the identity rotation
+CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0])  # factors that turn a unit quaternion into its inverse
 _NEXT = np.array([1, 2, 0])  # cyclic successor of each component, for fast cross products
 _ITERATIONS = 30  # number of Picard iterations that suffice for a rotation by 2 pi
 _CONVERGED = 4 * float(np.finfo(float).eps)  # change of a quaternion below which the iteration has converged
@@ -33,9 +34,7 @@ _PRODUCT[0] = _PRODUCT[:, 0] = np.eye(4)
 _PRODUCT[1:, 1:, 0], _PRODUCT[1:, 1:, 1:] = -np.eye(3), -skew(np.eye(3))
 _FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # matrices of y -> y (0, a), per component of a
 # Matrix entries of the rotation a -> y (0, a) y*, per product of two components of the quaternion y.
-_TURNING = np.einsum("ajc,b,cbi->abij", _PRODUCT[:, 1:], [1.0, -1.0, -1.0, -1.0], _PRODUCT[..., 1:]).reshape(
-    16, 9
-)
+_TURNING = np.einsum("ajc,b,cbi->abij", _PRODUCT[:, 1:], CONJUGATE, _PRODUCT[..., 1:]).reshape(16, 9)
 
 
 def turn(R: np.ndarray, a: np.ndarray) -> np.ndarray:
@@ -126,8 +125,7 @@ def quaternions_by_vectors(vectors: np.ndarray) -> np.ndarray:
 
 def product(y: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Multiply quaternions (..., 4), which are broadcast."""
-    from_left = (y @ _PRODUCT.reshape(4, 16)).reshape(*y.shape, 4)
-    return np.einsum("...bc,...b->...c", from_left, z)
+    return np.einsum("...bc,...b->...c", (y @ _PRODUCT.reshape(4, 16)).reshape(*y.shape, 4), z)
 
 
 def rotation_matrices(y: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cache, cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -53,15 +53,14 @@ QUANTITIES: tuple[Quantity, ...] = "speed_squared", "acceleration", *_ROOT
 def _strains_of_fields(scene: Scene) -> dict[str, tuple[int, int, RootConditions]]:
     """Find the strain that each displacement field causes: index in `STRAINS`, derivative order, and root."""
     mount, warps = scene.mount, scene.modelled_beam.warping_stiffness is not None
-    torsion = CLAMPED if warps else FIXED
-    resists = "warping_stiffness" if warps else "torsion_stiffness"
+    root, resists = (CLAMPED, "warping_stiffness") if warps else (FIXED, "torsion_stiffness")
     return {
         "bending": (5, 2, Bending().conditions(mount)),
         "second bending": (4, 2, SecondBending().conditions(mount)),
         "shear": (1, 1, Shear().conditions(mount)),
         "second shear": (2, 1, SecondShear().conditions(mount)),
         "stretch": (0, 1, FIXED._replace(stiffness="axial_stiffness")),
-        "torsion": (3, 1, torsion._replace(stiffness=resists)),
+        "torsion": (3, 1, root._replace(stiffness=resists)),
     }
 
 
@@ -85,18 +84,10 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         offset, across = _tension(beam, xi)
         functions[:, 0] += offset * functions[:, 5] - across * functions[:, 4]
     curvature, kinks = curve_of_axis(beam, quadrature)
-    model = bent_beam.BeamInSpace(
-        stations,
-        _masses(scene, stations),
-        np.concatenate([np.zeros_like(curvature), curvature]),
-        functions,
-        linear.matrices[0]["unity"],
-        linear.matrices[1].get("unity", np.zeros((n, n))),
-        *_fibres(beam, xi),
-        kinks,
-        None if np.isinf(scene.mount.root_stiffnesses).all() else hinges,
-        slopes,
-    )
+    initial, masses = np.concatenate([np.zeros_like(curvature), curvature]), _masses(scene, stations)
+    law = linear.matrices[0]["unity"], linear.matrices[1].get("unity", np.zeros((n, n)))
+    ends = kinks, None if np.isinf(scene.mount.root_stiffnesses).all() else hinges, slopes
+    model = bent_beam.BeamInSpace(stations, masses, initial, functions, *law, *_fibres(beam, xi), *ends)
     (c, s), (cosine, sine) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
     axis, load = -np.array([sine, cosine * s, cosine * c]), forces_at_tip(scene, model.at(np.zeros(n)))
     rotating = RotatingBeam(model, linear, axis, load)
@@ -192,8 +183,7 @@ def _fibres(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return np.zeros_like(xi), twist
     assert beam.rotary_inertia is not None and beam.second_rotary_inertia is not None
     polar = beam.rotary_inertia(xi) + beam.second_rotary_inertia(xi)
-    beside = (_tension(beam, xi) ** 2).sum(axis=0)
-    return polar / beam.mass_per_length(xi) + beside, twist
+    return polar / beam.mass_per_length(xi) + (_tension(beam, xi) ** 2).sum(axis=0), twist
 
 
 def _turned_sections(beam: Beam, xi: np.ndarray) -> np.ndarray:
@@ -306,14 +296,11 @@ class BentState(FieldsOnly):
         If "unity" is given, that fraction of the tip load acts in place of inertial forces.  Signs are as on
         the left-hand side of the equations of motion.
         """
-        key = tuple(values.items())
-        if key not in self._known:
-            self._known[key] = self.bent.under(self._forces(values))
-        return self._known[key]
+        return self._known(tuple(values.items()))
 
     @cached_property
-    def _known(self) -> dict[tuple[tuple[Quantity, float], ...], bent_beam.Work]:
-        return {}
+    def _known(self) -> Callable[[tuple[tuple[Quantity, float], ...]], bent_beam.Work]:
+        return cache(lambda values: self.bent.under(self._forces(dict(values))))
 
     def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
         """Compute the inertial forces at the stations, or the given fraction of the tip load."""

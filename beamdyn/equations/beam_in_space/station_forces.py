@@ -18,6 +18,8 @@ from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space.finite_rotations import cross, skew, turn, turn_tensors
 from beamdyn.equations.discretization import ArcQuadrature
 
+NONE = np.zeros(3)  # vector of what does not act or does not move
+
 
 @dataclass(frozen=True)
 class BeamStations(FieldsOnly):
@@ -157,11 +159,7 @@ class MassesInSpace:
         return matrix
 
     def carried(
-        self,
-        axis: np.ndarray,
-        speed_squared: float = 0.0,
-        acceleration: float = 0.0,
-        root: np.ndarray = np.zeros(3),  # noqa: B008  (it is not changed)
+        self, axis: np.ndarray, speed_squared: float = 0.0, acceleration: float = 0.0, root: np.ndarray = NONE
     ) -> StationForces:
         """Compute the inertial forces on masses whose carrier rotates about an axis (3,) and moves the root.
 

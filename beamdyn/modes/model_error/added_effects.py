@@ -116,9 +116,8 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
     not_modelled : tuple of str
         Effects that no model can include.
     """
-    left_out = [
-        effect for effect in effects.effects_left_out(scene) if effect is not effects.LARGE_DEFLECTION
-    ]
+    every = effects.effects_left_out(scene)
+    left_out = [effect for effect in every if effect is not effects.LARGE_DEFLECTION]
     if effects.TWIST in left_out:  # pretwist needs the second plane: the two count as one effect
         left_out.remove(effects.SECOND_PLANE)
     additions, not_known = [], {}

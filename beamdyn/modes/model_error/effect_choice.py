@@ -242,9 +242,8 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
     if lost >= size:
         return None
     effects = [replace(e, size=sizes[e.name], included=e.name in kept) for e in choice.effects]
-    effects = [
-        replace(e, reason=EXCLUSIVE) if e.name in choice.included and not e.included else e for e in effects
-    ]
+    excluded = {*choice.included} - {*kept}
+    effects = [replace(e, reason=EXCLUSIVE) if e.name in excluded else e for e in effects]
     left_out = sum(e.size for e in effects if not e.included and not math.isnan(e.size))
     chosen = replace(
         choice, physics=bent.physics, effects=tuple(sorted(effects, key=lambda e: not e.included)),

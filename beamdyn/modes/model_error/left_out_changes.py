@@ -24,7 +24,6 @@ from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.common.numerics import assign
 from beamdyn.common.words import Setting, Words
 from beamdyn.equations.assembly import assemble_over
-from beamdyn.equations.discretization import Spaces
 from beamdyn.equations.effects import (
     CAMBER,
     LARGE_DEFLECTION,
@@ -195,10 +194,8 @@ def _bent_change_at(
     """Compute relative changes by large deflection at one speed, and why some are unknown."""
     if not speed:
         return np.zeros(len(eigenvalue)), ""
-    count, speeds = (
-        min(len(eigenvalue) + added_effects.EXTRA_MODES, straight.solver.size),
-        np.array([speed]),
-    )
+    count = min(len(eigenvalue) + added_effects.EXTRA_MODES, straight.solver.size)
+    speeds = np.array([speed])
     without = straight.solver.solve(speeds, count).eigenvalue[0]
     order = assign(np.abs(eigenvalue[:, None] - without[None, :]))
     try:
@@ -256,7 +253,7 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
 
 def nothing_known(scene: Scene, reason: str = "", shape: tuple[int, ...] = ()) -> LeftOutEffects:
     """Return the effects that a scene neglects, with unknown changes (of a given shape) and a reason."""
-    additions, not_known, not_modelled = _list_effects(scene, _straightened(scene))
+    additions, not_known, not_modelled = _list_effects(scene, scene.straightened)
     names = [] if scene.physics.large_deflection else [LARGE_DEFLECTION.name]
     unchanged = {name: np.full(shape, np.nan) for name in (*names, *(added.name for added in additions))}
     not_known = dict.fromkeys(unchanged if reason else (), reason) | not_known
@@ -265,13 +262,8 @@ def nothing_known(scene: Scene, reason: str = "", shape: tuple[int, ...] = ()) -
 
 def without_large_deflection(model: Model) -> Model:
     """Return the model of the straight beam, for which all effects except large deflection are estimated."""
-    if not model.scene.physics.large_deflection:
-        return model
-    return Model(_straightened(model.scene), model.discretization)
-
-
-def _straightened(scene: Scene) -> Scene:
-    return scene.straightened
+    large = model.scene.physics.large_deflection
+    return Model(model.scene.straightened, model.discretization) if large else model
 
 
 def _list_effects(scene: Scene, straight: Scene) -> tuple[list[Addition], dict[str, str], tuple[str, ...]]:
@@ -341,7 +333,7 @@ def left_out_by_solving(scene: Scene, solve: Solve) -> LeftOutEffects:
     LeftOutEffects
         Relative changes, of the shape of the values.
     """
-    base = _straightened(scene)
+    base = scene.straightened
     if scene.tip_load.acts:
         return nothing_known(scene, LOADED, np.shape(solve(base, "").values))
     without, found, notes = solve(base, ""), {}, {}
@@ -368,8 +360,7 @@ def _relative_change(without: SolvedValues, within: SolvedValues) -> SolvedValue
     """Compute the relative change between the values of two solutions, nan where it is not known."""
     with np.errstate(divide="ignore", invalid="ignore"):
         change = np.where(within.values == without.values, 0.0, within.values / without.values - 1)
-    change = np.where(np.abs(change) < _ROUNDING, 0.0, change)
-    unknown = ~np.isfinite(change)
+    change, unknown = np.where(np.abs(change) < _ROUNDING, 0.0, change), ~np.isfinite(change)
     reason = (without.reason or within.reason or "there is nothing to compare") if unknown.any() else ""
     return SolvedValues(np.where(unknown, np.nan, change), reason, within.assumed)
 
@@ -393,7 +384,6 @@ def _bent_values(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedVal
 
 # Effects that add modes, and beginnings of the names of the fields that dominate these modes.
 _ADDED = {SECOND_PLANE: "second", TORSION: "torsion", CAMBER: "camber", STRETCH: "stretch"}
-_REFINING = (SHEAR, ROTARY_INERTIA)
 # Ratio to the highest listed frequency up to which additional modes are named, as these are known to 3 %.
 _MARGIN = 1.03
 _EXTRA = 2  # number of modes computed beyond those listed
@@ -415,19 +405,19 @@ def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> I
     are those listed at the speeds [rad/s].
     """
     highest = _MARGIN * np.abs(eigenvalue).max(axis=1, initial=0.0)
-    scene = without_large_deflection(model).scene
+    scene, spaces_of = without_large_deflection(model).scene, model.discretization.spaces
     for effect, fields in _ADDED.items():
         if effect.is_in(scene) or (added := _add(scene, effect)) is None:
             continue
-        extended, count = added.scene, eigenvalue.shape[1] + _EXTRA
+        extended, kind, count = added.scene, effect.switch, eigenvalue.shape[1] + _EXTRA
         if effect is SECOND_PLANE:
             extended = _refined(extended)
-        spaces = _spaces(extended, model, count)
+            kind = words_of_directions(extended)[1]
+        spaces = clamp_spaces(extended, count) if extended.models_width else spaces_of(extended.beam)
         own = _own_frequencies(assemble_over(extended, spaces), fields, speeds, count)
         for k, omega in enumerate(np.where(own <= highest[:, None], own, np.nan).T):
             if np.isfinite(omega).any():
-                kind, frequency = _kind(effect, extended), omega / (2 * np.pi)
-                yield UnlistedMode(kind, k + 1, effect.name, frequency, added.assumed)
+                yield UnlistedMode(kind, k + 1, effect.name, omega / (2 * np.pi), added.assumed)
 
 
 def _add(scene: Scene, effect: Effect) -> Addition | None:
@@ -442,17 +432,10 @@ def _add(scene: Scene, effect: Effect) -> Addition | None:
 
 def _refined(scene: Scene) -> Scene:
     """Return the scene with shear and rotary inertia, as far as its beam has the data."""
-    for effect in _REFINING:
+    for effect in (SHEAR, ROTARY_INERTIA):
         if not effect.is_in(scene) and can_add(scene, effect):
             scene = add_effect(scene, effect).scene
     return scene
-
-
-def _spaces(scene: Scene, model: Model, modes: int) -> Spaces:
-    """Build function spaces for the modes of a scene with an effect that a model lacks."""
-    if scene.models_width:
-        return clamp_spaces(scene, modes)
-    return model.discretization.spaces(scene.beam)
 
 
 def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, count: int) -> np.ndarray:
@@ -471,8 +454,3 @@ def _own_frequencies(equations: Equations, fields: str, speeds: np.ndarray, coun
     moves_own = energy[:, is_own].sum(axis=1) > energy[:, ~is_own].sum(axis=1)
     omega = np.imag(found.eigenvalue)
     return np.sort(np.where(moves_own & (omega > 0), omega, np.inf), axis=1)
-
-
-def _kind(effect: Effect, scene: Scene) -> str:
-    """Name the kind of the modes that an effect adds."""
-    return words_of_directions(scene)[1] if effect is SECOND_PLANE else effect.switch

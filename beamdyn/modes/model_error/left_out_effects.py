@@ -126,9 +126,8 @@ class LeftOutEffects:
     def at(self, index: Any) -> LeftOutEffects:
         """Select the changes of some values by their indices."""
         changes = {name: np.asarray(change[index]) for name, change in self.changes.items()}
-        first = (
-            index[0] if isinstance(index, tuple) else index
-        )  # if modes are the last axis, an index selects speeds
+        # If modes are the last axis, an index selects speeds.
+        first = index[0] if isinstance(index, tuple) else index
         unlisted = tuple(replace(mode, frequency=mode.frequency[first]) for mode in self.unlisted)
         return replace(self, changes=changes, shape=np.zeros(self.shape)[index].shape, unlisted=unlisted)
 
@@ -148,9 +147,8 @@ class LeftOutEffects:
             speed.
         """
         what = self.counted if what is None else what
-        parts: list[str] = [
-            joined(", ", self._say_changes(what, where, speeds)) or "nothing that can be computed"
-        ]
+        changes = joined(", ", self._say_changes(what, where, speeds))
+        parts: list[str] = [changes or "nothing that can be computed"]
         reasons: dict[str, list[str]] = {}  # effects with the same reason are named together
         for name, why in self.not_known.items():
             place = self.where_unknown(name, speeds)
@@ -232,10 +230,8 @@ class LeftOutEffects:
                 unknown.setdefault((where_unknown(name) or where, why), []).append(name)
         for (place, why), names in unknown.items():
             begin = (place, " the model error") if place else ("the model error",)
-            end = (
-                f" may exceed {say_size(limit)}: what {', '.join(names)}, left out, changes is not known: ",
-                why,
-            )
+            said = f" may exceed {say_size(limit)}: what {', '.join(names)}, left out, changes is not known: "
+            end = said, why
             yield Statement(*begin, *end, kind=MODEL_ERROR, quantity="model error", limit=limit)
 
 
