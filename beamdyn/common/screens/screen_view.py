@@ -48,7 +48,7 @@ _NO_FILE = "No file is made: the present entries have no answer, or a preliminar
 _STALE = "Stale: for the entries before."
 # Time between pictures of charts beside a moving drawing: a browser takes 5 to 10 ms for each [s].
 _CHARTS_APART = 0.1
-_MUCH = 0.05  # computing time of tables and notes above which the drawing is shown before them [s]
+_MUCH = 0.01  # computing time of tables and notes above which the drawing is shown before them [s]
 _DRAWN_FIRST = 0.03  # time after which charts follow a drawing that the slider moves: it is painted first [s]
 
 
