@@ -1,7 +1,7 @@
 """Free motion of linear equations, M q'' + C q' + K q = 0, independent of the units of coordinates.
 
-Coordinates u are chosen in which K + z^2 M is the unit matrix and M = diag(r^2), and the states are u and w =
-r u'.  Then all quantities are times, and for the poles s the eigenvalues of T are 1 / (s - z), where
+Coordinates u are chosen in which K + z^2 M is the unit matrix and M = diag(r^2), and the states are u and
+w = r u'.  Then all quantities are times, and for the poles s the eigenvalues of T are 1 / (s - z), where
 
     T (u, w) = (v, r (u + z v)),    v = -(I + z C)^-1 ((C + z r^2) u + r w).
 

@@ -216,9 +216,10 @@ def equilibrium(
 def _rounding(load: Loading, q: np.ndarray, p: float) -> float:
     """Estimate the rounding error of positions over the length, at coordinates q and squared speed p.
 
-    It includes the deflection by a change of the load within rounding, which is large near buckling.
+    It includes the deflection by a change of all loads within rounding, which is large near buckling.  The
+    loads are as large as the elastic forces, which balance them.
     """
-    turned = np.linalg.solve(load.at(q, p).change, p * load.rate(q)) @ load.angles
+    turned = np.linalg.solve(load.at(q, p).change, load.elastica.beam.stiffness @ q) @ load.angles
     return _ROUNDING + _OF_LOADS * float(np.abs(turned).max())
 
 

@@ -112,6 +112,23 @@ def test_a_picture_in_haste_reuses_a_frame_that_has_not_changed():
         assert texts(svg_in_haste(drawn(6.0, "again"))) == texts(made)
 
 
+def test_a_picture_in_haste_does_not_reuse_a_frame_of_another_style():
+    def drawn(grid):
+        figure = new_figure(4.0, 3.0)
+        ax = figure.subplots()
+        ax.plot([0.0, 1.0])
+        ax.grid(grid)
+        return figure
+
+    def lines(made):
+        return made.count("<path") + made.count("<use")
+
+    for _ in range(3):
+        with_grid = svg_in_haste(drawn(True))
+    plain, usual = svg_in_haste(drawn(False)), svg(in_haste(drawn(False)))
+    assert lines(plain) == lines(usual) < lines(with_grid)
+
+
 def test_a_broad_picture_takes_the_whole_width_of_a_page():
     def made(width):
         return picture(svg(new_figure(width, 3.0)), "")

@@ -34,6 +34,19 @@ def test_unstable_mode_has_a_growth_rate_and_no_frequency() -> None:
     assert "unstable" in modes.warnings[0] and math.isnan(modes.static_deflection)
 
 
+@pytest.mark.parametrize("thinning", [0.0, 0.3, 0.6])
+@pytest.mark.parametrize("rotary_inertia", [False, True])
+def test_a_beam_hinged_on_the_axis_of_rotation_has_no_static_deflection(
+    thinning: float, rotary_inertia: bool
+) -> None:
+    # Rotation tensions the beam and tilts the tension with it: every angle is in equilibrium.
+    beam = bd.Beam.rectangular(0.05, 0.01, lambda x: 4e-4 * (1 - thinning * x), 200e9, 7850.0)
+    mount, physics = bd.Mount(0.0, np.pi, root_stiffness=0.0), bd.Physics(rotary_inertia=rotary_inertia)
+    for speed in (40.0, 150.0):
+        modes = bd.natural_modes(bd.Scene(beam, mount, physics=physics), speed, 2)
+        assert modes.status[0] == "neutral" and math.isnan(modes.static_deflection)
+
+
 def test_exactly_at_the_critical_speed() -> None:
     """The first mode is stable or not within rounding of zero, and its relative error says so."""
     modes = bd.natural_modes(HARVESTER, bd.critical_speed(HARVESTER))

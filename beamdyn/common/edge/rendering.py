@@ -130,9 +130,10 @@ def svg_in_haste(figure: Figure) -> str:
 
 
 def _shown(ax: Axes) -> tuple[object, ...]:
-    """Return the position, limits and texts of axes, which determine their frame."""
-    shown = [*ax.get_position().bounds]
+    """Return the position, limits, texts and style of axes, which determine their frame."""
+    shown = [*ax.get_position().bounds, *ax.get_facecolor()]
     for axis in (ax.xaxis, ax.yaxis):
+        shown.append(str(axis.get_tick_params()))
         ticks = axis.get_majorticklocs().tolist()
         shown += [axis.get_label_text(), axis.get_scale(), *axis.get_view_interval(), *ticks]
         shown += axis.get_major_formatter().format_ticks(ticks)

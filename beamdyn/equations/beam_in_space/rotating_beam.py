@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cache, cached_property, lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -296,11 +296,14 @@ class BentState(FieldsOnly):
         If "unity" is given, that fraction of the tip load acts in place of inertial forces.  Signs are as on
         the left-hand side of the equations of motion.
         """
-        return self._known(tuple(values.items()))
+        key = tuple(values.items())
+        if key not in self._known:
+            self._known[key] = self.bent.under(self._forces(values))
+        return self._known[key]
 
     @cached_property
-    def _known(self) -> Callable[[tuple[tuple[Quantity, float], ...]], bent_beam.Work]:
-        return cache(lambda values: self.bent.under(self._forces(dict(values))))
+    def _known(self) -> dict[tuple[tuple[Quantity, float], ...], bent_beam.Work]:
+        return {}  # a cached function would keep the state and its arrays alive by referring to it
 
     def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
         """Compute the inertial forces at the stations, or the given fraction of the tip load."""

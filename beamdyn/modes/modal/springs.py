@@ -23,6 +23,8 @@ _GRADED_AT_REST = 1e-12
 _UNDAMPED = 1e-6
 # Ratio of the largest squared speed of the search to that at which rotation affects the stiffness.
 _SMALLEST_TRIAL = 1e-12
+# Ratio of a squared frequency to the squared speed below which the beam turns freely, within rounding.
+_NEUTRAL = 1e-12
 
 
 def remove_shift(
@@ -221,10 +223,10 @@ def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float
 
 
 def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
-    """Solve static equilibrium at a speed; nan if the stiffness is not positive definite."""
+    """Solve static equilibrium at a speed; nan if the stiffness is not positive definite beyond rounding."""
     K = pencil.K0 + speed**2 * pencil.K2
     try:
-        factor = scipy.linalg.cho_factor(K)
+        np.linalg.cholesky(K - _NEUTRAL * speed**2 * pencil.M)
     except np.linalg.LinAlgError:
         return np.full(len(K), np.nan if speed else 0.0)
-    return scipy.linalg.cho_solve(factor, speed**2 * pencil.f2)
+    return scipy.linalg.cho_solve(scipy.linalg.cho_factor(K), speed**2 * pencil.f2)
