@@ -21,7 +21,7 @@ from beamdyn.common.inputs.checks import MOST, InvalidValue, real, real_array, r
 from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.words import Named, Words
 
-_FIT_NODES = (12, 24, 48, 128)  # numbers of Gauss points tried in turn; 24 resolve a usual smooth taper
+_FIT_NODES = (8, 16, 32, 64, 128)  # numbers of Gauss points tried in turn; 32 resolve a usual smooth taper
 _SHORTEST_SEGMENT = 1e-12  # difference of x/L below which two breakpoints differ only by rounding
 _FIT_TOLERANCE = 1e-13  # rounding error of the user's function, relative to its largest value
 _ZERO = 5e-13  # a property counts as 0 below this fraction of its largest value on a segment
