@@ -68,6 +68,24 @@ def test_stated_errors_of_random_stations(number: int) -> None:
         assert (true <= found.error + known.uncertainty).all(), (tolerance, true, found.error)
 
 
+def test_stated_errors_of_a_fast_blade_of_steps_at_loose_tolerance() -> None:
+    """At nine times its first frequency at rest; with 12 functions, the stated error was 0.6 of the true."""
+    rng, stations = np.random.default_rng(62), np.repeat(np.linspace(0, 1, 19), 2)[1:-1]
+
+    def falling(decades: float) -> bd.Table:
+        rough = np.exp(0.5 * rng.standard_normal(len(stations)))
+        return bd.Table(stations.tolist(), (10 ** (-decades * stations) * rough).tolist())
+
+    mass, stiffness = (falling(rng.uniform(0, most)) for most in (3.0, 8.0))
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, mass, stiffness), bd.Mount(0.2, math.pi, math.pi / 2))
+    speed = 9 * float(np.abs(bd.natural_modes(scene, modes=1).eigenvalue[0]))
+    known = known_frequencies(scene, speed, 3)
+    found = bd.natural_modes(scene, speed, 3, tolerance=0.1)
+    assert "moments" in found.provenance.method
+    true = np.abs(found.eigenvalue / known.eigenvalue - 1)
+    assert (true <= found.error + known.uncertainty).all(), (true, found.error)
+
+
 @pytest.mark.parametrize("scene", [SCENES["one plane"], SCENES["twisted"]], ids=["one plane", "twisted"])
 def test_eigenvalues_are_upper_bounds(scene: bd.Scene) -> None:
     best = bd.natural_modes(scene, 0.8, 4, bd.Ritz(60, "moments"))

@@ -38,8 +38,10 @@ _MOST_IN_ALL = 1000
 _FEW_SEGMENTS = 6
 _MANY_ON_EACH = 2  # number of modes per segment above which moments need more functions, and lose digits
 # Number of forces in each direction, in addition to the number of modes, and per digit of accuracy, as
-# published blades need.  Twisted sections need fewer, because forces in both directions bend them.
-_IN_STRAIGHT, _IN_TWISTED = (6, 3.0), (-1, 3.0)
+# published blades need; then the fewest in addition to the modes, as with fewer the error of a mode that
+# lacks functions may be stated too small.  Twisted sections need fewer, because forces in both directions
+# bend them.
+_IN_STRAIGHT, _IN_TWISTED = (6, 3.0, 13), (-1, 3.0, 10)
 # Smallest number of elements on a segment with a boundary layer, so that half as many resolve it too.
 _ON_LAYERS = 8
 _OF_ELEMENTS = 0.1  # accuracy that determines the length of boundary layers with finite elements
@@ -261,9 +263,9 @@ def _first_ritz(
         return Ritz(min(max(5, int(np.ceil(2 + modes - np.log10(target)))), MOST_FUNCTIONS))
     if segments > _FEW_SEGMENTS and modes <= _MANY_ON_EACH * segments:
         coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
-        least, per_digit = _IN_TWISTED if coupled else _IN_STRAIGHT
+        least, per_digit, fewest = _IN_TWISTED if coupled else _IN_STRAIGHT
         digits = -np.log10(max(target, MOMENTS_TARGET))
-        return Ritz(max(modes, int(least + modes + per_digit * digits)), "moments")
+        return Ritz(modes + max(fewest, int(least + per_digit * digits)), "moments")
     fewest = _FEWEST_FUNCTIONS if segments == 1 and cheapest else 5
     total = int(np.ceil(4 + 1.3 * modes - np.log10(target))) if cheapest else 10 + 2 * modes
     return Ritz(min(max(fewest, -(-total // segments)), MOST_FUNCTIONS))
