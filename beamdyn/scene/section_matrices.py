@@ -28,6 +28,7 @@ LEAST = 1e-10  # smallest accepted eigenvalue of a positive definite matrix scal
 MOST_ASYMMETRY = (
     1e-4  # largest difference of two symmetric entries, over the root of their diagonal entries' product
 )
+_PART = 0.1  # least part in the strains of the least eigenvalue, over the largest, of what is named
 MOST_STRANGENESS = 1e-4  # largest accepted difference, scaled, of a mass matrix from that of a rigid section
 # Properties of the beam that are diagonal entries of the stiffness.
 _DIAGONAL = {
@@ -153,9 +154,8 @@ class SectionMatrices(FieldsOnly):
         if (bad := np.flatnonzero(least <= LEAST)).size:
             k = bad[0]
             bound = "its least eigenvalue, with a diagonal of 1, must be above {limit}"
-            remedy = (
-                "such a section deforms without a force" if name == "stiffness" else "it has negative mass"
-            )
+            said = "such a section deforms without a force" if name == "stiffness" else "it has negative mass"
+            remedy = f"{said}; check {_entries_at_fault(name, matrices[:, :, k])}"
             where = f" at x/L = {xi[k]:.4g}"
             raise InvalidValue(f"matrices.{name}", float(least[k]), bound, remedy, "", LEAST, where=where)
         if name == "mass" and (bad := np.flatnonzero(strangeness(matrices) > MOST_STRANGENESS)).size:
@@ -166,6 +166,13 @@ class SectionMatrices(FieldsOnly):
 
 def _profile(name: str, stations: Sequence[float] | np.ndarray, values: np.ndarray) -> Profile:
     return to_profile(f"matrices.{name}", Table([*map(float, stations)], values.tolist()))
+
+
+def _entries_at_fault(name: str, matrix: np.ndarray) -> str:
+    """Name the entries of a matrix (6, 6) for what has most part in its least eigenvalue, scaled."""
+    shape = np.abs(np.linalg.eigh(_scaled(matrix[None]))[1][0, :, 0])
+    rows, letter = np.flatnonzero(shape > _PART * shape.max()), "K" if name == "stiffness" else "M"
+    return ", ".join(entry_name(letter, i, j) for i, j in UPPER if i in rows and j in rows)
 
 
 def _scaled(matrices: np.ndarray) -> np.ndarray:

@@ -173,15 +173,15 @@ class Sliding(Machine):
             middle = (low + high) / 2
             before = self._residual(middle, mu, s) * first > 0
             low, high = np.where(before, middle, low), np.where(before, high, middle)
-        with np.errstate(divide="ignore", invalid="ignore"):  # without equilibrium
-            delta = np.clip(self._newton((low + high) / 2, mu, s), low, high)
+        delta = np.clip(self._newton((low + high) / 2, mu, s), low, high)
         begin, end = self._contact(delta)
         return np.where((first * last < 0) & (end - begin > _LEAST_CONTACT), delta, np.nan)
 
     def _newton(self, delta: np.ndarray, mu: Numbers, s: float) -> Any:
         """Improve the angle of zero pressure [rad] by a Newton step; complex friction adds its derivative."""
-        slope = self._residual(delta + 1j * _TURN_STEP, np.real(mu), s).imag / _TURN_STEP
-        return delta - self._residual(delta, mu, s) / slope
+        with np.errstate(divide="ignore", invalid="ignore"):  # without equilibrium
+            slope = self._residual(delta + 1j * _TURN_STEP, np.real(mu), s).imag / _TURN_STEP
+            return delta - self._residual(delta, mu, s) / slope
 
     @cached_property
     def locking(self) -> Mapping[bool, Numbers]:
@@ -221,7 +221,7 @@ class Sliding(Machine):
         """Make the lining of one shoe."""
         s, delta = -1.0 if leads else 1.0, self.zero(mu, leads)
         held = np.isfinite(delta)
-        delta = self._newton(np.where(held, delta, self.lining_start), mu, s)
+        delta = np.where(held, self._newton(delta, mu, s), self.lining_start)
         K, S, C = found = self._integrals(delta)
         area = self.face_width * np.asarray(self.drum_radius) / self._peak(delta)
         force = area * self._moment(found, mu, s) / self.arm

@@ -103,6 +103,13 @@ def test_it_locks_where_it_says():
         assert ("grips by itself" in found.message) == locks
 
 
+def test_shoes_that_nothing_holds_divide_by_nothing():
+    friction = np.linspace(0.05, 4.0, 159)
+    with np.errstate(divide="raise", invalid="raise", over="raise"):
+        found = machines.solve_brake(replace(BRAKE, shoes="duplex"), friction=friction, force=1.0)
+    assert (found.locked == (friction > found.locking_friction)).all()
+
+
 def test_a_shoe_that_nothing_holds_does_not_lock():
     """Across the abutment's force, int p (cos t - s mu sin t) = 0 needs a sign that changes on the lining.
 

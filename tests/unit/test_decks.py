@@ -451,6 +451,8 @@ def test_a_bad_main_file_of_bmodes_is_refused_by_line(folder, changes, said):
         ("330;", "-330;", 5, "must be greater than 0"),
         ("330;", "330,5;", 5, "write a decimal point"),
         ("330; 1500;", "330;", 5, "expected 6 cells under the headings, found 5"),
+        ("330; 1500;", "330; 15; 00;", 5, "found 7; are there decimal commas?"),
+        ("; mass [kg/m]", " | mass [kg/m]", 2, "separate columns by commas, semicolons or tabs"),
         ("69.7178477690289", "20", 6, "follows"),
         (written.CSV_ROWS[2], written.CSV_ROWS[1], 6, "it repeats line 5"),
         ("109.0879265091864", "135.3346456692913", 8, "a jump to stand between other stations"),

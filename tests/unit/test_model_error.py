@@ -306,6 +306,12 @@ def test_sentence_begins_with_the_largest() -> None:
     )
 
 
+def test_what_is_not_known_somewhere_is_not_said_to_be_zero() -> None:
+    changes = {"a": np.array([0.0, np.nan]), "b": np.array([0.0, 0.0])}
+    said = LeftOutEffects(changes, {"a": "beyond"}, {}, (), {}).sentence()
+    assert said == "left out: b 0 %; not known: a (beyond)"
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [

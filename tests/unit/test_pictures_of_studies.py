@@ -14,7 +14,7 @@ from beamdyn.analyses import analyses
 from beamdyn.common.edge.command_options import VaryOptions
 from beamdyn.common.plots.curves import mark_missing
 from beamdyn.common.plots.maps import MapAnswer, MapInput, levels_of, plot_maps
-from tests.drawn_texts import drawn_texts
+from tests.drawn_texts import drawn_texts, overlapping
 
 SCENE = bd.load_scene(Path(__file__).parents[2] / "examples" / "rolling_harvester.toml")
 SPEEDS = [0.0, 100.0, 200.0, 300.0]  # it buckles at 159.8 rad/s
@@ -75,6 +75,21 @@ def test_resonances_are_where_the_answer_meets_a_line():
 def test_levels_are_round_numbers(low, high, expected):
     spaced = np.linspace if low == 0 else np.geomspace
     np.testing.assert_allclose(levels_of(spaced(low, high, 1000)), expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "x", [np.linspace(-0.1, 0.1, 5), np.geomspace(0.2, 3.0, 5), np.geomspace(1e-3, 1e3, 5)]
+)
+def test_maps_side_by_side_have_numbers_that_are_told_apart(x):
+    """The values differ in their fifth digit alone."""
+    inputs = [MapInput("a", "m", x), MapInput("b", "m", np.linspace(0.0, 1.0, 5))]
+    z = 1.666 + 8e-4 * np.add.outer(np.linspace(0, 0.5, 5), np.linspace(0, 0.5, 5))
+    answers = [MapAnswer(name, z, np.full(z.shape, "")) for name in "pqr"]
+    figure = Figure(figsize=(12.7, 3.9), layout="constrained")
+    plot_maps(inputs, answers, figure.subplots())
+    levels = [text for text in texts(figure) if text.startswith("1.666")]
+    assert len(levels) == 3 * len({*levels}) > 9
+    assert not overlapping(figure)
 
 
 def test_an_answer_that_is_the_same_everywhere_says_so():

@@ -402,7 +402,8 @@ def _read_head(
     """Read a column heading; raise an error if its unit is missing, unknown or of another quantity."""
     match = _HEAD.fullmatch(cell)
     if match is None or not match[1] or to_number(cell) is not None:
-        raise text.refusal(line, f"expected a heading with its unit in brackets, found {quote(cell)}")
+        apart = "; separate columns by commas, semicolons or tabs" if cell.count("[") > 1 else ""
+        raise text.refusal(line, f"expected a heading with its unit in brackets, found {quote(cell)}{apart}")
     # Wind-turbine files write N m2 also as Nm^2 or N-m^2.
     head, unit = match[1], re.sub(r"(?<=[A-Za-z])-(?=[A-Za-z])", " ", (match[2] or "").strip())
     unit, plain = re.sub(r"\b([kMG]?N)m(?![a-z])", r"\1 m", unit), plain_name(head)
@@ -430,7 +431,8 @@ def _row_of_cells(text: DataText, line: int, cells: list[str], heads: list[_Colu
     if len(cells) == len(heads) + 1 and not cells[-1]:  # some programs end each line with a separator
         cells = cells[:-1]
     if len(cells) != len(heads):
-        raise text.refusal(line, f"expected {len(heads)} cells under the headings, found {len(cells)}")
+        why = "; are there decimal commas? Write points" if len(cells) > len(heads) else ""
+        raise text.refusal(line, f"expected {len(heads)} cells under the headings, found {len(cells)}{why}")
     return cells
 
 

@@ -125,7 +125,11 @@ _LEVELS = 8  # largest number of contour lines
 _DECADES = 1.5  # range of values in decades, above which contour levels are at equal ratios
 # If an input has values at equal ratios: least ratio of the largest to the smallest value for a log axis.
 _LOGARITHMIC = 10.0
+_WIDE = (
+    1000.0  # ratio of the largest to the smallest value from which a log axis has numbers at decades alone
+)
 _DIGITS = 4
+_TICKS = 6  # most steps between the numbers below a map, which may be long
 _FEW = 40  # largest number of values of an input for which the points of a curve have markers
 # The hatched region without results ends where the smoothed fraction of missing results is 1/2: standard
 # deviation [grid steps] of the smoothing Gaussian; least distance of the fraction from 1/2 at grid points.
@@ -295,12 +299,16 @@ def _panels(inputs: Sequence[MapInput], answers: Sequence[MapAnswer]) -> Iterato
 def _set_up(ax: Axes, inputs: Sequence[MapInput], ylabel: str = "") -> None:
     """Set the labels and scales of axes whose coordinates are inputs."""
     set_up_axes(ax, inputs[0].label, ylabel or inputs[-1].label)
-    for given, scaled in zip(inputs, (ax.set_xscale, ax.set_yscale), strict=False):
+    for given, axis, scaled in zip(
+        inputs, (ax.xaxis, ax.yaxis), (ax.set_xscale, ax.set_yscale), strict=False
+    ):
         if given.is_logarithmic:
-            scaled("log")
+            scaled("log", subs=[2, 5] if max(given.values) < _WIDE * min(given.values) else [])
+            axis.set_major_formatter("{x:g}")
+            axis.set_minor_formatter("{x:g}")
     for axis in (ax.xaxis, ax.yaxis):
         axis.label.set_fontsize(10)
-    ax.tick_params(labelsize=9)
+    ax.tick_params(which="both", labelsize=9)
     ax.grid(visible=False)
 
 
@@ -310,6 +318,8 @@ def _set_up(ax: Axes, inputs: Sequence[MapInput], ylabel: str = "") -> None:
 def _draw_map(ax: Axes, inputs: Sequence[MapInput], answer: MapAnswer) -> None:
     """Draw contour lines over two inputs on a hatched background."""
     _set_up(ax, inputs)
+    if not inputs[0].is_logarithmic:
+        ax.locator_params(axis="x", nbins=_TICKS)
     orders = [np.argsort(each.values, kind="stable") for each in inputs]
     x, y = (each.values[order] for each, order in zip(inputs, orders, strict=True))
     sort = np.ix_(*orders)
@@ -345,8 +355,18 @@ def _draw_levels(ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, z
     _, (rows, columns) = _nearest_outside(~np.isfinite(z))
     ax.contourf(x, y, z[rows, columns], bounds, cmap=pale, zorder=1)
     drawn = ax.contour(x, y, z, levels, colors="0.25", linewidths=1.0, zorder=2)
-    for level, paths in zip(levels.tolist(), drawn.allsegs, strict=True):
-        _label_path(labels, f"{level:.{_DIGITS}g}", paths, color="0.1")
+    for text, paths in zip(_told_apart(levels.tolist()), drawn.allsegs, strict=True):
+        _label_path(labels, text, paths, color="0.1")
+
+
+def _told_apart(levels: list[float]) -> list[str]:
+    """Format levels, with as many digits as it takes to tell them apart."""
+    texts: list[str] = []
+    for digits in range(_DIGITS, 17):
+        texts = [f"{level:.{digits}g}" for level in levels]
+        if len({*texts}) == len(levels):
+            break
+    return texts
 
 
 def _nearest_outside(region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -177,7 +177,10 @@ class LeftOutEffects:
         known = {name: change for name, change in self.changes.items() if np.isfinite(change).any()}
         for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
             change, notes = known[name], []
-            if abs(_largest(change)) >= _NEGLIGIBLE:
+            if abs(_largest(change)) < _NEGLIGIBLE:
+                if name in self.not_known:  # said there, where it may be large
+                    continue
+            else:
                 first = int(np.nanargmax(np.abs(change)))
                 if what and change.ndim and change.shape[-1] > 1:
                     notes.append(f"{what} {first % change.shape[-1] + 1}")
