@@ -46,8 +46,7 @@ from beamdyn.common.screens.sweep_panel import SweepPanel
 _NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
 _NO_FILE = "No file is made: the present entries have no answer, or a preliminary one alone."
 _STALE = "Stale: for the entries before."
-# Time between pictures of charts beside a moving drawing: a browser takes 5 to 10 ms for each [s].
-_CHARTS_APART = 0.1
+_CHARTS_APART = 0.1  # time between charts beside a moving drawing, each of which takes 5 to 10 ms [s]
 _MUCH = 0.01  # computing time of tables and notes above which the drawing is shown before them [s]
 _DRAWN_FIRST = 0.03  # time after which charts follow a drawing that the slider moves: it is painted first [s]
 
@@ -81,6 +80,7 @@ class ScreenView:
         self._open_file = open_file
         self.narrow = False  # whether the page is narrow, so that drawings are made narrow, too
         self._drawn = False
+        self._drawn_of: object = None  # of what drawing and charts are, if the charts are up to date
         self._sentences: list[tuple[str, str]] = []  # sentences that are shown, with their CSS classes
         self._way = LatestComputation(self._settle, self._fail, self.state)
         self._holds = False  # whether the user holds a slider of the form
@@ -393,7 +393,8 @@ class ScreenView:
             self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
             toggle(self._tables, "waits", not answered.is_whole)
             self.state()  # done here, since all direct changes of the page must be reported together
-        self._draw()
+        if self._drawn_of != self._to_draw(answered):
+            self._draw()
         if answered.picture:
             self._made[0].put(answered.answer, answered.picture)
         elif self.screen.picture is not None and answered.entries != self._pictured:
@@ -425,11 +426,14 @@ class ScreenView:
         name = self.work.other.name if self.work.other else ""
         other = () if there is None else screen.drawings(there.answer, place)
         made = draw_sheet(screen, answer, place, self.board.held or view, other, name, self.narrow)
-        self._drawn = True
+        self._drawn, self._drawn_of = True, None
         plays = self._player is not None and self._player.plays
         moves = plays or (self.dragged and made.view is not None)
         self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
-        if screen.charts is None or (moves and monotonic() - self._charted < _CHARTS_APART):
+        if moves and monotonic() - self._charted < _CHARTS_APART:
+            return
+        self._drawn_of = self._to_draw(answered)
+        if screen.charts is None:
             return
         self._charted = monotonic()
         if self._plays and made.view is not None:
@@ -448,6 +452,10 @@ class ScreenView:
         if there is not None:
             charts = with_other_curves(charts, screen.charts(there.answer, place), name)
         self._charts.show(charts)
+
+    def _to_draw(self, answered: ShownAnswer) -> object:
+        """Return what tells drawings apart: field texts, accuracy, the other design if it is computed."""
+        return answered.entries, answered.is_rough, self.work.other_answer(self.screen) and self.work.other
 
     def _drawn_answer(self, answered: ShownAnswer) -> Any:
         """Return the result with the chosen solution branch, for the drawing."""
