@@ -27,6 +27,8 @@ def simulate(monkeypatch, tmp_path):
     """Run an async function with a maker of clients of a program: `simulate(program, body)`."""
     pytest.importorskip("nicegui", reason=NO_NICEGUI)
     monkeypatch.setenv("NICEGUI_STORAGE_PATH", str(tmp_path))
+    # On a slow machine, too, only tables that a test slows down come after their drawing.
+    monkeypatch.setattr("beamdyn.common.screens.screen_view._MUCH", 0.15)
 
     def run(program, body, solver=None):
         from nicegui.testing.user_simulation import user_simulation
