@@ -224,9 +224,11 @@ def factor_graded(pencil: SteadyPencil, speed: float) -> tuple[np.ndarray, float
 
 def solve_definite(pencil: SteadyPencil, speed: float) -> np.ndarray:
     """Solve static equilibrium at a speed; nan if the stiffness is not positive definite beyond rounding."""
+    if not speed:
+        return np.zeros(len(pencil.K0))
     K = pencil.K0 + speed**2 * pencil.K2
     try:
         np.linalg.cholesky(K - _NEUTRAL * speed**2 * pencil.M)
+        return scipy.linalg.cho_solve(scipy.linalg.cho_factor(K), speed**2 * pencil.f2)
     except np.linalg.LinAlgError:
-        return np.full(len(K), np.nan if speed else 0.0)
-    return scipy.linalg.cho_solve(scipy.linalg.cho_factor(K), speed**2 * pencil.f2)
+        return np.full(len(K), np.nan)
