@@ -93,9 +93,9 @@ def bent_strip(
     ----------
     x : ndarray, shape (n,)
         Positions along the strip [m], from 0 to its length.
-    y : ndarray, shape (n, across)
+    y : ndarray, shape (n, positions)
         Positions across the strip [m].
-    deflection : ndarray, shape (n, across)
+    deflection : ndarray, shape (n, positions)
         Magnified deflection [m].
     across : ndarray, shape (n,)
         Magnified deflection of the centre line in the direction -y [m].

@@ -163,9 +163,9 @@ class Modes(TellsKinds, StatesModelError):
         -------
         x : ndarray, shape (n,)
             Positions along the strip [m].
-        y : ndarray, shape (n, across)
+        y : ndarray, shape (n, positions)
             Positions across the strip [m], ascending.
-        shapes : ndarray, shape (modes, n, across)
+        shapes : ndarray, shape (modes, n, positions)
             Deflections in the direction of bending, real numbers.
         across : ndarray, shape (modes, n)
             Deflections in the direction across, which is -y.

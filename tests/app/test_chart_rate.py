@@ -33,7 +33,9 @@ def shown(monkeypatch):
     return count
 
 
-def test_charts_follow_a_held_point_at_their_own_rate(simulate, fields, shown, monkeypatch):
+@pytest.mark.parametrize("much", [0.0, 1e3], ids=["drawing first", "all at once"])
+def test_charts_follow_a_held_point_at_their_own_rate(simulate, fields, shown, monkeypatch, much):
+    monkeypatch.setattr(screen_view, "_MUCH", much)
     now = [100.0]
     monkeypatch.setattr(screen_view, "monotonic", lambda: now[0])
 
@@ -60,6 +62,6 @@ def test_charts_follow_a_held_point_at_their_own_rate(simulate, fields, shown, m
         assert 0.7 * MOVES * APART / 0.1 <= shown[ChartBoard] <= MOVES * APART / 0.1
         before = shown[ChartBoard]
         await move((x, y), True)
-        assert shown[ChartBoard] == before + 1  # at rest all is shown, however soon
+        assert shown[ChartBoard] == before + 1  # at rest all is shown, however soon, and once
 
     simulate(BRAKES, body)

@@ -108,9 +108,9 @@ def plot_surfaces(
     ----------
     x : ndarray, shape (n,)
         Positions along the strip [m].
-    y : ndarray, shape (n, across)
+    y : ndarray, shape (n, positions)
         Positions across the strip [m].
-    shapes : ndarray, shape (m, n, across)
+    shapes : ndarray, shape (m, n, positions)
         Deflections of the modes out of the strip, real, in any unit.
     across : ndarray, shape (m, n)
         Displacements along -y, in the same unit; the outline is drawn displaced by them.

@@ -80,7 +80,7 @@ class ScreenView:
         self._open_file = open_file
         self.narrow = False  # whether the page is narrow, so that drawings are made narrow, too
         self._drawn = False
-        self._drawn_of: object = None  # of what drawing and charts are, if the charts are up to date
+        self._drawn_of: object = None  # what drawing and charts show (see `_to_draw`); None while charts wait
         self._sentences: list[tuple[str, str]] = []  # sentences that are shown, with their CSS classes
         self._way = LatestComputation(self._settle, self._fail, self.state)
         self._holds = False  # whether the user holds a slider of the form
@@ -432,14 +432,11 @@ class ScreenView:
         self.board.show(made, partial(describe_place, entries=self.work.entries, inputs=self.work.inputs))
         if moves and monotonic() - self._charted < _CHARTS_APART:
             return
-        self._drawn_of = self._to_draw(answered)
-        if screen.charts is None:
-            return
-        self._charted = monotonic()
         if self._plays and made.view is not None:
             asyncio.get_running_loop().call_later(_DRAWN_FIRST, self._show_charts)
         else:
             self._show_charts()
+        self._charted, self._drawn_of = monotonic(), self._to_draw(answered)
 
     def _show_charts(self) -> None:
         """Show the charts of the latest result."""

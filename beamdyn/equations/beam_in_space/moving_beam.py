@@ -27,7 +27,7 @@ import numpy as np
 from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space.bent_beam import BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import cross, turn
-from beamdyn.equations.beam_in_space.station_forces import NONE
+from beamdyn.equations.beam_in_space.station_forces import ZERO
 from beamdyn.equations.beam_in_space.tip_forces import TipForces
 from beamdyn.equations.root_motion import RootMotion
 
@@ -43,9 +43,9 @@ class Carrier(NamedTuple):
         Acceleration of the root, less gravity [m/s2].
     """
 
-    turning: np.ndarray = NONE
-    turning_rate: np.ndarray = NONE
-    root_acceleration: np.ndarray = NONE
+    turning: np.ndarray = ZERO
+    turning_rate: np.ndarray = ZERO
+    root_acceleration: np.ndarray = ZERO
 
     def at(self, times: int | slice) -> Carrier:
         """Select the motion at one or several of the times, which are along the first axis of the arrays."""

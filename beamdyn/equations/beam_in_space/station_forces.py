@@ -18,7 +18,7 @@ from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space.finite_rotations import cross, skew, turn, turn_tensors
 from beamdyn.equations.discretization import ArcQuadrature
 
-NONE = np.zeros(3)  # vector of what does not act or does not move
+ZERO = np.zeros(3)  # force, moment or motion that is absent
 
 
 @dataclass(frozen=True)
@@ -159,7 +159,7 @@ class MassesInSpace:
         return matrix
 
     def carried(
-        self, axis: np.ndarray, speed_squared: float = 0.0, acceleration: float = 0.0, root: np.ndarray = NONE
+        self, axis: np.ndarray, speed_squared: float = 0.0, acceleration: float = 0.0, root: np.ndarray = ZERO
     ) -> StationForces:
         """Compute the inertial forces on masses whose carrier rotates about an axis (3,) and moves the root.
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from beamdyn.equations.beam_in_space.bent_beam import BentBeam
 from beamdyn.equations.beam_in_space.finite_rotations import skew
-from beamdyn.equations.beam_in_space.station_forces import NONE, StationForces
+from beamdyn.equations.beam_in_space.station_forces import ZERO, StationForces
 from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 
@@ -27,8 +27,8 @@ class TipForces(NamedTuple):
         otherwise they refer to the axes at the root.  A couple of fixed direction has no potential.
     """
 
-    force: np.ndarray = NONE
-    couple: np.ndarray = NONE
+    force: np.ndarray = ZERO
+    couple: np.ndarray = ZERO
     follows: bool = False
 
     def forces(self, bent: BentBeam) -> np.ndarray:
