@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from functools import partial
 from typing import Any, Self
 
@@ -191,6 +192,22 @@ def supported_or_range(value: float, error: float, most: int = _MOST_DIGITS) -> 
         return text
     lead = math.floor(math.log10(abs(value)))
     return _with_error(value, error) if math.floor(-math.log10(2 * error)) + lead <= 0 else text
+
+
+def lower_bound(value: float, error: float = 0.0) -> str:
+    """Round a number less its error down to the digits that a table shows: still a lower bound."""
+    return _rounded(value - error, ROUND_FLOOR)
+
+
+def upper_bound(value: float, error: float = 0.0) -> str:
+    """Round a number plus its error up to the digits that a table shows: still an upper bound."""
+    return _rounded(value + error, ROUND_CEILING)
+
+
+def _rounded(value: float, rounding: str) -> str:
+    if not math.isfinite(value):
+        return "none" if math.isnan(value) else str(value)
+    return f"{float(Context(_MOST_DIGITS, rounding).create_decimal(value)):.{_MOST_DIGITS}g}"
 
 
 def _with_error(value: float, error: float) -> str:

@@ -357,17 +357,19 @@ def _scene_at(reference: Scene, at: Mapping[str, float]) -> Scene:
 
 @lru_cache(maxsize=16)
 def _family(reference: Scene, nodes: Nodes, discretization: Discretization) -> PencilFamily:
-    models = [Model(scene, discretization) for scene in _node_scenes(reference, nodes)]
-    pencils, equations = [model.equations.steady() for model in models], models[0].equations
+    scenes = _node_scenes(reference, nodes)
+    first = Model(scenes[0], discretization)
+    equations = [first.equations_near(scene) for scene in scenes]
+    pencils = [each.steady() for each in equations]
     same = all(np.array_equal(pencil.K0, pencils[0].K0) for pencil in pencils)
     directions = range(reference.physics.planes)
     return PencilFamily(
         K0=pencils[0].K0 if same else np.array([pencil.K0 for pencil in pencils]),
         M=np.array([pencil.M for pencil in pencils]),
         K2=np.array([pencil.K2 for pencil in pencils]),
-        loads=np.array([[model.equations.P(i) for i in directions] for model in models]),
-        tips=equations.tips[: len(directions)],
-        coarse=equations.coarse,
+        loads=np.array([[each.P(i) for i in directions] for each in equations]),
+        tips=equations[0].tips[: len(directions)],
+        coarse=equations[0].coarse,
     )
 
 

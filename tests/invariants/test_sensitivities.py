@@ -1,6 +1,7 @@
 """Derivatives by the numbers of a scene: closed forms, differences, other methods, and what has none."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ TWISTED = bd.Scene(
     bd.Mount(0.5, math.pi, 0.3, root_stiffness=5e4),
     physics=bd.Physics(planes=2, shear=True, rotary_inertia=True),
 )
+STATIONS = bd.load_scene(Path(__file__).parents[2] / "examples" / "blade_of_stations.toml")
 WHEEL = bd.RollingWheel(0.3, bd.SpinUp(55.0, 10.0), bd.RoadWave(0.3, 0.01))
 
 
@@ -81,6 +83,16 @@ def test_gyroscopic_and_damped_modes(name, damping):
     reference = differences(scene, found.inputs[0], lambda s: bd.natural_modes(s, 60.0, 3).frequency)
     # of the differences: 1e-3 to the fourth power, and 1e-12 of a frequency over a thousandth of the number
     np.testing.assert_allclose(found.by(name), reference, rtol=1e-7)
+
+
+@pytest.mark.parametrize("name", ["mass_per_length", "bending_stiffness", "second_bending_stiffness"])
+def test_scales_of_a_blade_of_many_stations(name):
+    """Its functions are defined by bending moments, which depend on every property of the blade."""
+    found = bd.frequency_sensitivities(STATIONS, 1.9, 3, [f"beam.scale.{name}"])
+    assert "bending moments" in found.provenance.method
+    reference = differences(STATIONS, found.inputs[0], lambda s: bd.natural_modes(s, 1.9, 3).frequency)
+    np.testing.assert_allclose(found.derivative[0], reference, rtol=0, atol=1e-7)  # of the differences
+    assert (found.error < 1e-7).all()
 
 
 def test_speed():

@@ -3,6 +3,7 @@
 import os
 import signal
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ STATIONS = np.linspace(0, 1, 8)  # with more than six segments functions are of 
 BLADE = bd.Beam.from_stiffness(
     0.05, bd.Table(STATIONS, 0.02 - 0.01 * STATIONS**2), bd.Table(STATIONS, 3e-3 * (1.1 - STATIONS) ** 2), 4e5
 )
+EXAMPLE = bd.load_scene(Path(__file__).parents[2] / "examples" / "blade_of_stations.toml")
 ROAD = bd.RoadWave(wavelength=0.3, velocity_amplitude=0.01)
 ROLLING = bd.RollingWheel(0.3, bd.SteadyRotation(50.0), ROAD)
 TIP = {
@@ -100,6 +102,10 @@ FREQUENCIES = {
         draw(SCALES | SPEED | {"beam.scale.second_bending_stiffness": (0.5, 2.0)}, FEW),
     ),
     "a table of many stations scaled": (bd.Scene(BLADE, bd.Mount(0.1)), draw(SCALES | SPEED, FEW)),
+    "a twisted blade of many stations": (
+        replace(EXAMPLE, beam=replace(EXAMPLE.beam, tip=bd.TipMass(100.0))),
+        draw({"mount.radius": (1.0, 3.0), "beam.tip.mass": (0.0, 300.0), "speed": (0.0, 3.0)}, FEW),
+    ),
     "gravity": (bd.Scene(BEAM, bd.Mount(0.1)), draw(SPEED | {"model.gravity": (0.0, 20.0)})),
     "point masses": (
         bd.Scene(

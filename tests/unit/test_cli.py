@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from beamdyn.analyses.values import parse_speeds
 from beamdyn.cli import BAD_INPUT, DONE, NO_ANSWER
-from beamdyn.common.words import supported, supported_or_range
+from beamdyn.common.words import lower_bound, supported, supported_or_range, upper_bound
 from tests.unit.toml_scenes import without_camber
 
 ROOT = Path(__file__).parents[2]
@@ -336,6 +336,11 @@ def test_a_number_with_its_error_is_rounded_by_less(value, relative):
     if error:
         assert abs(float(number) - value) <= value * relative
         assert float(error) == pytest.approx(value * relative, rel=0.5)
+
+
+@given(st.floats(-1e12, 1e12))
+def test_a_bound_is_rounded_so_that_it_remains_one(value):
+    assert float(lower_bound(value)) <= value <= float(upper_bound(value))
 
 
 @given(st.floats(1e-12, 1e12), st.floats(1e-15, 0.4))

@@ -84,7 +84,7 @@ def test_frequencies(text, hertz):
         (["locus", TYRE, "--speeds", "0:1e60:2 rpm"], "--speeds = 1e+60 rpm"),
         (
             ["response", TYRE, "--speed", "1 rpm", "--frequencies", "1:1e20:2 kHz"],
-            "--frequencies = 1e+20 kHz: at most 1e+09 kHz",
+            "--frequencies = 1e+20 kHz: give at most 1e+09 kHz",
         ),
         (
             ["study", TYRE, "--spread", "beam.density=+-12 g/cm3"],

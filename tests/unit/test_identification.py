@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,6 +24,15 @@ def test_spring_thickness_and_body_are_found_without_noise(seed):
     np.testing.assert_allclose(found.value, [*true.values()], rtol=1e-7)
     assert found.solves <= MOST_SOLVES * len(true)
     assert found.comparison.agrees or np.abs(found.comparison.deviation).max() < 1e-9
+
+
+def test_scales_of_a_blade_of_many_stations_are_found():
+    blade = bd.load_scene(Path(__file__).parents[2] / "examples" / "blade_of_stations.toml")
+    true = {"beam.scale.bending_stiffness": 1.1, "beam.scale.second_bending_stiffness": 0.93}
+    speeds = np.array([0.0, 1.9])
+    frequencies = bd.frequency_locus(with_numbers(blade, true), speeds, 3).frequency
+    found = bd.identify(blade, bd.MeasuredFrequencies(frequencies, speeds), dict.fromkeys(true))
+    np.testing.assert_allclose(found.value, [*true.values()], rtol=1e-7)  # as above
 
 
 def test_intervals_cover_the_numbers_behind_noisy_data():

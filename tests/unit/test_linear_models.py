@@ -108,7 +108,7 @@ REFUSED = {
     "negative frequency": (lambda: bd.frequency_response(SCENE, 5.0, [-1.0]), "frequencies = -1 Hz"),
     "frequency beyond squares": (
         lambda: bd.frequency_response(SCENE, 80.0, [1e308]),
-        "frequencies = 1e+308 Hz: at most 1e+12 Hz",
+        "frequencies = 1e+308 Hz: give at most 1e+12 Hz",
     ),
     "rotating input": (lambda: bd.state_space(SCENE, 5.0, ["n2"]), "speed = 5 rad/s"),
     "rigid direction": (lambda: bd.frequency_response(SCENE, 5.0, [1.0], "tip force across"), "input"),

@@ -16,7 +16,7 @@ from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows, evenly_spread
 from beamdyn.common.results.statements import OUTSIDE, of_kind
-from beamdyn.common.words import supported, supported_or_range
+from beamdyn.common.words import lower_bound, supported, supported_or_range, upper_bound
 from beamdyn.equations.effects import first_drawn, words_of_directions
 from beamdyn.modes.modal.model import BENDING
 from beamdyn.modes.model_error.left_out_effects import where_worst
@@ -267,8 +267,8 @@ def bounds_columns(result: bd.FrequencyBounds) -> Columns:
     return Columns(
         Column("mode", range(1, count + 1)),
         Column("speed", [result.speed] * count, "rad/s", words=None),
-        Column("lower", result.lower, "Hz", form=".10g", words="at least"),
-        Column("upper", result.upper, "Hz", form=".10g", words="at most"),
+        Column("lower", result.lower, "Hz", form=lower_bound, words="at least"),
+        Column("upper", result.upper, "Hz", form=upper_bound, words="at most"),
         Column("relative_width", result.width, form=".0e"),
         title=f"Guaranteed bounds at {result.display_units.speed_unit().say(result.speed, 10)}, of the model",
         note=f"{result.how[:1].upper()}{result.how[1:]}.",

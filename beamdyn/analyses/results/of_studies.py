@@ -27,7 +27,7 @@ from beamdyn.common.results.columns import (
     name_in_heads,
 )
 from beamdyn.common.results.pictures import Figure, figure_of
-from beamdyn.common.words import InputName, supported
+from beamdyn.common.words import InputName, lower_bound, supported, upper_bound
 from beamdyn.equations.effects import first_drawn
 
 if TYPE_CHECKING:
@@ -290,8 +290,8 @@ def _bounds(result: bd.Campbell) -> Iterator[Columns]:
         yield Columns(
             _scenes(result, [label for label, _, _ in each]),
             Column("mode", [_name_below(result, *one) for one in each]),
-            Column("at least", (), "Hz", cells=np.where(known, np.char.mod("%.10g", low), "-").tolist()),
-            Column("at most", high, "Hz", form=".10g"),
+            Column("at least", (), "Hz", cells=np.where(known, [*map(lower_bound, low)], "-").tolist()),
+            Column("at most", high, "Hz", form=upper_bound),
             Column("relative width", (), cells=np.where(known, np.char.mod("%.0e", width), "-").tolist()),
             title=f"Guaranteed bounds at {result.display_units.speed_unit().say(each[0][1])}, of the model",
         )

@@ -30,6 +30,7 @@ from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.eigenproblem import Eigensolver, LeadingSolver, Solver
 from beamdyn.modes.modal.solvers import solver_of
+from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import RIGHT_ANGLE
 from beamdyn.scene.scene import Scene, check_axis
@@ -69,10 +70,26 @@ class Model(FieldsOnly):
     @cached_property
     def _of_fields(self) -> Equations:
         """Equations of motion built from the displacement fields of the straight beam."""
+        return self._in_functions_of(self.scene.modelled_beam)
+
+    def equations_near(self, scene: Scene) -> Equations:
+        """Build the equations of a scene that differs little, in the same functions where these suit it.
+
+        Matrices of nearby scenes then change smoothly.  Functions of bending moments, which depend on all
+        properties of the beam, may otherwise be others after the smallest change.
+        """
+        nearby = Model(scene, self.discretization)
+        beam = self.scene.modelled_beam
+        if scene.beam.matrices is not None or scene.modelled_beam.breakpoints != beam.breakpoints:
+            return nearby.equations
+        return nearby._in_functions_of(beam)
+
+    def _in_functions_of(self, beam: Beam) -> Equations:
+        """Build the equations of motion of the straight beam in the functions for a similar beam."""
         if self.scene.chooses_physics:  # other scenes have been checked: a curved axis needs other equations
             check_axis(self.scene.beam, self.scene.physics)
-        beam = self.scene.modelled_beam
-        scene = replace(self.scene, beam=beam) if self.scene.bends_in_space else self.scene
+        bent = self.scene.bends_in_space
+        scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene
         return assemble_over(scene, self.discretization.spaces(beam))
 
     @cached_property

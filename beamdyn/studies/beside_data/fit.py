@@ -181,7 +181,7 @@ class FittedModes:
             scenes = (
                 self.fitting.scene_at(np.where(np.arange(len(self.x)) == k, at, self.x)) for at in (low, high)
             )
-            pencils = [Model(scene, self.model.discretization).equations.steady() for scene in scenes]
+            pencils = [self.model.equations_near(scene).steady() for scene in scenes]
             changes.append(PencilChange.of(pencils, np.array([-1.0, 1.0]) / (high - low)))
         return changes
 

@@ -301,9 +301,7 @@ def changes_of(model: Model, numbers: Sequence[SceneNumber]) -> Changes:
         try:
             nearby = _resolved(number, lambda value, name=number.name: _pencils(model, name, value))
         except InvalidValue as error:
-            of_fine, of_coarse = (
-                _unknown(len(pencil.M)) for pencil in steady_pencils(model, model.equations.coarse)
-            )
+            of_fine, of_coarse = (_unknown(len(pencil.M)) for pencil in steady_pencils(model))
             refusals.append(f"{number.name} cannot change alone, so that it has no derivative: {error}")
             lacks, weights = of_fine, np.zeros(1)
         else:
@@ -351,20 +349,20 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
     if len(scene.beam.breakpoints) != len(model.scene.beam.breakpoints):
         bound = "a point mass or spring would move away from the tip, or from a jump of the section"
         raise InvalidValue(name, value, bound, "place the point at a small distance from there")
-    nearby = Model(scene, model.discretization)
-    if nearby.equations.size != model.equations.size:
+    equations = model.equations_near(scene)
+    if equations.size != model.equations.size:
         remedy = 'give discretization="fem", or a Ritz of few functions'
         bound = "the number of independent functions differs between nearby designs"
         raise NoModelAnswer(f"discretization = {model.discretization}: {bound}; {remedy}")
-    return steady_pencils(nearby, model.equations.coarse)
+    fine, coarse = equations.steady(), model.equations.coarse
+    if coarse is None:
+        return fine, model.coarser.equations_near(scene).steady()
+    return fine, fine.part(coarse)
 
 
-def steady_pencils(model: Model, coarse: np.ndarray | None) -> tuple[SteadyPencil, SteadyPencil]:
-    """Return the equations of a model at steady speeds, and those of its coarser model.
-
-    The coarser model uses the functions with the indices `coarse`; None if it has different functions.
-    """
-    fine = model.equations.steady()
+def steady_pencils(model: Model) -> tuple[SteadyPencil, SteadyPencil]:
+    """Return the equations of a model at steady speeds, and those of its coarser model."""
+    fine, coarse = model.equations.steady(), model.equations.coarse
     return fine, model.coarser.equations.steady() if coarse is None else fine.part(coarse)
 
 

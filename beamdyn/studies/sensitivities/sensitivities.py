@@ -16,7 +16,6 @@ from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import unannounced
 from beamdyn.common.words import Named, Words
-from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.critical import critical_point
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import Model
@@ -159,7 +158,7 @@ def critical_speed_sensitivities(
     numbers = sensitivity_result.numbers_of(model.scene, names)
     changes = changes_of(model, numbers)
     speeds = model.solver.critical_speed, model.coarse_solver.critical_speed
-    each = [(P, at, critical_vector(P, at)) for P, at in zip(_pencils(model), speeds, strict=True)]
+    each = [(P, at, critical_vector(P, at)) for P, at in zip(steady_pencils(model), speeds, strict=True)]
     derivative, error = _compared(changes, lambda k, dP: critical_derivative(*each[k], dP), found.speed)
     result = numbers, derivative, error, (*found.warnings, *changes.refusals), _since(start, model)
     return Sensitivities(("critical speed",), "rad/s", np.array([found.speed]), *result, model.scene)
@@ -249,14 +248,10 @@ def _modes_of(model: Model, speed: float, modes: int) -> tuple[PerturbedModes, P
     """Compute the modes of a model and of its coarser model."""
     fine, coarse = (
         PerturbedModes.of(pencil, speed, found.eigenvalue[0], found.vector[0])
-        for pencil, solver in zip(_pencils(model), (model.solver, model.coarse_solver), strict=True)
+        for pencil, solver in zip(steady_pencils(model), (model.solver, model.coarse_solver), strict=True)
         for found in [solver.solve(np.array([speed]), modes)]
     )
     return fine, coarse
-
-
-def _pencils(model: Model) -> tuple[SteadyPencil, SteadyPencil]:
-    return steady_pencils(model, model.equations.coarse)
 
 
 def _compared(
