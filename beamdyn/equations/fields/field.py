@@ -187,7 +187,8 @@ class Field(ABC):
 
     def is_modelled(self, scene: Scene) -> bool:
         """Return whether the model of a scene includes this field."""
-        return self.requires.items() <= vars(scene.physics).items()
+        physics = scene.physics
+        return all(getattr(physics, name) == value for name, value in self.requires.items())
 
     def complete(self, scene: Scene) -> Scene:
         """Return the scene, extended so that every term of this field is nonzero; by default unchanged."""
