@@ -105,7 +105,7 @@ class _Designs:
             made = self._sweep(np.array([x]))
         except NoAnswer as error:
             return str(error).partition(": ")[2] or str(error)
-        said = dict((*made.refused, *made.unanswered)).get(0)
+        said = made.reasons.get(0)
         words = self.output.words.removeprefix("... ")
         return said or (f"{words}: never" if np.isinf(made.found[0][0]) else f"there is no {words}")
 

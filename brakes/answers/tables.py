@@ -126,7 +126,7 @@ def sweep_table(sweep: InputSweep) -> Group:
     heads = [f"{n} [{u}]" if u else n for n, u in columns(sweep)]
     cells = [[format_number(value) for value in rows[i]] for i in shown]
     title = f"{', '.join(sweep.results)} over {' and '.join(sweep.inputs)}{part}"
-    why = dict((*sweep.refused, *sweep.unanswered))
+    why = sweep.reasons
     if not why:
         return table(title, heads, cells, (), len(sweep.inputs))
     said = ([*row, why.get(int(i), "")] for i, row in zip(shown, cells, strict=True))

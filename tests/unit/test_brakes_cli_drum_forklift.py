@@ -132,8 +132,9 @@ def test_sweep_of_a_drum(run, tmp_path: Path) -> None:
     code, out, err = run("drum", DRUM, *options)
     assert code == DONE and "locked in 1 of 2 cases" in err
     rows = table(path)
-    assert rows[0] == ["friction", "torque_N_m", "pin_1_N"]
+    assert rows[0] == ["friction", "torque_N_m", "pin_1_N", "no_answer"]
     assert float(rows[1][1]) == pytest.approx(TORQUE, rel=1e-11) and rows[2][1] == "nan"
+    assert rows[1][3] == "" and rows[2][3].startswith("locked: friction 1.2 is at or past")
     assert plot.exists() and "262.96" in out
 
 

@@ -107,6 +107,11 @@ class InputSweep(Result):
         yield warned(self.warnings)
 
     @property
+    def reasons(self) -> dict[int, str]:
+        """Return why designs have no result, by their row numbers."""
+        return dict((*self.refused, *self.unanswered))
+
+    @property
     def designs(self) -> Designs:
         """Return the designs, with input values in the units in which the user gave them."""
         each = zip(self.inputs, self.units, self.values, strict=True)
@@ -195,7 +200,7 @@ def swept(
 
 def sweep_csv(swept: InputSweep) -> Columns:
     """Make columns with one row per design: inputs, results, and the reason if a result is missing."""
-    rows, why = [*sweep_rows(swept)], dict(swept.refused)
+    rows, why = [*sweep_rows(swept)], swept.reasons
     named = zip(columns(swept), zip(*rows, strict=True), strict=True)
     each = [column_named(name, values, unit) for (name, unit), values in named]
     reasons = [Column("no_answer", [why.get(row, "") for row in range(len(rows))])] if why else []
