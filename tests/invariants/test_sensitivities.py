@@ -153,6 +153,14 @@ def test_elements_agree():
     np.testing.assert_allclose(fem.relative[largest], ritz.relative[largest], rtol=0, atol=1e-6)
 
 
+def test_the_derivative_by_speed_of_elements_keeps_its_digits():
+    """Stiffnesses of small elements cancel in that of the beam: not every error is magnified by that."""
+    ritz = bd.frequency_sensitivities(OBLIQUE, 50.0, 2, ["speed"])
+    fem = bd.frequency_sensitivities(OBLIQUE, 50.0, 2, ["speed"], discretization=bd.Fem(32))
+    assert (np.abs(fem.derivative - ritz.derivative) <= fem.error + ritz.error).all()
+    assert (fem.error < 1e-3 * np.abs(ritz.derivative)).all()
+
+
 # Near the critical speed; a damper, a mass, a spring; nearer; a stiff spring and a soft hinge, over whose
 # places and stiffness 1 % of the length is a long step.
 @pytest.mark.parametrize(

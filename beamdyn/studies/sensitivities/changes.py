@@ -261,7 +261,7 @@ def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, chang
 # Derivatives of the matrices ----------------------------------------------------------------------
 
 
-_EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to its largest contribution
+EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to its largest contribution
 # Ratio of a polynomial's last term to the matrices below which the interval is resolved.
 _RESOLVED = 1e-13
 # Ratio of the last term to the matrices below which it may be rounding, as with modal damping.
@@ -313,7 +313,7 @@ def changes_of(model: Model, numbers: Sequence[SceneNumber]) -> Changes:
         fine.append(of_fine)
         coarse.append(of_coarse)
         missed.append(lacks)
-        rounding.append(_EPSILON * np.abs(weights).sum())
+        rounding.append(EPSILON * np.abs(weights).sum())
     return Changes((fine, coarse), missed, np.array(rounding), tuple(refusals))
 
 

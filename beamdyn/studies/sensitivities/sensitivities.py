@@ -27,6 +27,7 @@ from beamdyn.steady.crossings import Crossing, label_crossing
 from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.studies.sensitivities import sensitivity_result
 from beamdyn.studies.sensitivities.changes import (
+    EPSILON,
     Changes,
     PencilChange,
     PerturbedModes,
@@ -98,9 +99,9 @@ def frequency_sensitivities(
         numbers = (*numbers, sensitivity_result.SceneNumber(SPEED, "rad/s", found.speed, 0.0))
         rate, other = (np.imag(each.speed_derivatives()) * _HZ for each in both)
         with np.errstate(invalid="ignore"):  # the frequency is 0 if a mode does not vibrate
-            of_shapes = found.error * fine.scales() * _HZ / (found.speed or np.inf)
+            rounding = EPSILON * fine.scales() * _HZ / (found.speed or np.inf)
         derivative = np.vstack([derivative, rate])
-        error = np.vstack([error, np.abs(rate - other) + of_shapes])
+        error = np.vstack([error, np.abs(rate - other) + rounding])
     lost, words = _without_derivative(found)
     # The derivative is proportional to the frequency, and so also has the frequency's relative error.
     error += np.where(lost, 0.0, found.error) * np.abs(derivative)
