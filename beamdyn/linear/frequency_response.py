@@ -209,7 +209,6 @@ def frequency_response(
     refined: Refined = evaluate_accurately(
         with_forces(scene, [drive]), speed, top, modes, tolerance, discretization, evaluate, _DIRECT
     )
-    harmonics, _ = transfer(refined.model, drive, seen, given[:1])
     band = float(given[0]), float(given[-1])
     if not np.isfinite(refined.value).all():
         bad = given[~np.isfinite(refined.value).all(axis=1)][0]
@@ -219,7 +218,7 @@ def frequency_response(
         speed=speed,
         frequencies=given,
         response=refined.value,
-        harmonics=harmonics,
+        harmonics=np.array([*refined.model.drives(drive)]),
         error=refined.error,
         peaks=find_peaks(refined.model, refined.larger, drive, seen, band, tolerance * (modes == "auto")),
         input=f"{drive.label} [{drive.unit}]",

@@ -277,7 +277,8 @@ class ModelAtSpeed(FieldsOnly):
     def _row_at(self, observation: DeflectionAt, equations: Equations) -> Row:
         xi, direction = observation.place(self.scene.beam)
         self._check_direction("output", direction)
-        each = [equations.deflection(np.array([xi]), direction=i)[:, 0] for i in range(equations.planes)]
+        directions, at = range(equations.planes), np.array([xi])
+        each = equations.tips if xi == 1 else [equations.deflection(at, 0, i)[:, 0] for i in directions]
         zero = np.zeros(equations.size)
         if not isinstance(observation, AccelerationAt):
             return Row(each[direction], zero, zero)
