@@ -27,8 +27,7 @@ from brakes.answers.machine import MACHINES
 from brakes.answers.vehicle import BRAKE as VEHICLE
 from brakes.app.bases import base
 from brakes.calipers import NAMED, stop
-from brakes.reproduce.forklift_as_printed import stop_as_printed
-from brakes.reproduce.newton import newton_raphson
+from brakes.reproduce.forklift_as_printed import newton_raphson, stop_as_printed
 from tests.unit.decks_written import LENGTH, elastodyn_blade
 
 BENT = bd.Scene(
