@@ -22,10 +22,10 @@ from beamdyn.common.inputs.described import VariedInput
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, Multipliers, multipliers_of
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart
@@ -34,7 +34,7 @@ _REAL = 1e-3  # imaginary part of a multiplier below which it is real: two multi
 
 
 @dataclass(frozen=True)
-class StabilityLimits(Result):
+class StabilityLimits(SceneResult):
     """Curves between stable and unstable free vibration, over two numbers of a scene in periodic motion.
 
     Parameters
@@ -71,9 +71,6 @@ class StabilityLimits(Result):
     place: np.ndarray
     error: np.ndarray
     multiplier: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield the number of curves and their kinds, for the one-line summary.
