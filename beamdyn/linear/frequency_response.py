@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
@@ -22,7 +22,7 @@ from beamdyn.linear.transfer import check_stable, transfer
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_left_out
 
 _TURN = 2 * np.pi
@@ -31,7 +31,7 @@ _DIRECT = 300  # number of trial functions up to which all are kept: some millis
 
 
 @dataclass(frozen=True)
-class FrequencyResponse(JudgedByRepeating):
+class FrequencyResponse(SceneResult, JudgedByRepeating):
     """Frequency response of a beam to a harmonic excitation at a steady speed.
 
     An input Re(u exp(i 2 pi f t)) gives the sum of Re(H_h u exp(i 2 pi (f + h n) t)) over the harmonics h of
@@ -82,9 +82,6 @@ class FrequencyResponse(JudgedByRepeating):
     input: str
     output: str
     unit: str
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield the largest response, its frequency and its error for a one-line summary.

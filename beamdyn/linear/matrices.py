@@ -26,7 +26,7 @@ from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.repeated import left_out_of_frequencies
 from beamdyn.scene.points import ACROSS
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_left_out
 
 # Largest rounding error of a trial function at nodes, where it is 1 at one node and 0 at all others.
@@ -37,7 +37,7 @@ MOST_JUDGED = 5
 
 
 @dataclass(frozen=True)
-class Matrices(StatesModelError):
+class Matrices(SceneResult, StatesModelError):
     """Equations of motion at a steady speed about the straight beam, M q'' + (C + G) q' + K q = f + B u.
 
     The axes rotate with the carrier, its centre is fixed, and there is no gravity.  `error` is numerical;
@@ -96,10 +96,7 @@ class Matrices(StatesModelError):
     coordinates: tuple[str, ...]
     rows: tuple[str, ...]
     error: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
     equations: Equations = field(repr=False)
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield size, speed, inputs and error of the lowest pole for a one-line summary.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from time import perf_counter
 
@@ -23,7 +23,7 @@ from beamdyn.linear.transfer import check_stable
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
 _TURN = 2 * np.pi
@@ -36,7 +36,7 @@ _SEVERAL = 3.0  # number of standard deviations that a deflection rarely exceeds
 
 
 @dataclass(frozen=True)
-class RandomResponse(JudgedByRepeating):
+class RandomResponse(SceneResult, JudgedByRepeating):
     """Response of a beam to a random input at a steady speed.
 
     Where the excitation has a fixed direction, the statistics vary within a turn, and the values are means
@@ -91,9 +91,6 @@ class RandomResponse(JudgedByRepeating):
     input: str
     output: str
     unit: str
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield the output's rms and its error for a one-line summary; see `Result.headline`."""

@@ -20,13 +20,13 @@ from beamdyn.loads.stations import UNITS
 from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads, window_in
 from beamdyn.modes.model_error.left_out_changes import SolvedValues
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 
 TURNING_POINTS = 1e-6  # error of values at turning points, relative to the largest range
 
 
 @dataclass(frozen=True)
-class LoadCycles(JudgedByRepeating):
+class LoadCycles(SceneResult, JudgedByRepeating):
     """Load cycles of a quantity at one station, by rainflow counting.
 
     `model_error` and `left_out`, computed on first use, are the changes of the largest range by physical
@@ -72,9 +72,6 @@ class LoadCycles(JudgedByRepeating):
     counts: np.ndarray
     start: float
     end: float
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
     error: float = field(default=math.nan, metadata=ADDED_LATER)
 
     loads: ClassVar[TransientLoads | None] = None  # the counted loads; None after loading from a file

@@ -6,7 +6,7 @@ In shapes of arrays, C counts cases (speeds or times), S stations, and K outputs
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import perf_counter
 from typing import Any, ClassVar, NamedTuple
 
@@ -30,7 +30,7 @@ from beamdyn.loads.stations import (
     stations_at,
 )
 from beamdyn.modes.repeated import JudgedByRepeating
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_elastic_limit
 
 REMEDIES = {
@@ -92,7 +92,7 @@ class LargestLoad:
 
 
 @dataclass(frozen=True)
-class SpanLoads(JudgedByRepeating):
+class SpanLoads(SceneResult, JudgedByRepeating):
     """Forces, moments, curvatures, strains and stresses at stations along the span.
 
     C is the number of times or speeds, S the number of stations, d of modelled planes of bending (1 or 2), P
@@ -151,9 +151,6 @@ class SpanLoads(JudgedByRepeating):
     curvature_error: np.ndarray
     strain_error: np.ndarray
     stress_error: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     case: ClassVar[LoadCase]
 

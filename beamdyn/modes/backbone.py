@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
 
@@ -21,7 +21,6 @@ from beamdyn.accuracy.refinement import THREE_DISCRETIZATIONS, error_of_finest
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
 from beamdyn.common.numerics import longer_semi_axis
 from beamdyn.common.results.one_line import error_at_most, number, warned
-from beamdyn.common.results.result import Provenance
 from beamdyn.equations.beam_in_space.rotating_beam import BentState
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
@@ -30,12 +29,12 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesMod
 from beamdyn.modes.modes import provenance_of
 from beamdyn.modes.repeated import left_out_of_frequencies
 from beamdyn.scene.motion import MotionSample
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import check_speeds, refuse_tip_load
 
 
 @dataclass(frozen=True)
-class Backbone(StatesModelError):
+class Backbone(SceneResult, StatesModelError):
     """Frequency of a free vibration over its amplitude a, to first order: f = f0 (1 + k (a/L)^2).
 
     `error` is the error of the coefficient k.  `model_error` and `left_out`, computed at their first use,
@@ -71,9 +70,6 @@ class Backbone(StatesModelError):
     frequency: float
     coefficient: float
     error: float
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the one-line summary of the backbone; see `Result.headline`."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import TypeAlias
 
@@ -17,7 +17,7 @@ import numpy as np
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import count, real
 from beamdyn.common.results.one_line import listed, spanned, warned
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import GROWING, NO_ANSWER, Statement, announced_of_plain_beam
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.flexibility import bound_flexibility
@@ -27,7 +27,7 @@ from beamdyn.modes.planes import refuse_uncovered, separate_planes
 from beamdyn.modes.residual_bound import CoupledEnclosure, Enclosure, PlaneEnclosure
 from beamdyn.modes.ritz_part import MOST_MOMENTS, basis, most_functions, segments_with_functions
 from beamdyn.scene.beam import Beam, PointMass, TipMass
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_static_deflection
 
 _EPS = float(np.finfo(float).eps)
@@ -45,7 +45,7 @@ _OF_DEFLECTION = 1e-3  # relative error of the model that computes the static de
 
 
 @dataclass(frozen=True)
-class FrequencyBounds(Result):
+class FrequencyBounds(SceneResult):
     """Guaranteed bounds of the exact natural frequencies of bending, the lowest first.
 
     Parameters
@@ -82,9 +82,6 @@ class FrequencyBounds(Result):
     upper_squared: np.ndarray
     width: np.ndarray
     how: str
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the one-line summary of the bounds; see `Result.headline`."""

@@ -48,7 +48,7 @@ from beamdyn.modes.model_error.left_out_changes import left_out_of_critical_spee
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.planes import separate_planes
 from beamdyn.scene.mount import aligned_cos_sin
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import LARGE_STRAIN, warn_of_left_out
 
 _BENT = Words(
@@ -63,7 +63,7 @@ _FUNCTIONS = 5
 
 
 @dataclass(frozen=True)
-class CriticalPoint(StatesModelError):
+class CriticalPoint(SceneResult, StatesModelError):
     """Critical speed, at which the stiffness of the rotating beam is singular, with its error.
 
     `error` is the numerical error.  `model_error` and `left_out`, computed at their first use, estimate how
@@ -102,9 +102,6 @@ class CriticalPoint(StatesModelError):
     error: float
     none_below: float
     reason: str
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
     model: Model | None = field(repr=False)
     of_bent_beam: bool = field(default=False, metadata=ADDED_LATER)
 
@@ -334,9 +331,17 @@ def _is_within_theory(model: Model) -> bool:
 
 def _argued(scene: Scene, buckling: Buckling, start: float) -> CriticalPoint:
     """Build the critical point that follows from a theoretical argument alone, without a search."""
-    speed, said = np.inf if buckling.speed is None else buckling.speed, tuple(warn_of_left_out(scene))
-    argued = Provenance.since(start, "an argument", "nothing")
-    return CriticalPoint(speed, 0.0, buckling.none_below or speed, buckling.why, said, argued, scene, None)
+    speed = np.inf if buckling.speed is None else buckling.speed
+    return CriticalPoint(
+        speed=speed,
+        error=0.0,
+        none_below=buckling.none_below or speed,
+        reason=buckling.why,
+        warnings=tuple(warn_of_left_out(scene)),
+        provenance=Provenance.since(start, "an argument", "nothing"),
+        scene=scene,
+        model=None,
+    )
 
 
 def _warnings(

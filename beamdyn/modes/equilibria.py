@@ -17,7 +17,7 @@ from beamdyn.common.plots.plots import plot_branches
 from beamdyn.common.plots.plots_of_shapes import plot_bent_beam
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.pictures import Axes
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
 from beamdyn.common.words import Words
 from beamdyn.modes.modal import continuation
@@ -35,7 +35,7 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesMod
 from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
 from beamdyn.modes.modes import provenance_of
 from beamdyn.scene.mount import Mount, aligned_cos_sin
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import check_speeds
 
 _FINE = 0.05  # arc length of a step, small enough for smooth curves in a plot
@@ -49,7 +49,7 @@ _OF_LOADS = 16 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
-class Equilibrium(StatesModelError):
+class Equilibrium(SceneResult, StatesModelError):
     """Equilibrium of a beam at a steady speed, with any deflection.
 
     `error` is the numerical error.  `model_error` and `left_out`, computed at their first use, estimate how
@@ -94,9 +94,6 @@ class Equilibrium(StatesModelError):
     error: float
     stable: bool
     growth_rate: float
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
     model: Model = field(repr=False)
 
     def headline(self) -> Iterator[str]:
@@ -280,7 +277,7 @@ class EquilibriumBranch:
 
 
 @dataclass(frozen=True)
-class EquilibriumBranches(Result):
+class EquilibriumBranches(SceneResult):
     """Branches of equilibria from rest to a top speed.
 
     Parameters
@@ -307,9 +304,6 @@ class EquilibriumBranches(Result):
     top_speed: float
     branches: tuple[EquilibriumBranch, ...]
     critical_speed: float
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the one-line summary of the branches; see `Result.headline`."""

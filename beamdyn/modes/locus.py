@@ -19,7 +19,6 @@ from beamdyn.common.plots.plots import plot_locus, plot_locus_by_plane
 from beamdyn.common.results.columns import evenly_spread
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, states, warned
 from beamdyn.common.results.pictures import Axes
-from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import announced
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
@@ -29,7 +28,7 @@ from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_changes import left_out_with_modes
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.modes import drawn_order, frequency_of, provenance_of, status_of, warn_of_modes
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import check_speeds
 
 _MOST_JUDGED = 16  # largest number of speeds of a locus at which the model error is computed
@@ -37,7 +36,7 @@ _EXTRA_MODES = 2  # number of additional higher modes, with which the requested 
 
 
 @dataclass(frozen=True)
-class Locus(TellsKinds, StatesModelError):
+class Locus(TellsKinds, SceneResult, StatesModelError):
     """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
 
     `error` is the numerical error.  `model_error` (k, modes) and `left_out`, computed at their first use,
@@ -90,9 +89,6 @@ class Locus(TellsKinds, StatesModelError):
     plane_share: np.ndarray
     static_deflection: np.ndarray
     axial_strain: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
     model: Model = field(repr=False)
     # Eigenvalues (S, k) in ascending order, including additional higher modes.
     ascending: np.ndarray = field(repr=False)

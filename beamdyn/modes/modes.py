@@ -36,7 +36,7 @@ from beamdyn.modes.modal.model import (
     warn_of_straight,
 )
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection, warn_of_strain
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ Mesh: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
-class Modes(TellsKinds, StatesModelError):
+class Modes(TellsKinds, SceneResult, StatesModelError):
     """Natural modes at one speed, the lowest first.
 
     `error` is the numerical error.  `model_error` (m,) and `left_out`, computed at their first use, estimate
@@ -113,9 +113,6 @@ class Modes(TellsKinds, StatesModelError):
     angular_load_across: np.ndarray
     static_deflection: float
     axial_strain: float
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
     vectors: np.ndarray = field(repr=False)
     model: Model = field(repr=False)
     kinds: np.ndarray | None = field(default=None, repr=False, metadata=ADDED_LATER)

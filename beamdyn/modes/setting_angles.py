@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import ClassVar
 
@@ -23,7 +23,7 @@ from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.model import Model, static_load
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 
 _LINEAR = "the limits are those of linear theory: of a bent beam the loci have another shape at every angle"
@@ -32,7 +32,7 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class SettingAngleLimits(JudgedByRepeating):
+class SettingAngleLimits(SceneResult, JudgedByRepeating):
     """Setting angles between which the first frequency rises and then falls with speed (unpacks as two).
 
     Below `first` the frequency falls from speed 0 on; between both angles it rises and then falls before the
@@ -69,9 +69,6 @@ class SettingAngleLimits(JudgedByRepeating):
     error: float
     top_speed: float
     static_deflection: float
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     follows_stiffness: ClassVar[bool] = False
     judged_value = "the setting angles"

@@ -13,6 +13,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue, kind, moderate, not_negative, refuse, set_fields
 from beamdyn.common.results.columns import SI_UNITS, DisplayUnits
 from beamdyn.common.results.one_line import OneLine, given_fields, number
+from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.words import Named, Setting, Words
 from beamdyn.scene.beam import OFFSETS, Beam
@@ -454,3 +455,22 @@ def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     if beam.strip is not None and (physics.camber or physics.torsion):  # deflections vary across the width
         given["mass_per_length"] = _with_corners(beam, physics.planes if physics.camber else 1)
     return replace(beam, **given) if given else beam
+
+
+@dataclass(frozen=True, kw_only=True)
+class SceneResult(Result):
+    """Base of results of one scene; their own fields come first.
+
+    Attributes
+    ----------
+    warnings : tuple of str
+        Limitations of the result.
+    provenance : Provenance
+        How the result was computed.
+    scene : Scene
+        The scene, with its physics chosen.
+    """
+
+    warnings: tuple[str, ...]
+    provenance: Provenance
+    scene: Scene = field(repr=False)

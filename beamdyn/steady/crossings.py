@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,7 +11,6 @@ import numpy as np
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.pictures import Axes
-from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words
 from beamdyn.modes.modal.discretization_choice import choose_model
@@ -19,7 +18,7 @@ from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.left_out_changes import find_unlisted, left_out_of_modes, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import SceneResult
 
 KINDS = ("forced", "parametric")
 _STEP = 1e-4  # relative step of the speed for the slope of the frequencies
@@ -80,7 +79,7 @@ def label_crossing(line: Line, kind: str, mode: int, second_mode: int | None = N
 
 
 @dataclass(frozen=True)
-class Crossings(StatesModelError, Sequence[Crossing]):
+class Crossings(SceneResult, StatesModelError, Sequence[Crossing]):
     """List of crossings of excitation lines with natural frequencies, by ascending speed.
 
     Parameters
@@ -122,9 +121,6 @@ class Crossings(StatesModelError, Sequence[Crossing]):
     order: int
     unlisted: int
     may_peak: int
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield number, speeds and error of the crossings for a one-line summary; see `Result.headline`."""

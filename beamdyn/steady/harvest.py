@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
@@ -29,7 +29,7 @@ from beamdyn.modes.modal.model import reduce_to_modes
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.harvester import Electrodes
 from beamdyn.scene.motion import RollingWheel
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import list_speeds
 from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.periodic_system import (
@@ -52,7 +52,7 @@ _POWER = "mean power [W]"
 
 
 @dataclass(frozen=True)
-class Harvest(JudgedByRepeating):
+class Harvest(SceneResult, JudgedByRepeating):
     """Harvested power of a piezoelectric beam over speed, in the steady response.
 
     Power and efficiency are means over time, and over the phase between road and rotation where their rates
@@ -110,9 +110,6 @@ class Harvest(JudgedByRepeating):
     strain_error: np.ndarray
     status: np.ndarray
     resonances: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
     road: RoadHarvest | None = None
 
     judged_value = "the largest power"

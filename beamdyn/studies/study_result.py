@@ -19,12 +19,11 @@ from beamdyn.common.plots.maps import MapAnswer, MapInput, map_size, plot_maps
 from beamdyn.common.results.columns import ShownUnit, evenly_spread
 from beamdyn.common.results.one_line import counted, error_at_most, spanned, warned
 from beamdyn.common.results.pictures import Axes, add_legend
-from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import InputValue, Statement, joined
 from beamdyn.common.words import InputName, Part, Words
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.numbers import SPEED, number_at, with_numbers
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.studies.answers import NO_ANSWERS, REFUSED
 from beamdyn.studies.one_by_one import join_effects, left_out_of_design
 from beamdyn.studies.questions import StudyQuestion
@@ -36,7 +35,7 @@ _MOST_AXES = 3  # largest number of inputs of which all extremes are combined
 
 
 @dataclass(frozen=True)
-class Study(StatesModelError):
+class Study(SceneResult, StatesModelError):
     """Results over combinations of inputs; computed by `study`.
 
     The shape (n1, ..., nd) has an axis for each input, in order, or one axis for all inputs that are varied
@@ -93,9 +92,6 @@ class Study(StatesModelError):
     value: np.ndarray
     error: np.ndarray
     status: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
     question: StudyQuestion = field(repr=False)
     typed_units: Mapping[str, ShownUnit] = field(default_factory=dict, repr=False)
 

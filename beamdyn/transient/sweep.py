@@ -6,7 +6,7 @@ import pickle
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import takewhile
 from pathlib import Path
@@ -34,7 +34,7 @@ from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_p
 from beamdyn.modes.model_error.left_out_changes import nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import check_picklable
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import list_speeds, warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest, solve_chunk
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
@@ -70,7 +70,7 @@ class SweepInterrupted(RunInterrupted):
 
 
 @dataclass(frozen=True)
-class Sweep(StatesModelError):
+class Sweep(SceneResult, StatesModelError):
     """Largest tip deflections in transients, over the final speed.
 
     Parameters
@@ -118,9 +118,6 @@ class Sweep(StatesModelError):
     status: tuple[str, ...]
     window: tuple[float, float]
     t_end: float
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     judged_by_solving: ClassVar[bool] = True
 

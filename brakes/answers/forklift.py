@@ -32,10 +32,9 @@ from brakes.answers.tables import (
     take_from,
 )
 from brakes.config.forklift import ForkliftInput, StageName
-from brakes.drawings.chain import line_sketch
 from brakes.drawings.duo_servo import duo_servo
 from brakes.drawings.forklift import answer_drawings, outcome
-from brakes.drawings.sketches import duo_servo_sketch, levers_sketch, truck_sketch
+from brakes.drawings.sketches import duo_servo_sketch, levers_sketch, line_sketch, truck_sketch
 from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow_shoes, internal_forces, stop
 
 _VEHICLE = (

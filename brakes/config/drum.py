@@ -13,8 +13,7 @@ from pydantic import Field, create_model
 from beamdyn.common.edge.config import CoreSection, MadeSection, fields_of, parse, read, section_of, validated
 from beamdyn.common.edge.inputs import Section, in_range, of_file
 from beamdyn.common.inputs.checks import InvalidValue
-from brakes.config.heat import HeatInput
-from brakes.config.load import LoadInput, RubbingInput
+from brakes.config.load import HeatInput, LoadInput, RubbingInput
 from brakes.drum import BrakeResult, DrumBrake, Shoe, brake_torque, duplex, simplex
 
 __all__ = ["DrumInput", "drum_from_dict", "load_drum", "parse_drum"]

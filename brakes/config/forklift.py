@@ -15,7 +15,7 @@ from pydantic import create_model, model_validator
 from beamdyn.common.edge.config import CoreSection, MadeSection, fields_of, parse, read, section_of, validated
 from beamdyn.common.edge.inputs import Quantity, Section, SlopeQuantity, of_file
 from brakes.chain import Drums, HydraulicLine, Pedal
-from brakes.config.heat import REPEATED
+from brakes.config.load import REPEATED
 from brakes.forklift import DuoServo, Levers, ShoeMotion, StopConditions, Truck
 from brakes.vehicle.stop import STEEPEST, SlopeAngle
 

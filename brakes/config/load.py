@@ -1,12 +1,15 @@
-"""Tables of input files that all brakes share: load, direction of rotation, and friction."""
+"""Tables of input files that all brakes share: load, direction, friction, and repeated stops."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from beamdyn.common.edge.config import CoreSection, fields_of, section_of
 from beamdyn.common.edge.inputs import Quantity, Section
+from beamdyn.common.edge.units import InvalidInput, quantity
+from brakes.common.heat import Duty, FrictionCurve
 from brakes.common.loads import wheel_cylinder_force
 
 _DIRECTION = Field(description="direction of the drum")
@@ -49,3 +52,31 @@ class LoadInput(Section):
         if self.line_pressure is not None:
             return {"force": wheel_cylinder_force(self.cylinder_bore, self.line_pressure)}
         return {name: value for name, value in self if value is not None}
+
+
+_SUCH_AS = 'such as [["20 degC", 0.4], ["300 degC", 0.3]]'
+
+
+class CurveQuantity(Quantity):
+    """An input that is a list of rows, each with a temperature and a friction coefficient."""
+
+    @property
+    def bounds(self) -> str:
+        """An example of rows, for messages."""
+        return _SUCH_AS
+
+    def parse(self, given: object) -> Any:
+        """Return the rows as temperatures [K] and friction coefficients."""
+        if not isinstance(given, list) or any(not isinstance(row, list) or len(row) != 2 for row in given):
+            raise InvalidInput("", given, f"give rows {_SUCH_AS}")
+        return tuple((quantity(at, "K"), Quantity(least=self.least).parse(mu)) for at, mu in given)
+
+
+_TABLES = {FrictionCurve: CurveQuantity}
+_OF_A_STOP = ("inertia", "speed", "heated_mass", "specific_heat", "load_torque", "free_angle", "most_pv")
+REPEATED = fields_of(Duty, _TABLES, _OF_A_STOP)  # keys of [heat] in a file that describes the stop itself
+
+if TYPE_CHECKING:
+    HeatInput = CoreSection
+else:
+    HeatInput = section_of(Duty, tables=_TABLES)

@@ -9,8 +9,7 @@ from pydantic import create_model
 
 from beamdyn.common.edge.config import CoreSection, MadeSection, section_of
 from beamdyn.common.edge.inputs import in_range, of_file
-from brakes.config.heat import HeatInput
-from brakes.config.load import LoadInput, RubbingInput
+from brakes.config.load import HeatInput, LoadInput, RubbingInput
 from brakes.machines import Machine, MachineResult, solve_brake
 
 

@@ -6,9 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
 from beamdyn.common.drawing.layout import Rows
-from beamdyn.common.drawing.on_axes import draw_in
+from beamdyn.common.drawing.on_axes import draw_in, plot_charts_of_one_x
 from beamdyn.common.drawing.shapes import (
     Arrow,
     Chart,

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from beamdyn.common.drawing.chart_on_axes import plot_chart
+from beamdyn.common.drawing.on_axes import plot_chart
 from beamdyn.common.drawing.shapes import (
     Arrow,
     Chart,

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from beamdyn.common.drawing.chart_on_axes import plot_chart
-from beamdyn.common.drawing.on_axes import draw_in
+from beamdyn.common.drawing.on_axes import draw_in, plot_chart
 from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartCurve, ChartMark, Drawing
 from brakes.machines import MachineResult, solve_brake
 

@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.drawing.chart_on_axes import plot_charts_of_one_x
 from beamdyn.common.drawing.layout import Fit, Paper
-from beamdyn.common.drawing.on_axes import draw_in, draw_on, figure_of, frame_of
+from beamdyn.common.drawing.on_axes import draw_in, draw_on, figure_of, frame_of, plot_charts_of_one_x
 from beamdyn.common.drawing.shapes import (
     Arrow,
     Chart,

@@ -1,4 +1,4 @@
-"""Sketches that explain the symbols in forms: truck, duo-servo brake, drum brake, cylinder."""
+"""Sketches that explain the symbols in forms: truck, duo-servo brake, drum brake, cylinders, wheel."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from brakes.drawings.forklift import draw_chassis
 from brakes.forklift import BENDIX_12_5, Truck
 
 _SLOPE = np.radians(14.0)
-_DOWN, _UP = (0.0, -1.0), (0.0, 1.0)
+_DOWN, _UP, _LEFT = (0.0, -1.0), (0.0, 1.0), (-1.0, 0.0)
 
 
 # Forklift -------------------------------------------------------------------------------------------------
@@ -189,3 +189,35 @@ def cylinder_sketch() -> Drawing:
     s.dashed((-0.35, -0.25), (0.0, -0.25))
     s.length("d", (-0.22, -0.25), (-0.22, 0.25), (-1.0, 0.0))
     return s.drawing("Cylinder", "The bore of a cylinder and its pressure: d, p_h")
+
+
+def line_sketch() -> Rows:
+    """Sketch bores and travels of a hydraulic line's cylinders."""
+    return [[_cylinder("Master cylinder", "d_m", "s_0"), _cylinder("Wheel cylinder", "d_w", "s_w")]]
+
+
+def _cylinder(title: str, bore: str, travel: str) -> Drawing:
+    """Sketch a cylinder with its piston, its bore and the travel of the piston."""
+    s, half = Sketch(), 0.3
+    s.add(
+        Outline([(0, half), (1.2, half), (1.2, -half), (0, -half)], "body", 1.4, closed=True, filled=True),
+        Outline([(0.45, half - 0.02), (0.45, 0.02 - half)], "contact", 4.0),
+        Outline([(0.45, 0.0), (-0.45, 0.0)], "support", 4.0),
+    )
+    s.dashed((1.2, half), (1.85, half))
+    s.dashed((1.2, -half), (1.85, -half))
+    s.length(bore, (1.7, -half), (1.7, half), (1.0, 0.0))
+    s.dashed((0.45, -half), (0.45, -1.1))
+    s.dashed((0.85, half), (0.85, -1.1))
+    s.length(travel, (0.45, -1.0), (0.85, -1.0), _DOWN)
+    return s.drawing(title, f"{title}: bore {bore}, travel of its piston {travel}")
+
+
+def wheel_sketch() -> Drawing:
+    """Sketch the radii of a braked wheel and of its drum."""
+    s = Sketch()
+    s.add(Disc((0.0, 0.0), 1.0, "wheel", 1.4, filled=True), Disc((0.0, 0.0), 0.5, "neutral", 1.4))
+    s.add(Symbol("cross", (0.0, 0.0), "axis", 9.0))
+    s.length("r", (0.0, 0.0), (0.35, 0.35), (-1.0, 1.0))
+    s.length("r_w", (0.0, 0.0), (-0.9, -0.44), _LEFT)
+    return s.drawing("Wheel and drum", "A braked wheel and its drum: r_w, r")

@@ -8,8 +8,7 @@ from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Outline, Symbol
 from beamdyn.common.drawing.sketch import Sketch
 from brakes.drawings.arrows import ForceArrows
-from brakes.drawings.chain import line_sketch, wheel_sketch
-from brakes.drawings.sketches import truck_sketch
+from brakes.drawings.sketches import line_sketch, truck_sketch, wheel_sketch
 from brakes.vehicle import Holding, Vehicle
 
 _WHEEL = 0.16  # radius of the drawn wheels, over the wheelbase

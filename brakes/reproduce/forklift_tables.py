@@ -19,8 +19,7 @@ from brakes.forklift import BENDIX_12_5, Stop, follow_shoes, internal_forces, st
 from brakes.published import load
 from brakes.reproduce import forklift_as_printed as as_printed
 from brakes.reproduce.common import Cell, PrintedTable, errata_table, step
-from brakes.reproduce.forklift_as_printed import BRAKE, FORCES, VEHICLE
-from brakes.reproduce.newton import newton_raphson
+from brakes.reproduce.forklift_as_printed import BRAKE, FORCES, VEHICLE, newton_raphson
 
 PAPER = load("yoo_1997")
 _INPUT = values_alone(PAPER["input"])

@@ -7,7 +7,7 @@ import pytest
 
 nicegui = pytest.importorskip("nicegui", reason="NiceGUI, the extra 'app', is missing")
 
-from beamdyn.common.screens.header import STYLE  # noqa: E402
+from beamdyn.common.screens.page import STYLE  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
 TOOLKIT = ("quasar.unimportant.css", "quasar.important.css", "nicegui.css")

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from brakes import forklift
 from brakes.forklift import BENDIX_12_5, DuoServo, Levers, StopConditions, Truck, internal_forces
 from brakes.planar import Mechanism, RotationLock
-from brakes.reproduce.newton import newton_raphson
+from brakes.reproduce.forklift_as_printed import newton_raphson
 
 G = 9.806
 CLEARANCES = [0.0052, 0.0106, 0.0211]

@@ -8,7 +8,7 @@ import pytest
 from brakes import forklift
 from brakes.published import load
 from brakes.reproduce import forklift_as_printed as as_printed
-from brakes.reproduce.newton import newton_raphson
+from brakes.reproduce.forklift_as_printed import newton_raphson
 
 PAPER = load("yoo_1997")
 KMH = 1 / 3.6

@@ -27,8 +27,7 @@ from brakes.answers.machine import MACHINES
 from brakes.answers.vehicle import BRAKE as VEHICLE
 from brakes.app.bases import base
 from brakes.calipers import NAMED, stop
-from brakes.reproduce.forklift_as_printed import stop_as_printed
-from brakes.reproduce.newton import newton_raphson
+from brakes.reproduce.forklift_as_printed import newton_raphson, stop_as_printed
 from tests.unit.decks_written import LENGTH, elastodyn_blade
 
 BENT = bd.Scene(
@@ -85,6 +84,7 @@ def _transient() -> bd.Transient:
 
 
 BASES = {
+    "SceneResult",
     "Answer",
     "PlanarAnswer",
     "RubbingAnswer",
@@ -209,8 +209,8 @@ EXAMPLES_OF_INPUTS = (
 def cycles_of(loads: bd.TransientLoads) -> bd.LoadCycles:
     """Return cycles like those of `count_cycles`, which needs the package that counts."""
     ranges, means, counts = np.array([1e-4, 3e-4]), np.zeros(2), np.array([1.0, 0.5])
-    what = ("strain", 0, 0.0, ranges, means, counts, 0.0, 1.0, ())
-    return bd.LoadCycles(*what, loads.provenance, loads.scene)
+    what = ("strain", 0, 0.0, ranges, means, counts, 0.0, 1.0)
+    return bd.LoadCycles(*what, warnings=(), provenance=loads.provenance, scene=loads.scene)
 
 
 @cache

@@ -11,9 +11,8 @@ import pytest
 import beamdyn as bd
 from beamdyn.scene.motion import check_consistent
 from beamdyn.studies.floquet.interpolation import interpolate_on_grid
-from beamdyn.studies.floquet.monodromy import Monodromy
+from beamdyn.studies.floquet.monodromy import Monodromy, period_of
 from beamdyn.studies.floquet.multipliers import multipliers_of
-from beamdyn.studies.floquet.period import period_of
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 
 STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -10,8 +10,7 @@ import pytest
 
 from brakes import forklift
 from brakes.forklift import BENDIX_12_5, Levers, StopConditions, Truck, internal_forces
-from brakes.reproduce.forklift_as_printed import stop_as_printed
-from brakes.reproduce.newton import newton_raphson
+from brakes.reproduce.forklift_as_printed import newton_raphson, stop_as_printed
 from tests.unit.refusals import refused
 
 TRUCK = {

@@ -55,8 +55,9 @@ def make_read_only(value: Any) -> Any:
 
 @cache
 def _public_fields(kind: type) -> tuple[str, ...]:
-    """List the names of the public fields of a dataclass; none of another class."""
-    return tuple(f.name for f in dataclasses.fields(kind) if f.repr) if dataclasses.is_dataclass(kind) else ()
+    """List the names of the public fields of a dataclass, those by keyword last; none of another class."""
+    every = dataclasses.fields(kind) if dataclasses.is_dataclass(kind) else ()
+    return tuple(f.name for f in sorted(every, key=lambda f: f.kw_only is True) if f.repr)
 
 
 def _may_hold_arrays(value: Any) -> bool:

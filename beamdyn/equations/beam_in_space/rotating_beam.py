@@ -6,6 +6,12 @@ forces by the root's motion are exact.  The gyroscopic matrix follows from them:
 inertial force by a unit angular acceleration, and E the derivative of p with respect to the coordinates; the
 gyroscopic matrix per speed is E - E^T.
 
+With the prebend angle b and the sweep angle a of a curved beam, the local axes are the root's axes rotated by
+b about the third axis, then by -a about the second, so that the unloaded beam points along
+(cos a cos b, cos a sin b, sin a).  The curvature is
+
+    k1 = b' sin a,   k2 = -a',   k3 = b' cos a.
+
 In shapes of arrays, n counts coordinates, m those in a reduced model, N Gauss points along the beam, and k
 given positions.
 """
@@ -22,12 +28,26 @@ from numpy.polynomial import legendre
 from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.assembly import damping_terms
 from beamdyn.equations.beam_in_space import bent_beam
-from beamdyn.equations.beam_in_space.axis_of_beam import curve_of_axis
-from beamdyn.equations.beam_in_space.finite_rotations import turn, turn_law, turn_tensors
+from beamdyn.equations.beam_in_space.finite_rotations import (
+    CONJUGATE,
+    UNIT,
+    product,
+    quaternions_by_vectors,
+    turn,
+    turn_law,
+    turn_tensors,
+)
 from beamdyn.equations.beam_in_space.moving_beam import Carrier, MovingBeam
 from beamdyn.equations.beam_in_space.station_forces import BeamStations, Masses, StationForces
 from beamdyn.equations.beam_in_space.tip_forces import TipForces, forces_at_tip
-from beamdyn.equations.discretization import CLAMPED, FIXED, ArcQuadrature, Discretization, RootConditions
+from beamdyn.equations.discretization import (
+    CLAMPED,
+    FIXED,
+    ArcQuadrature,
+    Discretization,
+    RootConditions,
+    Sampler,
+)
 from beamdyn.equations.equations_of_motion import Equations, Shape, SteadyPencil
 from beamdyn.equations.fields.bending_shear_stretch import Bending, SecondBending, SecondShear, Shear
 from beamdyn.equations.fields.field import Deflection, Load, Term
@@ -36,6 +56,7 @@ from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
+from beamdyn.scene.profile import ONE
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.section_matrices import split_mass
 from beamdyn.scene.sections import offset_components
@@ -406,3 +427,19 @@ class DeflectedFunctions(FieldsOnly):
         moving = self.bent.displacement_rates[self.place, 1 + self.direction]
         rule = stations.quadrature.interpolate_to if order else stations.quadrature.integrate_to
         return stations.length * moving @ rule(xi).T
+
+
+_STRAIGHT = ONE.scaled(0.0)
+
+
+def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np.ndarray]:
+    """Compute the axis' curvature (3, N) [1/m] at N Gauss points, and kinks (quaternions) before cells."""
+    cells, sweep, prebend = quadrature.cells, beam.sweep or _STRAIGHT, beam.prebend or _STRAIGHT
+    at_points = Sampler.on_cells(cells)
+    a = at_points(sweep)
+    swept, bent = (at_points(angle.derivative()) / beam.length for angle in (sweep, prebend))
+    curvature = np.stack([bent * np.sin(a), -swept, bent * np.cos(a)])
+    # Angles just inside both ends of each cell, as properties may jump between cells.
+    a, b = (np.stack(angle.split(tuple(cells.ends)).end_values())[..., None] for angle in (sweep, prebend))
+    begin, end = product(quaternions_by_vectors(b * [0, 0, 1]), quaternions_by_vectors(a * [0, -1, 0]))
+    return curvature, product(np.concatenate([UNIT[None], end[:-1]]) * CONJUGATE, begin)

@@ -22,7 +22,7 @@ straight.  Derivation: docs/conventions.md and tests/invariants/test_offsets.py.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache, reduce
 from itertools import chain, combinations, combinations_with_replacement, product
@@ -30,9 +30,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from beamdyn.equations import explanations as why
 from beamdyn.equations.discretization import RootConditions, Spaces
+from beamdyn.equations.explanations import Condition, Explanation
 from beamdyn.equations.fields.field import Load, Term
-from beamdyn.equations.fields.offset_names import NAMES, NAMES_OF_LOADS
 from beamdyn.equations.fields.transverse import Pair, Trial, axis_in_section
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
@@ -42,6 +43,59 @@ from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.profile import ONE, Profile
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import offset_components
+
+NAMES: dict[tuple[Quantity, int], str] = {
+    ("unity", 2): "mass of offsets",
+    ("speed", 1): "Coriolis coupling of offsets",
+    ("acceleration", 0): "Euler coupling of offsets",
+    ("speed_squared", 0): "rotation of offsets",
+    ("root_axial", 0): "tension by root acceleration of offsets",
+    ("root_transverse", 0): "root acceleration of offsets",
+    ("root_across", 0): "root acceleration of offsets",
+}
+NAMES_OF_LOADS: dict[Quantity, str] = {
+    "acceleration": "angular acceleration on offsets",
+    "speed_squared": "rotation on offsets",
+    "root_axial": "axial root acceleration on offsets",
+    "root_transverse": "root acceleration on offsets",
+    "root_across": "root acceleration on offsets",
+}
+_BESIDE = Condition(lambda s: s.scene.beam.has_offsets, "the centres of mass and tension are on the axis")
+_ROTATES_ALONG = Condition(
+    lambda s: bool(s.scene.mount.precone) or s.scene.physics.stretch,
+    "no precone, and stretch is not modelled",
+)
+EXPLANATIONS: Mapping[str, Explanation] = {
+    "mass of offsets": Explanation("m c (w'' + θ'')", "the centre of mass lies beside the axis", (_BESIDE,)),
+    "Coriolis coupling of offsets": Explanation(
+        "2 ω sin(η) m c (w' + θ')", "masses move beside the axis", (_BESIDE, why.TURNS, _ROTATES_ALONG)
+    ),
+    "Euler coupling of offsets": Explanation(
+        "ω' x m c (u'^2 + θ^2)", "the speed varies", (_BESIDE, why.ACCELERATES)
+    ),
+    "rotation of offsets": Explanation(
+        "ω² (NB t w'' + m x c w') θ", "rotation pulls at centres beside the axis", (_BESIDE, why.TURNS)
+    ),
+    "tension by root acceleration of offsets": Explanation(
+        "-aO1 (NA t w'' + m c w') θ", why.say_tension, (_BESIDE, why.TENSIONED)
+    ),
+    "root acceleration of offsets": Explanation(
+        "m c (aO2 + aO3) (u'^2 + θ^2)", why.say_static_load, (_BESIDE, why.LOADED)
+    ),
+    "angular acceleration on offsets": Explanation(
+        "ω' m (c + x c θ)", "the speed varies", (_BESIDE, why.ACCELERATES)
+    ),
+    "rotation on offsets": Explanation(
+        "ω² (m c + NB t u'')", "rotation pulls at centres beside the axis", (_BESIDE, why.TURNS)
+    ),
+    "axial root acceleration on offsets": Explanation(
+        "-aO1 (m c u' + NA t u'')", why.say_tension, (_BESIDE, why.TENSIONED)
+    ),
+    "root acceleration on offsets": Explanation(
+        "-(aO2 + aO3) m c θ", why.say_static_load, (_BESIDE, why.LOADED)
+    ),
+}
+
 
 # Index of the first component of c (mass centre), and of t (tension centre), in arrays with both.
 _C, _T = 0, 2

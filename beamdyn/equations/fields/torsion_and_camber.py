@@ -65,8 +65,7 @@ from beamdyn.equations.discretization import CLAMPED, FIXED, RootConditions, Spa
 from beamdyn.equations.explanations import Condition, Explanation
 from beamdyn.equations.fields.bending_shear_stretch import STRETCHED, Bending, Stretch
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
-from beamdyn.equations.fields.offset_names import EXPLANATIONS
-from beamdyn.equations.fields.offsets import Offsets, SectionMotion
+from beamdyn.equations.fields.offsets import EXPLANATIONS, Offsets, SectionMotion
 from beamdyn.equations.fields.strip import StackedSpace, Strip, WidthFunctions, over_tip
 from beamdyn.equations.fields.transverse import TransverseField, Trial, axis_in_section
 from beamdyn.equations.mass import axial_tension

@@ -1,10 +1,11 @@
-"""Comparison of measured frequencies, histories, loads and responses with those of a scene."""
+"""Comparison of measured frequencies, histories, loads and responses with those of a scene, in any unit."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import inf, pi
 from time import perf_counter
 
 import numpy as np
@@ -13,7 +14,7 @@ from beamdyn.common.inputs.checks import kind
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import INPUT, Speeds, Statement, unannounced
-from beamdyn.common.words import Words
+from beamdyn.common.words import Words, percent
 from beamdyn.modes.modes import Modes, natural_modes
 from beamdyn.scene import measured_curves
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
@@ -23,7 +24,6 @@ from beamdyn.studies.beside_data.curve_comparison import CurveComparison
 from beamdyn.studies.beside_data.frequency_comparison import OUTSIDE, FrequencyComparison
 from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.studies.beside_data.single_numbers import explain
-from beamdyn.studies.beside_data.wrong_unit import wrong_unit
 
 # Number of computed modes in excess of the measured ones, among which matching modes are searched.
 _MORE_MODES = 3
@@ -147,23 +147,23 @@ def _beside_curves(scene: Scene, data: measured_curves.MeasuredCurves) -> CurveC
             raise TypeError(f"data = {data!r}: give {kinds}")
     made = found.result.provenance
     return CurveComparison(
-        tuple(data.names),
-        found.unit,
-        data.along[0],
-        data.x,
-        data.columns,
-        found.value,
-        data.allowance,
-        data.half_digits,
-        np.broadcast_to(found.error, found.value.shape),
-        np.full(len(data.names), found.result.left_out_effects.total_of_known),
-        found.speed,
-        found.delay,
-        np.full(len(data.names), found.phase),
-        (*_assumed(data, found.speed), *found.result.warnings),
-        Provenance.since(start, made.method, made.compared_with),
-        scene,
-        data.source,
+        name=tuple(data.names),
+        unit=found.unit,
+        along=data.along[0],
+        x=data.x,
+        measured=data.columns,
+        computed=found.value,
+        allowance=data.allowance,
+        rounding=data.half_digits,
+        error=np.broadcast_to(found.error, found.value.shape),
+        model_error=np.full(len(data.names), found.result.left_out_effects.total_of_known),
+        speed=found.speed,
+        delay=found.delay,
+        phase=np.full(len(data.names), found.phase),
+        warnings=(*_assumed(data, found.speed), *found.result.warnings),
+        provenance=Provenance.since(start, made.method, made.compared_with),
+        scene=scene,
+        source=data.source,
     )
 
 
@@ -265,3 +265,59 @@ class _MeasuredRow:
         for k in sorted(set(range(highest)) - set(self._place.tolist())):
             frequency = number(self.modes.frequency[k], "Hz")
             yield Words(f"mode {k + 1} of the scene, {frequency} at ", Speeds(self.data.speeds[self.row]))
+
+
+_UNITS: Mapping[str, tuple[float, str]] = {  # factor from the unit to hertz, and the name of the unit
+    "2 pi": (2 * pi, "in rad/s, and read as Hz"),
+    "60": (60.0, "in 1/min, and read as Hz"),
+    "1000": (1e3, "in mHz, or in Hz and read as kHz"),
+    "1/(2 pi)": (1 / (2 * pi), "in Hz, and read as rad/s or divided by 2 pi"),
+    "1/60": (1 / 60, "in Hz, and read as 1/min"),
+    "1/1000": (1e-3, "in kHz, and read as Hz"),
+}
+_ALIKE = 0.1  # largest relative deviation that remains with the right unit: models rarely deviate more
+_LESS = 0.5  # largest scatter that remains with the right unit, over the scatter with the assumed unit
+_FEWEST = 2  # smallest number of values needed to detect a common factor
+
+
+def wrong_unit(
+    measured: Sequence[np.ndarray], computed: Sequence[np.ndarray], likeness: Sequence[np.ndarray | None]
+) -> Iterator[Statement]:
+    """Yield a statement if all values deviate by one common factor that is the ratio of two units.
+
+    The values divided by the factor are paired with modes again.  The statement is made if each then has a
+    mode within 10 %, and if the scatter of the ratios of measured to computed values is less than half of
+    that before.
+
+    Parameters
+    ----------
+    measured : sequence of ndarray, each of shape (m,)
+        Measured frequencies at each speed [Hz]; nan if not measured.
+    computed : sequence of ndarray, each of shape (n,)
+        Frequencies of the model at each speed [Hz].
+    likeness : sequence of ndarray, each of shape (m, n), or None
+        Modal assurance criterion of the shapes, as for `pair`.
+    """
+    if sum(int(np.isfinite(each).sum()) for each in measured) < _FEWEST:
+        return
+
+    def logarithms(factor: float) -> np.ndarray:
+        """Compute log(measured / factor / computed) of each value and its mode; inf if it has none."""
+        found = []
+        for values, modes, alike in zip(measured, computed, likeness, strict=True):
+            place, known = pair(values / factor, modes, alike), np.isfinite(values)
+            of_mode = np.where(place == NO_MODE, 1.0, modes[place])
+            found.append(np.where(place == NO_MODE, inf, np.log(values / factor / of_mode))[known])
+        return np.concatenate(found)
+
+    def scatter(logs: np.ndarray) -> float:
+        return float(np.ptp(logs)) if np.isfinite(logs).all() else inf
+
+    as_read = scatter(logarithms(1.0))
+    for name, (factor, words) in _UNITS.items():
+        logs = logarithms(factor)
+        if np.abs(logs).max() <= np.log1p(_ALIKE) and scatter(logs) < _LESS * as_read:
+            off = percent(float(np.abs(np.expm1(logs)).max()))
+            said = f"all measured frequencies are {name} times those of the scene, within {off}: they may be "
+            yield Statement(f"{said}{words}; give them in Hz or rad/s, with the unit", kind=INPUT)
+            return

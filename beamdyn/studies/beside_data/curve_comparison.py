@@ -14,10 +14,10 @@ import numpy as np
 from beamdyn.common.plots.axes_and_lines import panels, set_up_axes
 from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.pictures import COLOURS, Axes, new_axes
-from beamdyn.common.results.result import Provenance, Result, plain
+from beamdyn.common.results.result import plain
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Words, amount, percent
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import SceneResult
 from beamdyn.studies.beside_data.frequency_comparison import AGREES, LEFT_OUT, NOTHING, OUTSIDE, outside
 
 # Verdict if the numerical error is unknown, or if the model error is as large as the curve.
@@ -32,7 +32,7 @@ _WIDE = 0.8  # line width if a curve has more values than the plot has pixels
 
 
 @dataclass(frozen=True)
-class CurveComparison(Result):
+class CurveComparison(SceneResult):
     """Measured curves over time, speed, position or frequency, compared with computed ones of a scene.
 
     Parameters
@@ -91,9 +91,6 @@ class CurveComparison(Result):
     speed: float
     delay: float
     phase: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
     source: str = field(default="", repr=False)
 
     field_units: ClassVar[dict[str, str]] = {"rad/s": "speed", "s": "delay", "rad": "phase"}

@@ -14,12 +14,12 @@ import numpy as np
 from beamdyn.common.plots.plots import mark_points, plot_locus
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import Axes
-from beamdyn.common.results.result import Provenance, Result, plain
+from beamdyn.common.results.result import plain
 from beamdyn.common.results.statements import Speeds, joined, unannounced
 from beamdyn.common.words import InputName, Setting, Words, percent
 from beamdyn.modes.locus import frequency_locus
 from beamdyn.modes.modal.model import TORSION
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import SceneResult
 from beamdyn.studies.beside_data.single_numbers import OneNumberFit, say_value
 
 AGREES, LEFT_OUT, OUTSIDE, ALONE = "agrees", "within the model error", "outside", "no mode"
@@ -30,7 +30,7 @@ _ONE_SPEED = 0.1  # top speed of a plot of data at rest, over the lowest angular
 
 
 @dataclass(frozen=True)
-class FrequencyComparison(Result):
+class FrequencyComparison(SceneResult):
     """Measured natural frequencies, compared with computed ones of a scene.
 
     Parameters
@@ -86,9 +86,6 @@ class FrequencyComparison(Result):
     resembles: tuple[str, ...]
     unmeasured: tuple[str, ...]
     explanations: tuple[OneNumberFit, ...]
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
     source: str = field(default="", repr=False)
 
     field_units: ClassVar[dict[str, str]] = {

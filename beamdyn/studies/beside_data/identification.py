@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -12,11 +12,11 @@ import numpy as np
 from beamdyn.common.inputs.checks import NoModelAnswer
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import Axes
-from beamdyn.common.results.result import Provenance, Result, plain
+from beamdyn.common.results.result import plain
 from beamdyn.common.results.statements import joined
 from beamdyn.common.words import InputName, Words, percent
 from beamdyn.scene.numbers import with_numbers
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.studies.beside_data.frequency_comparison import NOTHING, FrequencyComparison
 from beamdyn.studies.beside_data.separability import NotSeparable
 from beamdyn.studies.beside_data.single_numbers import say_value
@@ -25,7 +25,7 @@ _DIGITS = 4  # number of significant digits of numbers in a line of text
 
 
 @dataclass(frozen=True)
-class Identification(Result):
+class Identification(SceneResult):
     """Numbers of a scene, identified from measured natural frequencies by bounded least squares.
 
     Parameters
@@ -82,9 +82,6 @@ class Identification(Result):
     scatter: float
     outliers: tuple[str, ...]
     solves: int
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one-line summary; see `Result.headline`."""

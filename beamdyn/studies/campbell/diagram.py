@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
 from typing import Any, TypeAlias
@@ -25,7 +25,7 @@ from beamdyn.modes.modal.model import BENDING
 from beamdyn.modes.model_error.left_out_changes import nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.steady.crossings import left_out_of_crossings
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
 from beamdyn.studies.campbell import line_crossings
@@ -38,7 +38,7 @@ Scenes: TypeAlias = "Scene | Sequence[Scene] | Mapping[str, Scene]"
 
 
 @dataclass(frozen=True)
-class Campbell(StatesModelError):
+class Campbell(SceneResult, StatesModelError):
     """Natural frequencies over speed, excitation lines, their crossings and margins.
 
     `left_out`, `model_error` and `left_out_effects`, computed at their first use, estimate how much neglected
@@ -93,9 +93,6 @@ class Campbell(StatesModelError):
     rated: float | None
     operating: tuple[float, float] | None
     unit: str
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)  # the first of the scenes
 
     def headline(self) -> Iterator[str]:
         """Yield numbers of crossings, lines and scenes, and the error, for the one-line summary.

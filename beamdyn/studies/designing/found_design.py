@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,16 +11,16 @@ import numpy as np
 from beamdyn.common.plots.curves import plot_bars
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import Axes
-from beamdyn.common.results.result import Provenance, Result, plain
+from beamdyn.common.results.result import plain
 from beamdyn.common.results.statements import joined
 from beamdyn.common.words import InputName, Words
 from beamdyn.scene.numbers import with_numbers
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.studies.designing.target import Target, say_number
 
 
 @dataclass(frozen=True)
-class FoundDesign(Result):
+class FoundDesign(SceneResult):
     """Numbers of a scene whose results meet the targets, or come nearest to them; computed by `design`.
 
     Parameters
@@ -86,9 +86,6 @@ class FoundDesign(Result):
     proof: str
     why_none: str
     solves: int
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield whether a design was found, and its numbers, for the one-line summary.

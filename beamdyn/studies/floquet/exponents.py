@@ -36,9 +36,8 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.floquet.monodromy import COARSER_STEPS, count_steps, scaled_states
+from beamdyn.studies.floquet.monodromy import COARSER_STEPS, count_steps, rates_of, scaled_states
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED, UNSTABLE
-from beamdyn.studies.floquet.period import rates_of
 from beamdyn.transient.gauss import step_maps, tableau
 from beamdyn.transient.system import ModalSystem
 

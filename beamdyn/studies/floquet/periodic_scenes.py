@@ -18,8 +18,14 @@ from beamdyn.modes.modal.model import Model, find_speed_range
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.numbers import SPEED, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.studies.floquet.monodromy import Monodromy, monodromy
-from beamdyn.studies.floquet.period import MOST_TURNS, meet_again, period_of, rates_of
+from beamdyn.studies.floquet.monodromy import (
+    MOST_TURNS,
+    Monodromy,
+    meet_again,
+    monodromy,
+    period_of,
+    rates_of,
+)
 
 _STRAIGHT = "stability in periodic motion is computed only for the straight beam"
 

@@ -21,12 +21,11 @@ from beamdyn.common.results.statements import GROWING, TOLERANCE, Statement, ann
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import ModalBasis
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_left_out
 from beamdyn.studies.floquet.exponents import largest_exponent
-from beamdyn.studies.floquet.monodromy import COARSER
+from beamdyn.studies.floquet.monodromy import COARSER, meet_again
 from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, multipliers_of
-from beamdyn.studies.floquet.period import meet_again
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes, check_periodic
 
 MULTIPLIERS, EXPONENT = "multipliers", "exponent"
@@ -35,7 +34,7 @@ _BOUNDED = "stability is not decided: the largest exponent is 0 within its error
 
 
 @dataclass(frozen=True)
-class FloquetMultipliers(JudgedByRepeating):
+class FloquetMultipliers(SceneResult, JudgedByRepeating):
     """Floquet multipliers of free vibration about a periodic motion: its growth factors over one period.
 
     `model_error` and `left_out`, computed at their first use, estimate how much neglected physical effects
@@ -83,10 +82,7 @@ class FloquetMultipliers(JudgedByRepeating):
     multiplier_errors: np.ndarray
     krein_sign: np.ndarray
     period: float
-    warnings: tuple[str, ...]
-    provenance: Provenance
     modes: int = field(repr=False)
-    scene: Scene = field(repr=False)
     method: str = field(default=MULTIPLIERS, metadata=ADDED_LATER)
 
     judged_value = "the largest multiplier"

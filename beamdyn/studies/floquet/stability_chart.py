@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from os import PathLike
 from time import perf_counter
@@ -35,13 +35,12 @@ from beamdyn.common.words import InputName, Words
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.numbers import check_path, unit_of
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_left_out
 from beamdyn.studies.floquet.exponents import largest_exponent
 from beamdyn.studies.floquet.interpolation import interpolate_on_grid
-from beamdyn.studies.floquet.monodromy import COARSER, Monodromy
+from beamdyn.studies.floquet.monodromy import COARSER, Monodromy, meet_again, period_of, rates_of
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED, UNSTABLE, multipliers_of
-from beamdyn.studies.floquet.period import meet_again, period_of, rates_of
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes, check_periodic
 from beamdyn.studies.study import VERSIONS
 
@@ -53,7 +52,7 @@ _MOST_ENTRIES = 20_000_000  # largest total number of entries of all matrices, s
 
 
 @dataclass(frozen=True)
-class StabilityChart(JudgedByRepeating):
+class StabilityChart(SceneResult, JudgedByRepeating):
     """Stability of free vibration about a periodic motion, over two numbers of the scene.
 
     `model_error` and `left_out`, computed at their first use, estimate how much neglected physical effects
@@ -97,9 +96,6 @@ class StabilityChart(JudgedByRepeating):
     spectral_radius: np.ndarray
     period: np.ndarray
     integrated: int
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     judged_value = "the largest multiplier"
     counted: ClassVar[str] = "place"

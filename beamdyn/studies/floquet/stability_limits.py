@@ -1,22 +1,32 @@
-"""Stability limits: curves that bound stable regions over two numbers of a scene in periodic motion."""
+"""Stability limits: curves that bound stable regions over two numbers of a scene in periodic motion.
+
+They are computed by continuation, as the roots of a function that is smooth across them.  With damping it is
+the logarithm of the largest multiplier.  Without damping two multipliers m +- sqrt(s) meet on the unit circle
+(at 1 or -1 in a principal tongue, elsewhere for a combination resonance): the function is s, computed from
+their distance if both are on the circle, and from the growth if they left it.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from os import PathLike
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import toms748
 
+from beamdyn.common.inputs.described import VariedInput
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.scene.scene import Scene
-from beamdyn.studies.floquet.limit_curves import LimitTracer
+from beamdyn.scene.scene import Scene, SceneResult
+from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, Multipliers, multipliers_of
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart
 
@@ -24,7 +34,7 @@ _REAL = 1e-3  # imaginary part of a multiplier below which it is real: two multi
 
 
 @dataclass(frozen=True)
-class StabilityLimits(Result):
+class StabilityLimits(SceneResult):
     """Curves between stable and unstable free vibration, over two numbers of a scene in periodic motion.
 
     Parameters
@@ -61,9 +71,6 @@ class StabilityLimits(Result):
     place: np.ndarray
     error: np.ndarray
     multiplier: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield the number of curves and their kinds, for the one-line summary.
@@ -165,3 +172,204 @@ def _warnings(error: np.ndarray) -> Iterator[Statement]:
             f"at {counted(number, 'point')} of the limits the verdicts on both sides are uncertain: see error"
         )
         yield Statement(said, kind=TOLERANCE, quantity="undecided", value=number / len(error))
+
+
+# Largest, first and smallest step along a curve, as fractions of the ranges.
+_STEP, _FIRST, _LEAST = 1 / 20, 1 / 160, 1e-6
+_WIDER = 2.0  # largest ratio of a step along a curve to the previous step
+# Smallest cosine of the angle between successive steps, and at the first step.
+_TURNS, _FIRST_TURNS = 0.9, 0.2
+# Factor by which the half width of a bracket about the limit is reduced, and the smallest half width.
+_NARROWER, _NARROWEST = 0.25, 1e-7
+_FINE = 1e-11  # accuracy of a root, as a fraction of the ranges of the two numbers
+# Distances, as fractions of the ranges, at which the verdicts on both sides of a point are evaluated.
+_ERRORS = (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)
+_MOST = 400  # largest number of points of a curve in each direction
+# Distance from the border of the chart, over the length of a segment, below which the segment ends on the
+# border.
+_ROUNDED = 1e-9
+_SLACK = 0.5  # fraction of a cell by which a polygonal curve may miss an edge that the true limit crosses
+
+
+class LimitPoint(NamedTuple):
+    """Point of a limit: position (2,) as fractions of the ranges, error, multiplier on the unit circle."""
+
+    place: np.ndarray
+    error: float
+    multiplier: complex
+
+
+@dataclass(frozen=True)
+class LimitTracer:
+    """Tracer of stability limits over two numbers, which starts at edges of the chart that they cross.
+
+    Parameters
+    ----------
+    scenes : PeriodicScenes
+        The scenes.
+    inputs : tuple of VariedInput
+        The two numbers.
+    status : ndarray of str, shape (first, second)
+        Verdicts of the chart.
+    """
+
+    scenes: PeriodicScenes
+    inputs: tuple[VariedInput, ...]
+    status: np.ndarray
+    _known: dict[bytes, Multipliers] = field(default_factory=dict)
+
+    def curves(self) -> list[list[LimitPoint]]:
+        """Trace all limits once: a curve that passes the start of an earlier curve replaces that curve."""
+        found: list[tuple[list[LimitPoint], np.ndarray, np.ndarray]] = []
+        for low, high in self._edges():
+            if any(_crosses(curve, low, high) for curve, *_ in found):
+                continue
+            first = self._between(low, high)
+            normal = (high - low) / np.linalg.norm(high - low)
+            # Unstable motion is to the left of the direction `along`.
+            along = np.array([normal[1], -normal[0]])
+            ahead, behind = self._trace(first, along, 1.0), self._trace(first, -along, -1.0)
+            curve = [*reversed(behind), first, *ahead]
+            found = [each for each in found if not _crosses(curve, *each[1:])] + [(curve, low, high)]
+        return [curve for curve, *_ in found]
+
+    @property
+    def solved(self) -> int:
+        """Number of scenes that have been integrated."""
+        return len(self._known)
+
+    # The function -----------------------------------------------------------------------------------
+
+    def _multipliers(self, place: np.ndarray) -> Multipliers:
+        place = np.clip(place, 0.0, 1.0)
+        if place.tobytes() not in self._known:
+            each = zip(self.inputs, place.tolist(), strict=True)
+            numbers = {i.name: float(i.values[0] + (i.values[-1] - i.values[0]) * x) for i, x in each}
+            self._known[place.tobytes()] = multipliers_of(self.scenes.monodromy(numbers))
+        return self._known[place.tobytes()]
+
+    def _beyond(self, place: np.ndarray) -> float:
+        """Compute the function whose roots are limits, at a position (2,): positive for unstable motion."""
+        found = self._multipliers(place)
+        largest = float(found.size[0, 0])
+        if found.sign is None:
+            return float(np.log(largest))
+        if found.verdict[0] == UNSTABLE:
+            return (largest - 1) ** 2
+        return -float(_nearest(found)[0] ** 2 / 4)
+
+    def _point(self, place: np.ndarray, normal: np.ndarray) -> LimitPoint:
+        """Build the limit at a root; at its distance `error`, verdicts on both sides are certain."""
+        error = next((e for e in _ERRORS if self._verdicts(place, e * normal) == (STABLE, UNSTABLE)), np.inf)
+        found = self._multipliers(place)
+        leaves = found.value[0, 0] if found.sign is None else _nearest(found)[1]
+        return LimitPoint(place, error, complex(leaves))
+
+    def _verdicts(self, place: np.ndarray, step: np.ndarray) -> tuple[str, str]:
+        before, after = (str(self._multipliers(each).verdict[0]) for each in (place - step, place + step))
+        return before, after
+
+    # The curve --------------------------------------------------------------------------------------
+
+    def _edges(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Yield the end points, as fractions (2,), of grid edges from a stable to an unstable point."""
+        values = [(i.values - i.values[0]) / max(float(np.ptp(i.values)), 1e-300) for i in self.inputs]
+        grid = np.stack(np.meshgrid(*values, indexing="ij"), axis=-1)
+        for axis in (0, 1):
+            at, status = np.moveaxis(grid, axis, 0), np.moveaxis(self.status, axis, 0)
+            for low, high in (((0, -1), (1, None)), ((1, None), (0, -1))):
+                low, high = slice(*low), slice(*high)
+                crossed = (status[low] == STABLE) & (status[high] == UNSTABLE)
+                yield from zip(at[low][crossed], at[high][crossed], strict=True)
+
+    def _between(self, low: np.ndarray, high: np.ndarray) -> LimitPoint:
+        """Find the limit on an edge of the grid, given by its end points."""
+        x = toms748(lambda x: self._beyond(low + x * (high - low)), 0.0, 1.0, xtol=_FINE)
+        return self._point(low + x * (high - low), (high - low) / np.linalg.norm(high - low))
+
+    def _trace(self, first: LimitPoint, along: np.ndarray, side: float) -> list[LimitPoint]:
+        """Trace a limit from a point until the chart ends, the curve closes, or steps become too small."""
+        points, h, turns, last, width, start = [], _FIRST, _FIRST_TURNS, first.place, 1.0, along
+        while len(points) < _MOST and h >= _LEAST:
+            inside = _room(last, along)
+            to, ends = last + min(h, inside) * along, inside <= h
+            normal = side * np.array([-along[1], along[0]])
+            if ends:
+                normal = _within_border(to, normal)
+            found, width = self._corrected(to, normal, min(h, width / _NARROWER))
+            step = last - last if found is None else found.place - last
+            length = float(np.linalg.norm(step))
+            if found is None or not length or step @ along < turns * length:
+                h, width = h / 2, 1.0
+                continue
+            points.append(found)
+            closed = (
+                np.linalg.norm(found.place - first.place) < h / 2 and step @ start > 0 and len(points) > 2
+            )
+            if ends or closed:
+                break
+            last, along, turns = found.place, step / length, _TURNS
+            h = min(_WIDER * h, _STEP)
+        return points
+
+    def _corrected(
+        self, place: np.ndarray, normal: np.ndarray, width: float
+    ) -> tuple[LimitPoint | None, float]:
+        """Find the limit on the normal through a position, and the half width that brackets it.
+
+        The limit is None if no limit is found.  As a narrow tongue has a second limit close by, the width is
+        reduced until only one limit is bracketed.
+        """
+        half = width
+        while half > _NARROWEST:
+            ends = -min(half, _room(place, -normal)), min(half, _room(place, normal))
+            if ends[0] < ends[1] and self._beyond(place + ends[0] * normal) < 0 < self._beyond(
+                place + ends[1] * normal
+            ):
+                x = toms748(lambda x: self._beyond(place + x * normal), *ends, xtol=_FINE)
+                return self._point(place + x * normal, normal), half
+            half *= _NARROWER
+        return None, width
+
+
+def _nearest(found: Multipliers) -> tuple[float, complex]:
+    """Return smallest distance and mean of two undamped multipliers that may leave the unit circle."""
+    value, sign = found.value[0], np.zeros(0) if found.sign is None else found.sign[0]
+    apart = np.abs(value[:, None] - value)
+    barred = (sign[:, None] * sign > 0) | np.eye(len(value), dtype=bool)
+    i, j = np.unravel_index(int(np.where(barred, np.inf, apart).argmin()), apart.shape)
+    return float(apart[i, j]), complex(value[i] + value[j]) / 2
+
+
+def _room(place: np.ndarray, along: np.ndarray) -> float:
+    """Compute the distance from a position (2,) to the border of the unit square, in a direction."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.where(along > 0, (1 - place) / along, np.where(along < 0, -place / along, np.inf))
+    return max(float(ends.min()), 0.0)
+
+
+def _within_border(place: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Return the border's direction at a position (2,) on the border, on the side of a normal."""
+    on = np.minimum(place, 1 - place)
+    along = np.where(np.arange(2) == on.argmin(), 0.0, np.sign(normal))
+    return along if along.any() else normal
+
+
+def _crosses(curve: list[LimitPoint], low: np.ndarray, high: np.ndarray) -> bool:
+    """Return whether a curve crosses an edge of the grid, with the unstable side towards the end `high`."""
+    axis = int(np.abs(high - low).argmax())
+    way, slack = np.sign(high - low)[axis], _SLACK * abs(high - low)[axis]
+    ends = sorted((low[axis], high[axis]))
+    for (p, *_), (q, *_) in pairwise(curve):
+        across = q[1 - axis] - p[1 - axis]
+        # The curve was traced such that unstable motion is on its left.
+        toward = -across if axis == 0 else across
+        share = (low[1 - axis] - p[1 - axis]) / across if across else np.inf
+        at = p[axis] + share * (q[axis] - p[axis])
+        if (
+            -_ROUNDED <= share <= 1 + _ROUNDED
+            and toward * way > 0
+            and ends[0] - slack <= at <= ends[1] + slack
+        ):
+            return True
+    return False

@@ -107,8 +107,18 @@ def frequency_sensitivities(
     error += np.where(lost, 0.0, found.error) * np.abs(derivative)
     derivative[:, lost], error[:, lost] = np.nan, np.inf
     answers = tuple(f"mode {k}" for k in range(1, modes + 1))
-    result = numbers, derivative, error, (*found.warnings, *words, *changes.refusals), _since(start, model)
-    return Sensitivities(answers, "Hz", found.frequency, *result, model.scene, speed=found.speed)
+    return Sensitivities(
+        answers=answers,
+        unit="Hz",
+        value=found.frequency,
+        inputs=numbers,
+        derivative=derivative,
+        error=error,
+        warnings=(*found.warnings, *words, *changes.refusals),
+        provenance=_since(start, model),
+        scene=model.scene,
+        speed=found.speed,
+    )
 
 
 @repeatable
@@ -161,8 +171,17 @@ def critical_speed_sensitivities(
     speeds = model.solver.critical_speed, model.coarse_solver.critical_speed
     each = [(P, at, critical_vector(P, at)) for P, at in zip(steady_pencils(model), speeds, strict=True)]
     derivative, error = _compared(changes, lambda k, dP: critical_derivative(*each[k], dP), found.speed)
-    result = numbers, derivative, error, (*found.warnings, *changes.refusals), _since(start, model)
-    return Sensitivities(("critical speed",), "rad/s", np.array([found.speed]), *result, model.scene)
+    return Sensitivities(
+        answers=("critical speed",),
+        unit="rad/s",
+        value=np.array([found.speed]),
+        inputs=numbers,
+        derivative=derivative,
+        error=error,
+        warnings=(*found.warnings, *changes.refusals),
+        provenance=_since(start, model),
+        scene=model.scene,
+    )
 
 
 @repeatable
@@ -223,9 +242,17 @@ def crossing_sensitivities(
     none = np.zeros((len(numbers), 0))
     columns = [(none, none), *(_crossing_derivatives(model, changes, c, modes) for c in crossings)]
     derivative, error = (np.hstack(parts) for parts in zip(*columns, strict=True))
-    answers = tuple(label_crossing(c.line, c.kind, c.mode, c.second_mode) for c in crossings)
-    result = numbers, derivative, error, (*crossings.warnings, *changes.refusals), _since(start, model)
-    return Sensitivities(answers, "rad/s", np.array([c.speed for c in crossings]), *result, scene)
+    return Sensitivities(
+        answers=tuple(label_crossing(c.line, c.kind, c.mode, c.second_mode) for c in crossings),
+        unit="rad/s",
+        value=np.array([c.speed for c in crossings]),
+        inputs=numbers,
+        derivative=derivative,
+        error=error,
+        warnings=(*crossings.warnings, *changes.refusals),
+        provenance=_since(start, model),
+        scene=scene,
+    )
 
 
 def _since(start: float, model: Model) -> Provenance:

@@ -18,7 +18,6 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.plots.curves import plot_bars
 from beamdyn.common.results.one_line import counted, number, warned
 from beamdyn.common.results.pictures import Axes
-from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.words import InputName
 from beamdyn.modes.repeated import JudgedByRepeating
@@ -26,7 +25,7 @@ from beamdyn.scene.beam import ANGLE_UNITS, OFFSETS, PROPERTY_UNITS, Beam
 from beamdyn.scene.numbers import SCALE, SPEED, number_at, paths_of, unit_of
 from beamdyn.scene.profile import mean
 from beamdyn.scene.rectangle import SECTION_UNITS, SIDES
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, SceneResult
 
 _TOUCHING = 1e-6  # distance between two points, over the length, below which they touch
 _STEP = 0.01  # step of a number, as a fraction of its value or of the typical size of its kind
@@ -194,7 +193,7 @@ def _room_of(beam: Beam, path: str) -> float:
 
 
 @dataclass(frozen=True)
-class Sensitivities(JudgedByRepeating):
+class Sensitivities(SceneResult, JudgedByRepeating):
     """Derivatives of k results with respect to n numbers of a scene.
 
     `model_error` (k,) and `left_out`, computed at their first use, estimate how much neglected physical
@@ -234,9 +233,6 @@ class Sensitivities(JudgedByRepeating):
     inputs: tuple[SceneNumber, ...]
     derivative: np.ndarray
     error: np.ndarray
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
     speed: float = field(default=0.0, repr=False, metadata=ADDED_LATER)
 
     def headline(self) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 from math import pi
 from time import perf_counter
@@ -14,12 +14,12 @@ from beamdyn.common.inputs.checks import InvalidValue, count, function, positive
 from beamdyn.common.plots.axes_and_lines import panels
 from beamdyn.common.results.one_line import counted, warned
 from beamdyn.common.results.pictures import Axes
-from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import OUTSIDE, announced_of_plain_beam, of_kind
 from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.model_error.effect_choice import plain_physics, warn_of_plain
 from beamdyn.modes.modes import natural_modes
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import check_speeds
 from beamdyn.steady.periodic_system import check_steady_state
 from beamdyn.studies.tradeoffs import responses
@@ -44,7 +44,7 @@ _SHARES = {
 
 
 @dataclass(frozen=True)
-class Tradeoff(Result):
+class Tradeoff(SceneResult):
     """Error against computing time of frequencies, transients and steady response of a scene.
 
     Parameters
@@ -72,9 +72,6 @@ class Tradeoff(Result):
     speed: float
     t_end: float
     diagrams: tuple[Diagram, ...]
-    warnings: tuple[str, ...]
-    provenance: Provenance
-    scene: Scene = field(repr=False)
 
     def headline(self) -> Iterator[str]:
         """Yield numbers of diagrams and measurements, and the speed, for the one-line summary.
