@@ -61,8 +61,9 @@ class PeriodicScenes(FieldsOnly):
 
     @property
     def size(self) -> int:
-        """Number 2 n of entries of a state: modal displacements and velocities."""
-        return 2 * self.modal(self.scene)[1].size
+        """Number of entries of a state: modal displacements and velocities, of a circuit its voltage alone."""
+        equations = self.modal(self.scene)[1]
+        return 2 * equations.size - (equations.voltage is not None)
 
     def modal(self, scene: Scene) -> tuple[Model, Equations]:
         """Return model and equations in modes at rest.
