@@ -70,8 +70,8 @@ class PeriodicScenes(FieldsOnly):
 
         Scenes that differ only in the motion of the root share them.
         """
-        still = replace(scene.mount, radius=0.0, setting_angle=0.0)
-        key = scene.beam, still, scene.physics, scene.damping_ratio, scene.damping
+        still = replace(scene.mount, radius=0.0, setting_angle=0.0, precone=0.0)
+        key = scene.beam, still, scene.mount.precone, scene.physics, scene.damping_ratio, scene.damping
         if key not in self._models:
             model = choose_model(scene, self.discretization, speeds_of(scene), self.modes)
             self._models[key] = model, model.modal_equations(self.modes)
