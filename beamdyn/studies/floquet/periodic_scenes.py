@@ -61,7 +61,7 @@ class PeriodicScenes(FieldsOnly):
 
     @property
     def size(self) -> int:
-        """Number of entries of a state: modal displacements and velocities, of a circuit its voltage alone."""
+        """Number of entries of a state: modal displacements and velocities, and the voltage of a circuit."""
         equations = self.modal(self.scene)[1]
         return 2 * equations.size - (equations.voltage is not None)
 
