@@ -47,7 +47,7 @@ from beamdyn.equations.discretization import (
 from beamdyn.equations.mass import PiecewisePolynomials, axial_tension
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile, merge_breakpoints
-from beamdyn.scene.sections import Tensor, section_tensor, weight_degree
+from beamdyn.scene.sections import Tensor, inertia_about_shear_centre, section_tensor, weight_degree
 
 NODES = 12  # number of nodes on each cell, through which quotients of moment and stiffness are interpolated
 # Size of an interpolant's last coefficients, over its largest coefficient, at which a cell is resolved; the
@@ -64,7 +64,8 @@ Values: TypeAlias = "dict[tuple[int, int], np.ndarray]"  # entries of a tensor, 
 # Order of the derivative of the displacement that each stiffness resists.
 _ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "axial_stiffness": 1}
 _ORDERS |= {"torsion_stiffness": 1, "warping_stiffness": 2}
-_SCALAR = ("axial_stiffness", "torsion_stiffness", "warping_stiffness")  # stiffnesses without a direction
+_TURNING = ("torsion_stiffness", "warping_stiffness")  # stiffnesses against turns about the beam
+_SCALAR = ("axial_stiffness", *_TURNING)  # stiffnesses without a direction
 # For each stiffness, the stiffnesses whose displacements contribute inertial forces to its functions.
 _COUPLED = {
     "bending_stiffness": ("bending_stiffness", "shear_stiffness"),
@@ -168,6 +169,19 @@ class MomentSpaces(FieldsOnly):
             for name, tensor in self._stiffnesses.items()
         }
 
+    def inertia_and_pull(self, stiffness: str) -> tuple[np.ndarray, np.ndarray]:
+        """Return inertia per length at the nodes, and what tension adds to a stiffness, per squared speed.
+
+        Sections that displacements against `stiffness` turn about the beam have the polar inertia, and its
+        radius of gyration.
+        """
+        mass, tension = self.at_nodes(self.beam.mass_per_length), self.at_nodes(axial_tension(self.beam)[1])
+        if stiffness not in _TURNING:
+            return mass, tension
+        tensor = inertia_about_shear_centre(self.beam)
+        polar = self.at_nodes(tensor[0, 0]) + self.at_nodes(tensor[1, 1])
+        return polar, tension * polar / mass
+
     @cached_property
     def quadrature(self) -> ArcQuadrature:
         """Gauss rule that integrates products of the functions with properties exactly."""
@@ -244,7 +258,7 @@ def _build_forces(
     beam, parts, causes = spaces.beam, spaces.polynomials, []
     # Inertial loads: the stiffness that resists the displacement, the derivative order of the displacement,
     # and the weight.
-    mass, tension = spaces.at_nodes(beam.mass_per_length), spaces.at_nodes(axial_tension(beam)[1])
+    mass, tension = spaces.inertia_and_pull(stiffness)
     for name in _COUPLED[stiffness]:
         if name in spaces.compliance:
             causes += [(name, 0, mass), (name, 1, tension)]

@@ -100,6 +100,22 @@ def test_a_hinged_beam_on_a_spring_turns_against_it():
     assert 0 < bd.critical_speed(inward) < 0.1
 
 
+@pytest.mark.parametrize(
+    "damping", [bd.Damping(mass_factor=0.5), bd.Damping(mass_factor=0.5, stiffness_factor=1e-4)]
+)
+def test_a_damped_free_turn_has_frequency_0_and_leaves_the_other_modes(damping):
+    # Proportional damping: s^2 + (alpha + beta omega^2) s + omega^2 = 0 for each mode; of the free turn's two
+    # roots, 0 and -alpha, the slower is its eigenvalue.
+    hinged = bd.Scene(BEAM, bd.Mount(root_stiffness=0.0))
+    omega = 2 * np.pi * bd.natural_modes(hinged, 0.0, 3).frequency[1:]
+    found = bd.natural_modes(replace(hinged, damping=damping), 0.0, 3)
+    rate = (damping.mass_factor + damping.stiffness_factor * omega**2) / 2
+    np.testing.assert_array_equal(found.status, ["neutral", "stable", "stable"])
+    np.testing.assert_allclose(2 * np.pi * found.frequency[1:], np.sqrt(omega**2 - rate**2), rtol=RTOL)
+    np.testing.assert_allclose(found.growth_rate, [0.0, *-rate], rtol=RTOL)
+    assert found.error.max() < 1e-9
+
+
 def test_springs_at_one_place_add_up_and_the_second_plane_has_its_own():
     beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, second_bending_stiffness=1.0)
     halves = [bd.PointSpring(0.5, 3.0), bd.PointSpring(0.5, 4.0)]

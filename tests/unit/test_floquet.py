@@ -109,6 +109,26 @@ def test_charts_judge_each_scene_where_phases_meet_after_other_numbers_of_turns_
         assert alone.growth_rate == pytest.approx(chart.growth_rate[i, 1], rel=1e-9)
 
 
+def test_a_chart_of_a_harvester_is_that_of_its_scenes():
+    layers = bd.Harvester(1e-4, 7750.0, e31=-10.0, c11e=6e10, eps33s=1.3e-8, resistance=1e5)
+    scene = bd.Scene(layers.on(STRIP), MOUNT, PULSATING, damping_ratio=0.01)
+    vary = {"motion.frequency": [150.0, 160.0], "motion.fluctuation": [0.1, 0.2]}
+    chart = bd.stability_chart(scene, vary, 1)
+    alone = replace(scene, motion=replace(PULSATING, frequency=160.0, fluctuation=0.2))
+    assert bd.floquet_multipliers(alone, 1).growth_rate == pytest.approx(chart.growth_rate[1, 1], rel=1e-9)
+
+
+def test_multipliers_of_a_beam_with_precone_are_those_of_its_modes_where_nothing_pulsates():
+    mount = bd.Mount(0.1, math.pi, math.pi / 2, precone=0.3)
+    scene = bd.Scene(STRIP, mount, bd.PulsatingRotation(50.0, 0.0, 20.0), damping_ratio=0.01)
+    found = bd.floquet_multipliers(scene, 4)
+    flat = replace(scene, mount=replace(mount, precone=0.0))
+    own, other = (
+        np.exp(bd.natural_modes(each, 50.0, 1).eigenvalue[0] * found.period) for each in (scene, flat)
+    )
+    assert np.abs(found.multipliers - own).min() < 1e-4 < np.abs(found.multipliers - other).min()
+
+
 def test_a_chart_resumes_from_its_store(tmp_path, monkeypatch):
     vary = {"motion.frequency": np.linspace(15.0, 25.0, 4), "motion.fluctuation": [0.1, 0.2]}
     scene = bd.Scene(STRIP, MOUNT, PULSATING)

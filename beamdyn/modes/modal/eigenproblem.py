@@ -298,13 +298,12 @@ class Solver(Eigensolver):
             inverse, y = solve_general(mass / time**2, damping / time, stiffness)
         else:
             inverse, y = solve_gyroscopic(mass / time**2, damping / time, stiffness, count)
-        turns = np.empty((n, 0))  # rotations about hinges on which neither stiffness nor damping acts
+        turns = np.empty((n, 0))  # rotations about hinges on which no stiffness acts
         if pencil.shift:
             undamped = self._solve_diagonal(np.array([speed]), min(pencil.planes, n))
-            turns = springs.find_free_turns(pencil, undamped.eigenvalue[0], undamped.vector[0])
-        if turns.size:  # each rotation has the eigenvalue 0 twice
-            slowest = np.argsort(np.abs(inverse), kind="stable")[: len(inverse) - 2 * turns.shape[1]]
-            inverse, y = inverse[np.sort(slowest)], y[:, np.sort(slowest)]
+            turns, rates = springs.find_free_turns(pencil, undamped.eigenvalue[0], undamped.vector[0])
+            others = springs.other_eigenvalues(inverse, rates * time)
+            inverse, y = inverse[others], y[:, others]
         s, z = select_lowest(inverse * time, y[:n], count)
         norm = np.sqrt(np.maximum(np.einsum("nk,nm,mk->k", z.conj(), mass, z).real, 0.0))
         condition = (1 + speed**2 * np.abs(growth)).max() / np.abs(stiffness).min()

@@ -98,11 +98,10 @@ def part_free_turns(pencil: SteadyPencil, squared: np.ndarray, v: np.ndarray) ->
     return parted
 
 
-def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Select the modes (columns) on which neither stiffness nor damping acts.
-
-    The eigenvalue 0 is double; in general equations, a rounding error would split it by the square root of
-    the error.
+def find_free_turns(
+    pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Select the modes (columns) on which no stiffness acts, with the rates at which damping slows them.
 
     Parameters
     ----------
@@ -112,9 +111,30 @@ def find_free_turns(pencil: SteadyPencil, eigenvalue: np.ndarray, v: np.ndarray)
         Eigenvalues of the lowest modes without damping and gyroscopic terms [1/s].
     v : ndarray, shape (coordinates, k)
         Mass-normalised vectors of the lowest modes.
+
+    Returns
+    -------
+    turns : ndarray, shape (coordinates, r)
+        The selected modes.
+    rates : ndarray, shape (r,)
+        Rate at which each slows down [1/s]; 0 if that is within rounding.
     """
-    damping = np.abs(np.einsum("nk,nk->k", v, pencil.C @ v))
-    return v[:, (eigenvalue == 0) & (damping < _UNDAMPED * np.sqrt(pencil.shift))]
+    turns = v[:, eigenvalue == 0]
+    rates = np.abs(np.einsum("nk,nk->k", turns, pencil.C @ turns))
+    return turns, np.where(rates < _UNDAMPED * np.sqrt(pencil.shift), 0.0, rates)
+
+
+def other_eigenvalues(inverse: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """List the indices of the eigenvalues 1/`inverse` that do not belong to free rotations of given rates.
+
+    Each rotation has the eigenvalue 0, double if it is undamped, where rounding splits it by the square root
+    of the rounding error; else it has one more, near minus its rate.
+    """
+    order = np.argsort(np.abs(inverse), kind="stable")
+    others = order[: len(order) - len(rates) - int((rates == 0).sum())]
+    for rate in rates[rates > 0]:
+        others = np.delete(others, np.abs(1 / inverse[others] + rate).argmin())
+    return np.sort(others)
 
 
 def insert_free_turns(

@@ -67,16 +67,17 @@ class PeriodicScenes(FieldsOnly):
 
     @property
     def size(self) -> int:
-        """Number 2 n of entries of a state: modal displacements and velocities."""
-        return 2 * self.modal(self.scene)[1].size
+        """Number of entries of a state: modal displacements and velocities, and the voltage of a circuit."""
+        equations = self.modal(self.scene)[1]
+        return 2 * equations.size - (equations.voltage is not None)
 
     def modal(self, scene: Scene) -> tuple[Model, Equations]:
         """Return model and equations in modes at rest.
 
         Scenes that differ only in the motion of the root share them.
         """
-        still = replace(scene.mount, radius=0.0, setting_angle=0.0)
-        key = scene.beam, still, scene.physics, scene.damping_ratio, scene.damping
+        still = replace(scene.mount, radius=0.0, setting_angle=0.0, precone=0.0)
+        key = scene.beam, still, scene.mount.precone, scene.physics, scene.damping_ratio, scene.damping
         if key not in self._models:
             model = choose_model(scene, self.discretization, speeds_of(scene), self.modes)
             self._models[key] = model, model.modal_equations(self.modes)
