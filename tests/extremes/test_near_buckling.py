@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -35,6 +36,60 @@ def test_the_error_of_an_equilibrium_next_to_buckling_under_a_tip_load_is_covere
     found = [bd.equilibrium(scene, 0.0, discretization=bd.Ritz(n)) for n in (12, 14, 16, 18, 20, 22, 24)]
     tips = np.array([each.tip[1] for each in found])
     assert np.ptp(tips) <= min(each.error for each in found) < 1e-8 * np.abs(tips).min()
+
+
+@pytest.mark.parametrize(
+    "narrowed, thinned, mount",
+    [
+        (0.5, 0.25, bd.Mount(0.215)),
+        (0.8, 0.6, bd.Mount(0.215, 0.0, np.pi / 2)),
+        (0.8, 0.5, bd.Mount(0.215, 0.3, np.pi / 2)),
+    ],
+)
+def test_a_tapered_beam_bends_as_the_root_of_the_speed_beyond_buckling(
+    narrowed: float, thinned: float, mount: bd.Mount
+) -> None:
+    # Between the two bent equilibria stands the straight one, at which a long step of the search can end.
+    beam = _tapered(narrowed, thinned)
+    scene, critical = bd.Scene(beam, mount, physics=SCENE.physics), bd.critical_speed(bd.Scene(beam, mount))
+    beyond = np.array([1e-5, 2e-5, 5e-5, 7e-5, 1e-4, 1.5e-4, 2e-4])
+    found = [bd.equilibrium(scene, critical * (1 + d), "bent", bd.Ritz(14)) for d in beyond]
+    assert all(each.stable for each in found)
+    slope = np.array([each.tip_angle for each in found]) / np.sqrt(beyond)
+    # A law of symmetric buckling: slope = C d^(1/2) (1 - a d + ...), where a d is below 1e-3 here.
+    assert np.ptp(slope) < 1e-3 * np.abs(slope).max()
+
+
+@pytest.mark.parametrize("setting_angle", [1e-8, 1e-7, 1e-6, 1e-5])
+@pytest.mark.parametrize("beyond", [1e-7, 1e-6, 1e-5, 4e-5, 8e-5])
+def test_the_bent_equilibrium_just_past_its_fold_is_the_stable_one(
+    setting_angle: float, beyond: float
+) -> None:
+    scene, fold = _turned_inwards(setting_angle), _fold_speed(setting_angle)
+    bent, from_rest = (
+        bd.equilibrium(scene, fold * (1 + beyond), b, bd.Ritz(12)) for b in ("bent", "straight")
+    )
+    assert bent.stable and from_rest.stable
+    assert bent.tip_angle * from_rest.tip_angle < 0  # to the other side
+
+
+def _tapered(narrowed: float, thinned: float) -> bd.Beam:
+    """Build a strip of which width and thickness decrease linearly, by given parts over the length."""
+    width, thickness = ([value, -part * value] for value, part in ((0.01, narrowed), (0.0002, thinned)))
+    polynomial = np.polynomial.Polynomial
+    return bd.Beam.rectangular(0.05, polynomial(width), polynomial(thickness), 200e9, 7850.0)
+
+
+def _turned_inwards(setting_angle: float) -> bd.Scene:
+    """Build the scene of a tapered strip that points past the rotation axis by a small angle."""
+    return bd.Scene(_tapered(0.5, 0.25), bd.Mount(0.215, setting_angle), physics=SCENE.physics)
+
+
+@cache
+def _fold_speed(setting_angle: float) -> float:
+    """Compute the lowest speed of the bent branch of this strip [rad/s]."""
+    branches = bd.equilibrium_branches(_turned_inwards(setting_angle), 230.0).branches
+    return float(branches[1].turning_speeds[0])
 
 
 def _equilibrium(beyond: float, basis: bd.Ritz) -> bd.Equilibrium:

@@ -32,6 +32,9 @@ _LOOSE = 2.0  # largest ratio of correction to step length if both ends are know
 _SYMMETRIC = 1e-9  # relative skew-symmetric part of a matrix, below which it counts as rounding
 _MOST_TURNS = 20 * np.pi  # largest angle [rad] by which a load may bend or twist a section
 _NEAR = 1e-4  # arc length within which a reversal of direction is a bifurcation, not another curve
+# Longest step towards a wanted parameter, over the distance to it along the tangent: a step passes the wanted
+# parameter only where the curve is nearly straight, and then has a single solution there.
+_PAST = 1.05
 
 
 class NotConverged(ArithmeticError):
@@ -153,7 +156,9 @@ def start_curve(load: Loading, q: np.ndarray, p: float, towards: float) -> Point
     return _normalized(load, q, p, towards * q_rate, towards)
 
 
-def follow(load: Loading, start: Point, longest: float = _LONGEST, easy: int = _EASY) -> Iterator[Point]:
+def follow(
+    load: Loading, start: Point, longest: float = _LONGEST, easy: int = _EASY, goal: float = np.inf
+) -> Iterator[Point]:
     """Yield the points of a curve beyond `start` in steps adapted to its curvature, and its turning points.
 
     Parameters
@@ -166,6 +171,8 @@ def follow(load: Loading, start: Point, longest: float = _LONGEST, easy: int = _
         Longest step, as a change of the slope angles [rad], or of the parameter over its value.
     easy : int
         Number of Newton iterations in a step up to which the next step is longer.
+    goal : float
+        Wanted parameter, near which steps are shorter, so that none skips several solutions there.
 
     Raises
     ------
@@ -174,6 +181,8 @@ def follow(load: Loading, start: Point, longest: float = _LONGEST, easy: int = _
     """
     point, step, before = start, _FIRST, count_negative(load, start.q, start.p)
     while True:
+        if point.p_rate:
+            step = min(step, _PAST * abs(goal - point.p) / abs(point.p_rate * load.scale))
         try:
             following, iterations = advance(load, point, step)
             # A change of stability that is not at a turning point means that the point is on another curve.
@@ -213,7 +222,7 @@ def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
             if not change and np.abs(turned).max() < _STRAYED:
                 return q[None]
     with suppress(NotConverged):
-        for after in follow(load, start):
+        for after in follow(load, start, goal=goals[-1]):
             while len(found) < len(goals) and towards * (after.p - goals[len(found)]) >= 0:
                 found.append(find_at(load, before, after, goals[len(found)]))
             if len(found) == len(goals):
