@@ -96,7 +96,7 @@ class Sweep(StatesModelError):
     t_end : float
         End of each run [s].
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
 
@@ -197,8 +197,8 @@ def sweep(
     Each case has its own time steps, so that its result is bitwise the same for any number of workers,
     executor, order, interruption and chunk size.
 
-    With ``modes="auto"`` a case uses as many modes as the sampled cases next to it need.  So its result
-    depends, within `time_error` and `mode_error`, on which other speeds are requested.
+    With ``modes="auto"`` a case uses as many modes as its neighbours among the sampled cases need.  So its
+    result depends, within `time_error` and `mode_error`, on which other speeds are requested.
 
     Parameters
     ----------
@@ -366,9 +366,10 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
 
 @contextmanager
 def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[float]]:
-    """Run a function in a thread, with an event that is set when its result is no longer needed.
+    """Run a function in a thread while the body of a `with` runs; yield the future of its result.
 
-    An error in the body of the `with`, such as an interrupt, sets the event without waiting for the function.
+    The last argument of the function is an event.  An error in the body, such as an interrupt, sets it: the
+    result is no longer needed.  The end of the body does not wait for the function.
     """
     thread, unwanted = ThreadPoolExecutor(1), Event()
     try:
