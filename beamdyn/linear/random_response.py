@@ -42,8 +42,8 @@ class RandomResponse(JudgedByRepeating):
     Where the excitation has a fixed direction, the statistics vary within a turn, and the values are means
     over a turn: the density of the input appears shifted by the speed, upwards and downwards.
 
-    `model_error` and `left_out`, computed on first use, are the changes of `rms` by physical effects that the
-    model leaves out.
+    `left_out` contains the estimated relative change of `rms` by each neglected physical effect,
+    `model_error` the magnitude of the sum of these changes; both are computed at first use.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class RandomResponse(JudgedByRepeating):
     unit : str
         Unit of the output.
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the response was computed.
 

@@ -91,7 +91,7 @@ class LoadFractions:
         return _EPSILON * (constant + 2 * np.abs(by_pole).sum(axis=-1))
 
     def _parts(self, spectrum: PowerSpectrum, order: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the terms of the mean square: by pole (S, K, m), of which 2 Re is summed, and constant."""
+        """Compute the terms of the mean square: a sum of 2 Re of terms by pole (S, K, m), and a constant."""
         between = 1 / (-self.poles - np.conj(self.poles)[:, None])
         conjugate = np.conj(self.direct)[..., None] + np.conj(self.residues) @ between
         integrals = pole_integrals(spectrum, self._mu, self.shift, order)
@@ -196,7 +196,7 @@ class LinearLoads:
 
     @cached_property
     def _rows(self) -> tuple[LoadRows, np.ndarray]:
-        """Rows without accelerations, and the outputs at stations by a unit force on each coordinate."""
+        """Outputs by displacements and velocities alone, and outputs by a unit force on each coordinate."""
         model, n = self.model, self.model.equations.size
         rows = span_rows(model.scene, model.discretization, model.equations, self.stations)
         acceleration = rows.acceleration.get("unity", np.zeros((*rows.shape, n)))
@@ -251,7 +251,7 @@ class RandomStatistics:
     rms_in_turn : ndarray, shape (S, K)
         Root mean square at the angle of rotation at which it is largest [same unit].
     rate_rms : ndarray, shape (S, K)
-        Root mean square of the rate of the random part [same unit / s].
+        Root mean square of the time derivative of the random part [same unit / s].
 
     References
     ----------

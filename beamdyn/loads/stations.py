@@ -130,7 +130,7 @@ class StationOutputs:
 
 
 class Sections(NamedTuple):
-    """Outputs at stations, points (stations, points, 2) [m] of sections, and what the strain leaves out."""
+    """Outputs at stations, points (stations, points, 2) [m], notes on what the strain leaves out."""
 
     outputs: StationOutputs
     points: np.ndarray

@@ -414,7 +414,7 @@ class ElectricLines:
         equations: Equations,
         parts: list[tuple[PeriodicSystem, np.ndarray]],
     ) -> ElectricLines:
-        """Solve for all coordinates at speeds (S,), given uncoupled parts of the equations and their indices."""
+        """Solve for all coordinates at speeds (S,), given uncoupled parts of equations and their indices."""
         motion = check_steady_state(request.scene.motion)
         every = np.broadcast_to(np.eye(equations.size), (len(speeds), equations.size, equations.size))
         used, c, truncation = solve_parts(parts, every, request.harmonics, request.tolerance)

@@ -60,8 +60,8 @@ class SteadyResponse(StatesModelError):
     """Steady response over speed, after the free vibration from the start has decayed.
 
     `left_out` contains the estimated relative change of the amplitude by each neglected physical effect at
-    the `left_out_speeds` (k,), `model_error` (k,) the magnitude of the sum of these changes; both are computed
-    at first use.  `left_out_at` computes the changes at other speeds.
+    the `left_out_speeds` (k,), `model_error` (k,) the magnitude of the sum of these changes; both are
+    computed at first use.  `left_out_at` computes the changes at other speeds.
 
     Parameters
     ----------
