@@ -106,7 +106,7 @@ class TransientLoads(span_loads.SpanLoads):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Relative changes of the largest value by neglected effects; unknown for given initial coordinates."""
+        """Relative changes of the largest value by neglected effects; unknown for given initial states."""
         from_rest = isinstance(self.run.request.initial, str)
         return super().left_out_effects if from_rest else nothing_known(self.scene)
 

@@ -1,4 +1,4 @@
-"""The program ``brakes app`` and its documents; those of standard brakes are made from their types."""
+"""The program ``brakes app`` and its documents, input files with their screens; most are made from types."""
 
 from __future__ import annotations
 

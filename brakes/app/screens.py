@@ -1,4 +1,4 @@
-"""Screens and documents, made from the description of any type of brake."""
+"""Screens and documents (input files with their screens), made from the description of a type of brake."""
 
 from __future__ import annotations
 

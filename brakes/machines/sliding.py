@@ -265,7 +265,8 @@ class Sliding(Machine):
     def _moment(self, integrals: tuple[Any, Any, Any], mu: Numbers, s: float) -> Any:
         """Compute the moment [m] of pressure and friction about the abutment over p0 and the area w r.
 
-        The scale p0 of the pressure is that of this module, w the width and r the radius of the drum.
+        The scale p0 of the pressure is that of this module, w the width and r the radius of the drum;
+        s is -1 on a leading shoe, 1 on a trailing one.
         """
         (K, S, C), b, c = integrals, self.abutment_offset, self.abutment_depth
         return c * S - b * C + s * mu * (self.drum_radius * K - b * S - c * C)
@@ -273,7 +274,7 @@ class Sliding(Machine):
     def _balance(self, integrals: tuple[Any, Any, Any], mu: Numbers, s: float) -> Any:
         """Compute the residual [m] of the balance of forces and moments, over p0 and the area w r.
 
-        It is linear in the integrals; p0, w and r are those of `_moment`.
+        It is linear in the integrals; p0, w, r and s are those of `_moment`.
         """
         (_, S, C), psi = integrals, self.abutment_angle
         along = np.sin(psi) * (S - s * mu * C) + np.cos(psi) * (C + s * mu * S)

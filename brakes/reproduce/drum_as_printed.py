@@ -156,7 +156,7 @@ def errata() -> tuple[Erratum, ...]:
 
 
 def tables() -> dict[str, PrintedTable]:
-    """Compare Table 1, and the largest difference of its torques, with our numbers."""
+    """Compare Table 1, and the largest difference of its torques, with numbers by the paper's own method."""
     printed, ours = PAPER["table_1"], table_1()
     columns = {"effective_arm": 1e3, "first_torque": 1.0, "second_torque": 1.0}
     rows: list[tuple[tuple[str, ...], list[Cell]]] = []
