@@ -36,7 +36,7 @@ _OR_ALL = Named("or None, which keeps all functions", "or auto")
 def check_linear(
     scene: Scene, speed: float, modes: int | None, barred: Mapping[str, str] = NOTHING_BARRED
 ) -> tuple[Scene, float]:
-    """Check arguments of a linear analysis; return the scene with its effects chosen, and the speed [rad/s].
+    """Check arguments of a linear analysis; return the scene with its physics chosen, and the speed [rad/s].
 
     `barred` names further effects that the choice of physics must not add, each with the reason.
 
@@ -59,7 +59,7 @@ def check_linear(
 
 
 def with_forces(scene: Scene, inputs: Sequence[Excitation]) -> Scene:
-    """Add breakpoints to the beam where point forces act within the span, and the shear force jumps."""
+    """Add breakpoints to the beam where point forces act within the span: the shear force jumps there."""
     found = [force[0] for each in inputs if (force := each.force(scene.beam)) is not None and force[0] < 1]
     if not found:
         return scene

@@ -260,7 +260,7 @@ def listed(name: str, given: Any) -> tuple[Any, ...]:
 
 
 def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
-    """List the requested excitations, or by default the usual ones of a scene."""
+    """List the requested excitations, or by default base motion and tip force in each bending direction."""
     if given is not None:
         return [as_excitation(f"inputs[{k}]", each) for k, each in enumerate(listed("inputs", given))]
     usual: list[Excitation] = [BaseMotion(), PointForce()]

@@ -234,7 +234,7 @@ class _MeanMotion:
         return np.minimum(shift, self.radius)
 
     def _couple(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute the periodic coefficients between all pairs of modes, harmonic by harmonic."""
+        """Compute the periodic coefficients between all modes: (rates, modes, modes, harmonics)."""
         spectra = (convolution_matrix(f, [(0, 0), *harmonics])[:, 1:, 0] for f, _ in self.V)
         parts = (f[:, None, None] * v[..., None] for f, (_, v) in zip(spectra, self.V, strict=True))
         return reduce(np.add, parts)
@@ -382,7 +382,10 @@ class _Resonance:
         return j - turns * a, k - turns * b
 
     def _folded_convolution(self, spectrum: np.ndarray, harmonics: list[Pair], phase: float) -> np.ndarray:
-        """Build the matrix of the product with a spectrum; harmonics of equal rate are added."""
+        """Build the matrix of the product with a spectrum, adding harmonics of equal rate.
+
+        `phase` is as for `_hill_matrix`.
+        """
         if self.stationary is None:
             return convolution_matrix(spectrum, harmonics)[0]
         most = 1 + (np.ptp(harmonics, axis=0).max() + spectrum.shape[-1] // 2) // max(

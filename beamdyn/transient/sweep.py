@@ -149,7 +149,7 @@ class Sweep(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the largest peak (1,) by each neglected effect, found by repeating that run."""
+        """Relative changes of the largest peak (1,) by each neglected effect, found by repeating that run."""
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
@@ -260,7 +260,7 @@ def sweep(
     runner = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress, SweepInterrupted)
     basis = given_basis(modes)
     scene = choose_for_motion(scene, end_speeds(request, cases), basis and basis.modes, request.tolerance)
-    # The recorded choice contains computing times, which must not change the keys of the store.
+    # The record of the choice of physics contains computing times, which must not change keys of the store.
     request = replace(request, scene=replace(scene, physics_choice=None))
     _check_speeds(request := replace(request, basis=basis or first_basis(request, cases)), cases)
     if store is not None or executor is not None or runner.workers > 1:

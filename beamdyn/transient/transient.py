@@ -164,7 +164,7 @@ class Transient(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the largest deflection by each neglected effect, of shape ()."""
+        """Relative changes of the largest deflection by each neglected effect, of shape ()."""
         return left_out_of_transient(self.request, self.solution)
 
     def with_warnings(self, more: tuple[str, ...]) -> Transient:

@@ -106,7 +106,7 @@ class EeBrake(Design):
 
     pivot: Annotated[Point, _point("pivot of the right lever on the panel")] = (17.5 * MM, -19 * MM)
     pad: Annotated[Point, _point("right pad")] = (12.75 * MM, -45 * MM)
-    upper_pin: Annotated[Point, _point("pin of the strut on the right lever; mirrored, O")] = (
+    upper_pin: Annotated[Point, _point("pin of the strut on the right lever; its mirror image is pin O")] = (
         25.5 * MM,
         11.053947511008978 * MM,
     )

@@ -178,7 +178,7 @@ class Sliding(Machine):
         return np.where((first * last < 0) & (end - begin > _LEAST_CONTACT), delta, np.nan)
 
     def _newton(self, delta: np.ndarray, mu: Numbers, s: float) -> Any:
-        """Improve the angle of zero pressure [rad] by a Newton step; complex friction adds its derivative."""
+        """Improve the angle of zero pressure [rad] by a Newton step; mu may be complex (complex step)."""
         with np.errstate(divide="ignore", invalid="ignore"):  # without equilibrium
             slope = self._residual(delta + 1j * _TURN_STEP, np.real(mu), s).imag / _TURN_STEP
             return delta - self._residual(delta, mu, s) / slope
@@ -210,9 +210,9 @@ class Sliding(Machine):
         return np.where(free.all(axis=0), np.inf, high)
 
     def _force(self, mu: np.ndarray, leads: bool) -> np.ndarray:
-        """Compute the actuating force over width, radius and pressure scale p0; nan without equilibrium.
+        """Compute the actuating force over width, radius and pressure scale p0.
 
-        There is no balance where no distribution of pressure keeps the shoe in equilibrium.
+        It is nan where no distribution of pressure keeps the shoe in equilibrium.
         """
         s, delta = -1.0 if leads else 1.0, self.zero(mu, leads)
         return self._moment(self._integrals(delta), mu, s) / self.arm
