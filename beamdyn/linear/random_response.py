@@ -315,7 +315,10 @@ def _density(
     speed: float,
     f: np.ndarray,
 ) -> np.ndarray:
-    """Compute the one-sided density of the response at f [Hz] from the input's at +-f - h n, h a harmonic."""
+    """Compute the one-sided density of the response at f [Hz] from the input's at +-f - h n.
+
+    Here h is a harmonic of the rotation, and n the number of turns per second.
+    """
     total = np.zeros(len(f))
     for h, H in transfers.items():
         size = np.abs(H(2j * np.pi * f)) ** 2
