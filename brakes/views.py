@@ -37,7 +37,10 @@ def _solution_tables(found: Solutions) -> Group:
 
 
 def _solution_columns(found: Solutions) -> Columns:
-    """Make the columns of the solutions: range of inputs, and residual from the wanted value, of each."""
+    """Make columns with a row per solution, an input value or an interval of inputs with the wanted result.
+
+    They are the ends of the interval (equal for a single value), and the result minus the wanted value.
+    """
     name = found.input.replace(".", "_")
     ends = np.concatenate([np.stack([found.values] * 2, axis=-1), found.ranges])
     return Columns(

@@ -28,7 +28,7 @@ from beamdyn.modes.model_error.effect_choice import NOTHING_BARRED, choose_physi
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds
 
-_MODES = 5  # number of modes for which physics and trial functions are chosen, if all of these are kept
+_MODES = 5  # number of modes for which physics and trial functions are chosen, if all functions are kept
 _STRAIGHT = "linear models are those about the straight beam"
 _OR_ALL = Named("or None, which keeps all functions", "or auto")
 
@@ -36,7 +36,7 @@ _OR_ALL = Named("or None, which keeps all functions", "or auto")
 def check_linear(
     scene: Scene, speed: float, modes: int | None, barred: Mapping[str, str] = NOTHING_BARRED
 ) -> tuple[Scene, float]:
-    """Check arguments of a linear analysis; return the scene with its effects chosen, and the speed [rad/s].
+    """Check arguments of a linear analysis; return the scene with its physics chosen, and the speed [rad/s].
 
     `barred` names further effects that the choice of physics must not add, each with the reason.
 
@@ -59,7 +59,7 @@ def check_linear(
 
 
 def with_forces(scene: Scene, inputs: Sequence[Excitation]) -> Scene:
-    """Add breakpoints to the beam where point forces act within the span, and the shear force jumps."""
+    """Add breakpoints to the beam where point forces act within the span: the shear force jumps there."""
     found = [force[0] for each in inputs if (force := each.force(scene.beam)) is not None and force[0] < 1]
     if not found:
         return scene
@@ -106,13 +106,13 @@ Evaluation = Callable[[ModelAtSpeed], np.ndarray]
 # A model, its value, the model with twice as many modes (None if there is none), and that model's value.
 _Doubled: TypeAlias = tuple[ModelAtSpeed, np.ndarray, ModelAtSpeed | None, np.ndarray | None]
 
-# Least number of modes for modes="auto"; at a loose tolerance, trial functions are chosen for as many modes.
+# Least number of modes for modes="auto"; at a loose tolerance, trial functions are first chosen for these.
 _FIRST = 4
 _ACCURATE = 8  # number of modes for which trial functions are first chosen at the default tolerance
 _MOST = 40  # number of modes beyond which a model is not refined further
 # Allowed error of natural frequencies over that of a response: resonance magnifies errors of frequency.
 _OF_FREQUENCIES = 0.01
-# Tolerance down to which the default models are used, with a margin for rounding.
+# Tolerance at and below which the default models are used, with a margin for rounding.
 _DEFAULT = 1.001 * DEFAULT_TARGET
 # Factor on the tolerance for trial functions after the error of a response exceeded its tolerance.
 _FINER = 1e-3
@@ -208,7 +208,10 @@ def evaluate_accurately(
 def _model_up_to(
     scene: Scene, speed: float, top: float, discretization: DiscretizationChoice, target: float
 ) -> ModelAtSpeed:
-    """Build a model that resolves modes up to an angular frequency [rad/s], or up to a largest number."""
+    """Build a model that resolves modes up to an angular frequency [rad/s], or up to a largest number.
+
+    Trial functions are chosen for relative errors of the natural frequencies up to `target`.
+    """
     tolerance = target if target > _DEFAULT else None
 
     def of_modes(modes: int) -> tuple[int, ModelAtSpeed]:
@@ -260,7 +263,7 @@ def _add_modes(
         return doubled(larger, finer)
 
     def settles(found: _Doubled) -> bool:
-        """Return whether more modes change the value by at most tolerance / margin times the largest."""
+        """Return whether more modes change the value by at most tolerance / margin of the largest value."""
         _, value, _, finer = found
         share = tolerance / LINEAR_MODES.factor
         return finer is not None and bool(np.abs(finer - value).max() <= share * np.abs(finer).max())
@@ -291,7 +294,10 @@ def _with_error(
     evaluate: Evaluation,
     finer: np.ndarray | None = None,
 ) -> Refined:
-    """Estimate the error of a value from models with more modes and of a coarser discretization."""
+    """Estimate the error of a value from models with more modes and of a coarser discretization.
+
+    `finer` is the value of the `larger` model; it is computed if not given.
+    """
     coarse = ModelAtSpeed(model.model.coarser, model.speed, model.modes)
     rounding = _ROUNDING * np.abs(
         value

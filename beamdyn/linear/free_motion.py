@@ -131,7 +131,10 @@ def free_motion(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> FreeMotion:
 
 
 def balance(M: np.ndarray, K: np.ndarray) -> BalancedCoordinates:
-    """Compute balanced coordinates, with a shift if rounding may make the stiffness not positive definite."""
+    """Compute coordinates in which K + shift^2 M is the unit matrix and M is diagonal.
+
+    The shift is 0 unless rounding may make K not positive definite, or the beam can nearly move freely.
+    """
     try:
         found = _diagonal(M, K, 0.0)
     except np.linalg.LinAlgError:
@@ -145,7 +148,10 @@ def balance(M: np.ndarray, K: np.ndarray) -> BalancedCoordinates:
 
 
 def _diagonal(M: np.ndarray, K: np.ndarray, shift: float) -> BalancedCoordinates:
-    """Compute balanced coordinates for a shift; LinAlgError if the stiffness is not positive definite."""
+    """Compute coordinates in which K + shift^2 M is the unit matrix and M is diagonal.
+
+    A LinAlgError is raised if K + shift^2 M is not positive definite.
+    """
     L = np.linalg.cholesky(K + shift**2 * M)
     mass = solve_lower(L, solve_lower(L, M).T)
     squared_roots, turned = np.linalg.eigh((mass + mass.T) / 2)
@@ -155,7 +161,7 @@ def _diagonal(M: np.ndarray, K: np.ndarray, shift: float) -> BalancedCoordinates
 
 
 def _safe_shift(M: np.ndarray, K: np.ndarray) -> float:
-    """Choose a shift, of the highest frequencies' size, that makes the stiffness safely positive definite."""
+    """Choose a shift, of the highest frequencies' size, with which K + shift^2 M is positive definite."""
     mass, stiffness = np.diag(M), np.abs(np.diag(K))
     massive = mass > _MASSLESS * mass.max()
     shift = np.sqrt(np.max(stiffness[massive] / mass[massive]) or 1.0)

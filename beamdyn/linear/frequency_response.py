@@ -37,8 +37,9 @@ class FrequencyResponse(SceneResult, JudgedByRepeating):
     An input Re(u exp(i 2 pi f t)) gives the sum of Re(H_h u exp(i 2 pi (f + h n) t)) over the harmonics h of
     the rotation, with n turns per second; h = 0 is the only one unless the excitation has a fixed direction.
 
-    `error` is numerical; `model_error` and `left_out`, computed on first use, are the changes of the
-    largest response (peaks included) by physical effects that the model leaves out.
+    `error` is numerical.  `left_out` contains the estimated relative change of the largest response (at the
+    given frequencies or at a peak between them) by each neglected physical effect, `model_error` the
+    magnitude of the sum of these changes; both are computed at first use.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ class FrequencyResponse(SceneResult, JudgedByRepeating):
     unit : str
         Unit of the response.
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the response was computed.
 
@@ -100,7 +101,7 @@ class FrequencyResponse(SceneResult, JudgedByRepeating):
 
     @property
     def peak(self) -> tuple[float, float]:
-        """Excitation frequency [Hz] and magnitude of the largest response, including peaks."""
+        """Excitation frequency [Hz] and magnitude of the largest response, also between given frequencies."""
         found = [(size.max(), f[size.argmax()]) for f, size in map(self._curve, range(len(self.harmonics)))]
         size, at = max(found)
         return float(at), float(size)
@@ -108,11 +109,11 @@ class FrequencyResponse(SceneResult, JudgedByRepeating):
     judged_value = "the largest response"
 
     def judged(self, found: FrequencyResponse) -> np.ndarray:
-        """Return the largest response, including peaks, for which the model error is stated: shape ()."""
+        """Return the largest response (see `peak`), for which the model error is stated: shape ()."""
         return np.array(found.peak[1])
 
     def _curve(self, column: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return excitation frequencies, including peaks, and the response's magnitudes at one harmonic."""
+        """Return given and peak frequencies [Hz], ascending, and the response's sizes at one harmonic."""
         own = (self.peaks.harmonic == self.harmonics[column]) & np.isfinite(self.peaks.size)
         f = np.concatenate([self.frequencies, self.peaks.frequency[own]])
         size = np.concatenate([np.abs(self.response[:, column]), self.peaks.size[own]])

@@ -384,7 +384,10 @@ class LayerStrain:
 
 @dataclass(frozen=True)
 class LayerRows:
-    """Voltage or current of layers: a factor times the circuit's charge or coupling theta^T q, or a rate."""
+    """Voltage or current of layers: `factor` times the `order`-th derivative of theta^T q or of the charge.
+
+    It is that of the circuit's charge if `of_circuit`, else that of the coupling theta^T q.
+    """
 
     of_circuit: bool
     order: int

@@ -40,9 +40,10 @@ MOST_JUDGED = 5
 class Matrices(SceneResult, StatesModelError):
     """Equations of motion at a steady speed about the straight beam, M q'' + (C + G) q' + K q = f + B u.
 
-    The axes rotate with the carrier, its centre is fixed, and there is no gravity.  `error` is numerical;
-    `model_error` (m,) and `left_out`, computed on first use, are the changes of the lowest natural
-    frequencies by physical effects that the model leaves out.
+    The axes rotate with the carrier, its centre is fixed, and there is no gravity.  `error` is numerical.
+    `left_out` contains the estimated relative change of the m lowest natural frequencies by each neglected
+    physical effect, `model_error` (m,) the magnitude of the sum of these changes; both are computed at first
+    use.
 
     Parameters
     ----------
@@ -72,7 +73,7 @@ class Matrices(SceneResult, StatesModelError):
         Estimated relative error of each of the `poles`, in their order: by the modes left out and by the
         discretization; nan for an infinite pole, inf for one that is not resolved to 1 %.
     warnings : tuple of str
-        Limits of the validity of the matrices.
+        Warnings about the validity and accuracy of the matrices.
     provenance : Provenance
         How the matrices were computed.
 
@@ -135,7 +136,7 @@ class Matrices(SceneResult, StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the lowest natural frequencies, five at most, by effects left out of the model."""
+        """Relative changes of the lowest natural frequencies, five at most, by neglected physical effects."""
         return left_out_of_frequencies(self.scene, self.speed, min(len(self.mass), MOST_JUDGED))
 
     def deflection(self, x: Sequence[float] | np.ndarray, direction: int = 0) -> np.ndarray:
@@ -248,7 +249,7 @@ def warn_of_model(model: ModelAtSpeed) -> Iterator[Statement]:
 
 
 def listed(name: str, given: Any) -> tuple[Any, ...]:
-    """Return the members of a sequence as a tuple; refuse an empty one."""
+    """Return the members of a sequence as a tuple; raise `InvalidValue` if there are none."""
     members = several(name, given, object)
     if not members:
         raise InvalidValue(name, given, "it is empty", "give one at least, or leave it out")
@@ -256,7 +257,7 @@ def listed(name: str, given: Any) -> tuple[Any, ...]:
 
 
 def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
-    """List the requested excitations, or by default the usual ones of a scene."""
+    """List the requested excitations, or by default base motion and tip force in each bending direction."""
     if given is not None:
         return [as_excitation(f"inputs[{k}]", each) for k, each in enumerate(listed("inputs", given))]
     usual: list[Excitation] = [BaseMotion(), PointForce()]

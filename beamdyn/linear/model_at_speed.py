@@ -252,9 +252,10 @@ class ModelAtSpeed(FieldsOnly):
         return np.array([self._per_moment(observation) * (total - by_kept), 0.0, 0.0])
 
     def _of_layers(self, observation: OfLayers) -> tuple[np.ndarray, int, np.ndarray]:
-        """Express an output of layers by all coordinates, its order in time, and it by the kept ones.
+        """Express an output of layers by the coordinates of all trial functions, and by the kept ones.
 
-        Where the circuit has a coordinate, the first row has only deflections beyond the kept coordinates.
+        Return the first row, the order of the time derivative to which both apply, and the second row.  Where
+        the circuit has a coordinate, the first row applies only to deflections beyond the kept coordinates.
         """
         beam, full = self.scene.beam, self.model.equations
         if (electrodes := beam.electrodes) is None:
@@ -322,7 +323,7 @@ class ModelAtSpeed(FieldsOnly):
 
 
 _UNRESOLVED = 0.01  # relative error of a pole beyond which it may be paired with the pole of another mode
-# Relative distance between poles of two coarser models at which poles converge, and least used ratio of two
+# Relative distance between poles of two coarser models up to which they converge, and least used ratio of two
 # distances: several fields, segments or elements do not converge as steadily as one.
 _STEADY, _LEAST_RATIO = 0.01, 0.2
 _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the matrices
@@ -359,7 +360,7 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
 
 
 def _distance(poles: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pair each pole with another model's pole; return relative distances (inf if unpaired) and partners."""
+    """Pair each pole with another model's pole; return distances [1/s] (inf if unpaired) and partners."""
     apart = np.abs(poles[:, None] - others)
     scale = np.maximum(np.abs(poles), _ROUNDING * np.abs(poles).max(initial=0.0))[:, None]
     rows, partners = linear_sum_assignment(apart / np.where(scale == 0, 1.0, scale))

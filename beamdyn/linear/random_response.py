@@ -42,8 +42,8 @@ class RandomResponse(SceneResult, JudgedByRepeating):
     Where the excitation has a fixed direction, the statistics vary within a turn, and the values are means
     over a turn: the density of the input appears shifted by the speed, upwards and downwards.
 
-    `model_error` and `left_out`, computed on first use, are the changes of `rms` by physical effects that the
-    model leaves out.
+    `left_out` contains the estimated relative change of `rms` by each neglected physical effect,
+    `model_error` the magnitude of the sum of these changes; both are computed at first use.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ class RandomResponse(SceneResult, JudgedByRepeating):
     unit : str
         Unit of the output.
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the response was computed.
 
@@ -312,7 +312,10 @@ def _density(
     speed: float,
     f: np.ndarray,
 ) -> np.ndarray:
-    """Compute the one-sided density of the response at f [Hz] from the input's at +-f - h n, h a harmonic."""
+    """Compute the one-sided density of the response at f [Hz] from the input's at +-f - h n.
+
+    Here h is a harmonic of the rotation, and n the number of turns per second.
+    """
     total = np.zeros(len(f))
     for h, H in transfers.items():
         size = np.abs(H(2j * np.pi * f)) ** 2

@@ -38,7 +38,7 @@ _STEP = 1e-6  # relative distance from an undamped natural frequency at which it
 
 
 class Peak(NamedTuple):
-    """One resonance peak: frequency and bandwidth [Hz], magnitude, harmonic of the rotation, rounding."""
+    """Resonance peak: frequency and bandwidth [Hz], magnitude, harmonic of the rotation, rounding error."""
 
     frequency: float
     size: float
@@ -127,7 +127,10 @@ def find_peaks(
 
 
 def _error(peak: Peak, compared: list[tuple[float, list[Peak]]], share: float) -> np.ndarray:
-    """Estimate errors (3,) of frequency, magnitude and bandwidth from the nearest peaks of other models."""
+    """Estimate errors (3,) of frequency, magnitude and bandwidth from the nearest peaks of other models.
+
+    `compared` contains a margin and the peaks of each model, `share` the relative accuracy of all peaks.
+    """
     own = np.array(peak[:3])
     with np.errstate(invalid="ignore"):  # a magnitude may be inf
         # The frequency's rounding error is relative to the bandwidth, or to the frequency if that is unknown.
@@ -269,7 +272,10 @@ def _bisect(
     origin: np.ndarray,
     share: float,
 ) -> np.ndarray:
-    """Bisect p intervals for the end of a condition that holds at their start, to a relative accuracy."""
+    """Bisect p intervals for the end of a condition that holds at their start.
+
+    The accuracy is the fraction `share` of the distance from `origin`.
+    """
     for _ in range(_HALVINGS):
         if (np.abs(end - start) <= share * np.abs(end - origin)).all():
             break

@@ -50,7 +50,7 @@ class StateSpaceWithErrors(StateSpace, lti):  # pyright: ignore[reportIncompatib
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the lowest natural frequencies by effects left out of the model: see `Matrices`."""
+        """Relative changes of the lowest natural frequencies by neglected effects: see `Matrices`."""
         return left_out_of_frequencies(self.scene, self.speed, min(len(self.A) // 2, MOST_JUDGED))
 
     @property
@@ -151,7 +151,7 @@ def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> Non
 
 
 class _Rates(NamedTuple):
-    """Velocities of all coordinates, and accelerations of those with mass, in terms of states and inputs."""
+    """Velocities of all coordinates, accelerations of those with mass, per unit of states and of inputs."""
 
     velocity: tuple[np.ndarray, np.ndarray]
     acceleration: tuple[np.ndarray, np.ndarray]

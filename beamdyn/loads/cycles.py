@@ -29,8 +29,8 @@ TURNING_POINTS = 1e-6  # error of values at turning points, relative to the larg
 class LoadCycles(SceneResult, JudgedByRepeating):
     """Load cycles of a quantity at one station, by rainflow counting.
 
-    `model_error` and `left_out`, computed on first use, are the changes of the largest range by physical
-    effects that the model leaves out.
+    `left_out` contains the estimated relative change of the largest range by each neglected physical effect,
+    `model_error` the magnitude of the sum of these changes; both are computed at first use.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class LoadCycles(SceneResult, JudgedByRepeating):
     start, end : float
         The time window [s].
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         Program version and computing time.
     error : float

@@ -130,7 +130,10 @@ class LoadPath(FieldsOnly):
         last: np.ndarray,
         refinements: int,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Refine the largest values near times t [s], between `first` and `last`; return values and times."""
+        """Find where `size` of single outputs is largest near times t [s], between `first` and `last`.
+
+        Return the values of the outputs there, and the times [s].
+        """
         found, half_width = np.empty(0), np.maximum(last - t, t - first)
         for _ in range(refinements):
             near = np.clip(t + half_width * np.linspace(-1, 1, 2 * _FINE + 1), first, last)
@@ -200,7 +203,8 @@ def largest_per_coordinate(
 ) -> np.ndarray:
     """Compute bounds of loads (S stations, K outputs) over the run, per unit amplitude of n coordinates.
 
-    Each coordinate vibrates at its frequency [rad/s]; the bounds (S, K, n) sum the largest contributions.
+    Each coordinate vibrates at its frequency [rad/s]; the bounds (S, K, n) sum the largest contributions
+    of all quantities of the root's motion.
     """
     # There are several samples in each time step, and time steps are short during a shock.
     root = system.root(path.samples[0])

@@ -59,7 +59,7 @@ class LoadRows:
     Parameters
     ----------
     load : dict of str to ndarray, shape (S, K)
-        Load by each quantity of the root's motion on the beam at rest.
+        Load by each quantity of the root's motion on the undeformed beam.
     position, velocity, acceleration : dict of str to ndarray, shape (S, K, coordinates)
         Load per coordinate, velocity and acceleration, by each quantity of the root's motion.
     """

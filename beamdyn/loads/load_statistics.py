@@ -91,7 +91,10 @@ class LoadFractions:
         return _EPSILON * (constant + 2 * np.abs(by_pole).sum(axis=-1))
 
     def _parts(self, spectrum: PowerSpectrum, order: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the terms of the mean square: by pole (S, K, m), of which 2 Re is summed, and constant."""
+        """Compute the parts of the mean square: terms (S, K, m), and a constant (S, K).
+
+        The mean square is the constant plus twice the real part of the sum of the terms over the m poles.
+        """
         between = 1 / (-self.poles - np.conj(self.poles)[:, None])
         conjugate = np.conj(self.direct)[..., None] + np.conj(self.residues) @ between
         integrals = pole_integrals(spectrum, self._mu, self.shift, order)
@@ -155,7 +158,10 @@ class LinearLoads:
         return (*found,)
 
     def _direct(self, drive: HarmonicDrive) -> np.ndarray:
-        """Compute the direct outputs at stations by a unit input, including the accelerations it causes."""
+        """Compute the direct terms d of the outputs at stations, which follow the input without delay.
+
+        They are due to the acceleration of the root, the force itself, and the accelerations it causes.
+        """
         rows, by_force = self._rows
         total = _sum(drive.accelerations, rows.load, np.zeros(rows.shape))
         if drive.force is None:
@@ -196,7 +202,7 @@ class LinearLoads:
 
     @cached_property
     def _rows(self) -> tuple[LoadRows, np.ndarray]:
-        """Rows without accelerations, and the outputs at stations by a unit force on each coordinate."""
+        """Outputs by displacements and velocities alone, and outputs by a unit force on each coordinate."""
         model, n = self.model, self.model.equations.size
         rows = span_rows(model.scene, model.discretization, model.equations, self.stations)
         acceleration = rows.acceleration.get("unity", np.zeros((*rows.shape, n)))
@@ -251,7 +257,7 @@ class RandomStatistics:
     rms_in_turn : ndarray, shape (S, K)
         Root mean square at the angle of rotation at which it is largest [same unit].
     rate_rms : ndarray, shape (S, K)
-        Root mean square of the rate of the random part [same unit / s].
+        Root mean square of the time derivative of the random part [same unit / s].
 
     References
     ----------
@@ -279,7 +285,10 @@ class RandomStatistics:
         return np.where(moving, self.rate_rms, 0.0) / (_TURN * np.where(moving, self.rms, 1.0))
 
     def largest(self, factor: Callable[[np.ndarray], np.ndarray], duration: float) -> np.ndarray:
-        """Compute the expected largest magnitudes in a duration [s]; peak factors are `factor(crossings)`."""
+        """Compute the expected largest magnitudes in a duration [s].
+
+        `factor` gives the peak factors, over the root mean square, for numbers of zero crossings.
+        """
         count = np.maximum(2 * self.crossings * duration, _LEAST)
         return np.abs(self.mean) + self.gravity + factor(count) * self.rms_in_turn
 

@@ -293,7 +293,7 @@ def random_loads(
 
 
 def _tip_deflection(model: ModelAtSpeed, drive: Excitation, spectrum: PowerSpectrum) -> np.ndarray:
-    """Compute the tip deflection [m] that is rarely exceeded, in each modelled direction."""
+    """Compute three standard deviations of the tip deflection [m], in each modelled direction."""
     squares = [
         sum(
             partial_fractions(model, each, tip).mean_square(spectrum, h * model.speed / _TURN)

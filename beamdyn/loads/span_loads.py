@@ -99,8 +99,9 @@ class SpanLoads(SceneResult, JudgedByRepeating):
     of points of the section.  Loads are those of the part outboard of a station on the part inboard,
     about its deflected axis; they follow from external forces and inertia outboard, not from a curvature.
 
-    `model_error` and `left_out`, computed on first use, are the changes of the `judged_quantity`'s largest
-    value by physical effects that the model leaves out.
+    `left_out` contains the estimated relative change of the `judged_quantity`'s largest value by each
+    neglected physical effect, `model_error` the magnitude of the sum of these changes; both are computed at
+    first use.
 
     Parameters
     ----------
@@ -126,7 +127,7 @@ class SpanLoads(SceneResult, JudgedByRepeating):
     force_error, moment_error, curvature_error, strain_error, stress_error : ndarray
         Estimated errors; for a transient one error for the whole run, without the first axis.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         Program version, discretization and computing time.
 

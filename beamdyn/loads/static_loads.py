@@ -205,7 +205,10 @@ def _warnings(scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray) -
 def _solve(
     model: Model, asked: span_loads.AskedLoads, speeds: np.ndarray, theta: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute K outputs at S stations in equilibrium at C speeds, (C, S, K), and the tip deflections."""
+    """Compute K outputs at S stations in equilibrium at C speeds, (C, S, K), and the tip deflections.
+
+    The angle of rotation is theta [rad].
+    """
     equations = model.equations
     rows = span_rows(model.scene, model.discretization, equations, asked.stations)
     root = equations.root(replace(MotionSample.steady(speeds), angle=np.full(len(speeds), theta)))

@@ -214,7 +214,7 @@ class LoadLines:
         return np.where(known[0] ^ known[1], np.inf, difference)
 
     def _over(self, names: list[tuple[int, ...]]) -> np.ndarray:
-        """Return the amplitudes of lines given by name; missing lines are 0."""
+        """Return the amplitudes of the lines of given harmonics; missing lines are 0."""
         found = np.zeros((*self.amplitude.shape[:-1], len(names)), dtype=complex)
         found[..., [names.index(tuple(h)) for h in self.harmonics]] = self.amplitude
         return found

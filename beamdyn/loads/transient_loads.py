@@ -106,7 +106,7 @@ class TransientLoads(span_loads.SpanLoads):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the largest value by effects left out; unknown if initial coordinates were given."""
+        """Relative changes of the largest value by neglected effects; unknown for given initial states."""
         from_rest = isinstance(self.run.request.initial, str)
         return super().left_out_effects if from_rest else nothing_known(self.scene)
 
@@ -124,7 +124,7 @@ class TransientLoads(span_loads.SpanLoads):
         return find_speed_range(self.run.request.motion, self.run.path.end)[-1]
 
     def as_deflection(self, value: np.ndarray, name: str) -> SolvedValues | None:
-        """Estimate a load with an effect from the change of the tip deflection; None if not applicable.
+        """Estimate a load with an added effect from the change of the tip deflection; None if not applicable.
 
         The estimate applies to large deflection, and to effects estimated from the frequency alone.
         """

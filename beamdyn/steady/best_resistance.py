@@ -28,7 +28,7 @@ from beamdyn.steady.road_harvest import check_road, harvest_on_road
 _DECADES = 4.0  # decades of resistance that are tried first, either side of 1/(omega capacitance)
 _WIDTH, _HEIGHT = 7.5, 4.8  # width and height of the picture [inch]
 _DIGITS = 6  # largest number of digits of a resistance
-# Relative error of the resistance over that of the power: up to 1 in 16 cases with 1 to 5 modes.
+# Assumed ratio of the relative errors of resistance and power; at most 1 in 16 cases with 1 to 5 modes.
 _LIKE_POWER = 2.0
 
 
@@ -43,7 +43,7 @@ class ResistanceSearch:
     tolerance : float
         Relative accuracy to which the best one is refined.
     compared : bool
-        Whether what it harvests is compared with other models, for its error.
+        Whether the error of the harvested power is estimated, by comparison with larger models.
     """
 
     tried: int = 33
@@ -136,7 +136,7 @@ def best_resistance(
     modes, tolerance, discretization
         As for `steady_response`.
     road : RoadRoughness, optional
-        A random road, whose power counts besides, as for `harvest`.
+        A random road, whose power is added to that of steady motion, as for `harvest`.
 
     Returns
     -------
@@ -214,7 +214,7 @@ def sought(
 
 
 def _powers(response: SteadyResponse, road: RoadRoughness | None, resistances: np.ndarray) -> np.ndarray:
-    """Compute the mean power [W] with each of several load resistances [ohm], also that by a random road."""
+    """Compute the mean power [W] with each load resistance [ohm], including that by a random road."""
     request = response.request
     found = ElectricLines.of_resistances(request, resistances).power
     if road is None:

@@ -101,7 +101,7 @@ class Crossings(SceneResult, StatesModelError, Sequence[Crossing]):
         Number of unlisted forced crossings: near each the steady response may have a peak.  Parametric
         crossings cause no peak: where damping is too weak, free motion grows there.
     warnings : tuple of str
-        Limitations of the result, and why there is no crossing.
+        Warnings about the validity and accuracy of the result, and why there is no crossing.
     provenance : Provenance
         How the result was computed.
 
@@ -137,7 +137,7 @@ class Crossings(SceneResult, StatesModelError, Sequence[Crossing]):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of each crossing's speed by the effects left out of the model."""
+        """Relative changes of each crossing's speed by the effects left out of the model."""
         if not self.crossings:
             return nothing_known(self.scene)
         speeds, modes = np.array([c.speed for c in self]), self.frequency.shape[1]
@@ -177,9 +177,9 @@ class Crossings(SceneResult, StatesModelError, Sequence[Crossing]):
 def left_out_of_crossings(
     model: Model, speeds: np.ndarray, frequencies: np.ndarray, modes: int
 ) -> LeftOutEffects:
-    """Estimate changes of resonance speeds (k,) [rad/s] by each effect left out, to first order.
+    """Estimate relative changes of resonance speeds (k,) by each effect left out, to first order.
 
-    A speed of resonance moves by the relative change of the frequency, over 1 - (speed/frequency) times the
+    The relative change of a resonance speed is that of the frequency, over 1 - (speed/frequency) times the
     slope of the frequency over speed.
 
     Parameters

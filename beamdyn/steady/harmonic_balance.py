@@ -32,7 +32,7 @@ _MOST_ENTRIES = 10**7  # number of matrix entries in memory when equations are s
 # Largest number of terms of the series; it ends without a result unless each term reduces the error 20 times.
 _MOST_TERMS = 12
 _SETTLED = 4 * np.finfo(float).eps  # relative change by one term below which the series has converged
-# Fraction of converged pairs of rates above which the arrays are copied without them, to save time.
+# Fraction of converged pairs of phase rates above which the arrays are copied without them, to save time.
 _WORTH_LEAVING_OUT = 0.25
 
 
@@ -42,7 +42,7 @@ def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) ->
     Parameters
     ----------
     system : PeriodicSystem
-        The equations at S pairs of rates.
+        The equations at S pairs of phase rates [rad/s].
     harmonics : sequence of pair, length H
         Harmonics to keep; with each, its opposite.
 
@@ -60,12 +60,12 @@ def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) ->
 
 
 def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:
-    """Solve for given harmonics of the response by one matrix over all of them, at each pair of rates."""
+    """Solve for the given harmonics of the response by one matrix for all, at each pair of phase rates."""
     T = _real_basis(harmonics)
     A, b = _assemble(system, harmonics, T)
     try:
         y = np.linalg.solve(A, b[..., None])[..., 0]
-    except np.linalg.LinAlgError:  # results are nan at pairs of rates at which the equations are singular
+    except np.linalg.LinAlgError:  # results are nan at phase rates at which the equations are singular
         if len(A) == 1:
             return np.full((1, len(harmonics), system.size), np.nan, dtype=complex)
         parts = (solve_at_once(system[i : i + 1], harmonics) for i in range(len(A)))
@@ -78,7 +78,7 @@ def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: P
 
     Parameters
     ----------
-    spectrum : ndarray of complex, shape (rates, samples, samples)
+    spectrum : ndarray of complex, shape (S, samples, samples)
         Harmonics of the function.
     harmonics : sequence of pair, length H
         Harmonics of the other factor, and of the product.
@@ -87,7 +87,7 @@ def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: P
 
     Returns
     -------
-    ndarray of complex, shape (rates, H, H)
+    ndarray of complex, shape (S, H, H)
     """
     h = np.array(harmonics)
     return select_harmonics(spectrum, h[:, None] - h[None, :] + np.array(shift))
@@ -113,6 +113,7 @@ def _assemble(
     """Assemble real equations of harmonic balance for the cosine and sine parts of all harmonics.
 
     Blocks of a harmonic are K - Omega_h^2 M and i Omega_h C; the periodic coefficients couple harmonics.
+    T is the matrix of `_real_basis`.
     """
     h = np.array(harmonics)
     S, H, n = len(system.rates), len(h), system.size
@@ -148,7 +149,7 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     Parameters
     ----------
     system : PeriodicSystem
-        The equations at S pairs of rates.
+        The equations at S pairs of phase rates [rad/s].
     harmonics : sequence of pair, length H
         Harmonics to keep; with each, its opposite.
 
@@ -190,7 +191,7 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
 
 
 def _size(y: np.ndarray) -> np.ndarray:
-    """Compute the magnitudes of responses (harmonics, modes, rates), one for each pair of rates."""
+    """Compute the magnitudes of responses (harmonics, modes, S), one for each of S pairs of phase rates."""
     return (np.abs(np.real(y)) + np.abs(np.imag(y))).sum(axis=(0, 1))
 
 
@@ -205,7 +206,7 @@ class _Products:
     matrix : ndarray, shape (coordinates, coordinates, S)
         Matrix in modal coordinates.
     factors : tuple of ndarray, shape (S,)
-        Harmonics of the coefficients.
+        Complex amplitudes of the harmonics of the periodic coefficient.
     places : tuple of (ndarray, ndarray)
         For each factor, indices of products among the H harmonics, and of their sources among these and the
         conjugates.
@@ -238,7 +239,7 @@ class _Products:
         return replace(self, matrix=self.matrix[..., chosen], factors=factors)
 
     def sum(self, both: np.ndarray, count: int) -> np.ndarray:
-        """Sum the forces that follow from harmonics and their conjugates, stacked in `both`."""
+        """Sum the forces on `count` harmonics by all harmonics and their conjugates, stacked in `both`."""
         product = np.zeros((count, *both.shape[1:]), dtype=complex)
         for factor, (to, source) in zip(self.factors, self.places, strict=True):
             product[to] += factor * both[source]
@@ -247,7 +248,7 @@ class _Products:
 
 @dataclass(frozen=True)
 class _Series:
-    """Terms of the series of interactions, for H harmonics, n modes and S pairs of rates.
+    """Terms of the series of interactions, for H harmonics, n modes and S pairs of phase rates.
 
     Parameters
     ----------
@@ -308,7 +309,7 @@ class _Series:
 
 
 def _multiply(matrix: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Multiply matrices (n, n, S) of S pairs of rates with responses y (harmonics, n, S)."""
+    """Multiply the matrix (n, n, S) with the response y (harmonics, n, S), for each pair of phase rates."""
     total = np.empty_like(y)
     for row, out in zip(matrix, np.moveaxis(total, 1, 0), strict=True):
         out[:] = (row * y).sum(axis=1)

@@ -58,8 +58,8 @@ class Harvest(SceneResult, JudgedByRepeating):
     Power and efficiency are means over time, and over the phase between road and rotation where their rates
     are commensurate; voltage, current and strain are the largest over both.
 
-    `model_error` and `left_out`, computed on first use, are the changes of the largest power by physical
-    effects that the model leaves out.
+    `left_out` contains the estimated relative change of the largest power by each neglected physical effect,
+    `model_error` the magnitude of the sum of these changes; both are computed at first use.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class Harvest(SceneResult, JudgedByRepeating):
     voltage, current : ndarray, shape (S,)
         Largest voltage across the load [V], and current through it [A].
     strain : ndarray, shape (S,)
-        Largest bending strain of the layers.
+        Largest bending strain of the layers (magnitude).
     amplitude : ndarray, shape (S,)
         Largest tip deflection [m].
     error : ndarray, shape (S,)
@@ -88,7 +88,7 @@ class Harvest(SceneResult, JudgedByRepeating):
         Speeds in the range at which the excitation is in resonance with a mode [rad/s], of the beam with
         short-circuited layers or, for an open circuit, with open layers.
     warnings : tuple of str
-        Limitations of the result, including speeds at which the strain exceeds its limit.
+        Warnings about the validity and accuracy of the result, and of strains that exceed their limit.
     provenance : Provenance
         How the result was computed.
 
@@ -138,7 +138,7 @@ class Harvest(SceneResult, JudgedByRepeating):
 
     @property
     def total_error(self) -> np.ndarray:
-        """Estimated relative error of `total_power`; if that is 0, the larger error of both parts."""
+        """Estimated relative error of `total_power`; where the power is 0, the larger error of both parts."""
         if self.road is None:
             return self.error
         errors, powers = (self.error, self.road.error), (self.power, self.road.power)
@@ -233,7 +233,7 @@ def harvest(
     modes, tolerance, discretization
         As for `steady_response`.
     road : RoadRoughness, optional
-        A random road that the wheel of a `RollingWheel` follows, beside the waves of its motion.
+        A random road that the wheel of a `RollingWheel` follows, in addition to the waves of its motion.
 
     Returns
     -------
@@ -325,7 +325,7 @@ def _refinements(request: ResponseRequest) -> Iterator[ResponseRequest]:
 
 
 def electrodes_of(scene: Scene) -> Electrodes:
-    """Return the electrodes of the beam; refuse a beam that has none."""
+    """Return the electrodes of the beam; raise `InvalidValue` if it has none."""
     if scene.beam.electrodes is None:
         remedy = Words(Named("Harvester.on(beam) puts them on", "a table [harvester] puts them on"))
         raise InvalidValue("harvester", None, "the beam carries no piezoelectric layers", remedy)
@@ -411,7 +411,7 @@ class ElectricLines:
         equations: Equations,
         parts: list[tuple[PeriodicSystem, np.ndarray]],
     ) -> ElectricLines:
-        """Solve for all coordinates of uncoupled parts of equations at speeds (S,)."""
+        """Solve for all coordinates at speeds (S,), given uncoupled parts of equations and their indices."""
         motion = check_steady_state(request.scene.motion)
         every = np.broadcast_to(np.eye(equations.size), (len(speeds), equations.size, equations.size))
         used, c, truncation = solve_parts(parts, every, request.harmonics, request.tolerance)
@@ -438,7 +438,7 @@ class ElectricLines:
 
 @dataclass(frozen=True)
 class HarvestedPowers:
-    """Mean powers and largest voltage, current and strain at S speeds, with an error of the harmonics."""
+    """Mean powers and largest voltage, current, strain at S speeds; relative error by harmonics left out."""
 
     power: np.ndarray
     input_power: np.ndarray

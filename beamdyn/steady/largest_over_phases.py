@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 _MAXIMA = 16  # number of largest local maxima of the samples that are refined
-_LEAST_SAMPLE = 0.5  # near samples below this fraction of the largest, maxima are lower (Riesz' inequality)
+_LEAST_SAMPLE = 0.5  # samples below this fraction of the largest are not near the maximum (Riesz' inequality)
 _MOST_STEPS = 20  # largest number of Newton's steps; more than a few are needed only near a saddle
 _CONVERGED = 1e-15  # relative increase by one step below which the maximum has converged
 _WEAK = 0.02  # sum of weak lines over the sum of all lines: weak lines shift maxima, but hardly add any

@@ -32,7 +32,7 @@ _GRIDS = (8, 16, 32, 64)  # numbers of samples of each phase, tried in turn
 
 @dataclass(frozen=True)
 class PeriodicSystem:
-    """Equations with coefficients periodic in two phases, as harmonics, for a batch of S pairs of rates.
+    """Equations with coefficients periodic in two phases, as harmonics, for S pairs of phase rates.
 
     A spectrum has the shape (S, samples, samples): the harmonic (j, k) is at [:, j, k], as in numpy's FFT.
 
@@ -43,7 +43,7 @@ class PeriodicSystem:
     mean : ndarray, shape (3, S, coordinates, coordinates)
         Constant parts of K, C and M, in this order: of the derivatives 0, 1 and 2.
     varying : tuple of (int, ndarray, ndarray)
-        Periodic parts: the order of the derivative (0 for K, 1 for C), a spectrum, its matrices at each rate.
+        Periodic parts: the order of the derivative (0 for K, 1 for C), a spectrum, its S matrices.
     loads : tuple of (ndarray, ndarray)
         Terms of the load: a spectrum, its vectors (S, coordinates).
     """
@@ -54,7 +54,7 @@ class PeriodicSystem:
     loads: tuple[tuple[np.ndarray, np.ndarray], ...]
 
     def __getitem__(self, chosen: np.ndarray | slice) -> PeriodicSystem:
-        """Select the equations at the chosen pairs of rates."""
+        """Select the equations at the chosen pairs of phase rates."""
         return PeriodicSystem(
             self.rates[chosen],
             self.mean[:, chosen],
@@ -81,7 +81,7 @@ class PeriodicSystem:
 
     @cached_property
     def without_stiffness(self) -> np.ndarray:
-        """Whether only the time derivative of each coordinate matters, as of a circuit's flux."""
+        """Whether each coordinate has no stiffness: only its rate matters, as of a circuit's flux."""
         stiff = self.mean[0].any(axis=(0, 1))
         for order, _, matrix in self.varying:
             stiff = stiff | (matrix.any(axis=(0, 1)) & (order == 0))
@@ -122,19 +122,19 @@ class MeanModes:
 
     @classmethod
     def of_system(cls, system: PeriodicSystem) -> MeanModes:
-        """Compute the modes at S pairs of rates; raise a LinAlgError if the mass is singular."""
+        """Compute the modes at S pairs of phase rates; raise a LinAlgError if the mass is singular."""
         K, _, M = system.mean
         inverse = np.linalg.inv(np.linalg.cholesky(M))
         squared, vectors = np.linalg.eigh(inverse @ K @ np.swapaxes(inverse, 1, 2))
         return cls(squared, np.swapaxes(inverse, 1, 2) @ vectors)
 
     def transform(self, matrix: np.ndarray) -> np.ndarray:
-        """Transform matrices (rates, n, n) to modal coordinates, with the rates last: shape (n, n, rates)."""
+        """Transform matrices (S, n, n) of S pairs of phase rates to modal coordinates: shape (n, n, S)."""
         return np.ascontiguousarray(np.moveaxis(np.swapaxes(self.shapes, 1, 2) @ matrix @ self.shapes, 0, 2))
 
 
 def _fourier_coefficients(samples: np.ndarray) -> np.ndarray:
-    """Compute the harmonics of samples (rates, N, N) on an N x N grid of phases; 0 within rounding."""
+    """Compute the harmonics of samples (rates, N, N) on N x N phases; set rounding errors to 0."""
     if (samples == samples[:, :1, :1]).all():
         constant = np.zeros(samples.shape, dtype=complex)
         constant[:, 0, 0] = samples[:, 0, 0]
@@ -241,7 +241,7 @@ def _stack(arrays: list[np.ndarray]) -> np.ndarray:
 
 
 def split_uncoupled(system: PeriodicSystem, equations: Equations) -> list[tuple[PeriodicSystem, np.ndarray]]:
-    """Split the equations into parts that no term couples, such as two planes, each with its coordinates."""
+    """Split the equations into parts that no term couples, such as two planes, each with its indices."""
     places = [equations.places(names) for names in equations.connected]
     return [(system.part(each), each) for each in places]
 

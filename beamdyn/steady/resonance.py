@@ -142,7 +142,7 @@ def resonance_speeds(
 
 
 def _check_stiffness(scene: Scene, critical: float) -> None:
-    """Refuse a beam that turns over about its root at any speed above 0."""
+    """Raise an error if the beam turns over about its root at any speed above 0."""
     if critical > 0:
         return
     in_plane = np.abs([np.cos(scene.mount.bending_angle), np.sin(scene.mount.bending_angle)])

@@ -59,8 +59,9 @@ _LINEAR = "vibration about the equilibrium being linear"
 class SteadyResponse(StatesModelError):
     """Steady response over speed, after the free vibration from the start has decayed.
 
-    `model_error` (k,) and `left_out`, computed on first use, are the changes of the amplitude by physical
-    effects that the model leaves out, at the `left_out_speeds` (k,), or by `left_out_at` at other speeds.
+    `left_out` contains the estimated relative change of the amplitude by each neglected physical effect at
+    the `left_out_speeds` (k,), `model_error` (k,) the magnitude of the sum of these changes; both are
+    computed at first use.  `left_out_at` computes the changes at other speeds.
 
     Parameters
     ----------
@@ -95,7 +96,7 @@ class SteadyResponse(StatesModelError):
     harmonics : ndarray of int, shape (l, 2)
         Harmonic (j, k) of each line.
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
 
@@ -184,7 +185,7 @@ class SteadyResponse(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the amplitude at the `left_out_speeds` by effects left out of the model."""
+        """Relative changes of the amplitude at the `left_out_speeds` by effects left out of the model."""
         return self.left_out_at(self.left_out_speeds)
 
     @property
@@ -197,7 +198,7 @@ class SteadyResponse(StatesModelError):
         return self.speeds[np.union1d(known[spread], known[np.argmax(self.amplitude[known])])]
 
     def left_out_at(self, speeds: Sequence[float] | np.ndarray) -> LeftOutEffects:
-        """Compute changes of the amplitude at speeds [rad/s] by effects left out of the model."""
+        """Compute relative changes of the amplitude at speeds [rad/s] by effects left out of the model."""
         if not len(speeds):
             return nothing_known(self.scene)
         request = replace(self.request, speeds=np.asarray(speeds, dtype=float))
@@ -350,7 +351,7 @@ class ResponseRequest(FieldsOnly):
         )
 
     def solve_with(self, scene: Scene, _: str = "") -> SolvedValues:
-        """Compute amplitudes of another scene with as many modes, or more if one has large deflection."""
+        """Compute amplitudes of another scene with as many modes; more if only one has large deflection."""
         modes = self.basis.modes or 1
         other = replace(self, scene=scene, discretization=ensure_size(scene, self.discretization, modes))
         if scene.physics.large_deflection != self.scene.physics.large_deflection:
@@ -379,7 +380,7 @@ class ResponseRequest(FieldsOnly):
         return refine(first, finer, lambda found: not (found.mode_error > self.tolerance).any())
 
     def smallest_basis(self) -> ModalBasis:
-        """Choose the first basis: modes at the slowest and fastest speed; of a bent beam, at each speed."""
+        """Choose the first basis: modes at slowest and fastest speed; for large deflection, at each."""
         if self.scene.physics.large_deflection:
             return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
         speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)

@@ -69,7 +69,7 @@ class RoadHarvest:
 
 
 def check_road(scene: Scene, road: object) -> None:
-    """Refuse a road that is no `RoadRoughness`, and a scene without a rolling wheel or without damping."""
+    """Raise an error unless the road is a `RoadRoughness`, and the scene has a rolling wheel and damping."""
     kind("road", road, RoadRoughness, 'RoadRoughness("C")')
     random_input(scene, 1.0, cast("RoadRoughness", road), None)
     check_damped(scene)

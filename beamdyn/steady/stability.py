@@ -34,12 +34,12 @@ from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, gene
 
 # Largest number of interactions with the periodic coefficients through which two modes resonate.
 _TONGUE_ORDER = 2
-_ROUNDING = 1e-9  # ratio of real part to largest eigenvalue that is rounding error
+_ROUNDING = 1e-9  # largest real part, over the largest |eigenvalue|, that counts as rounding error
 # Relative change of the growth rate by one more interaction, below which the rate has converged.
 _SETTLED = 1e-6
 _MOST_INTERACTIONS = 4  # largest number of interactions beyond the resonant harmonics
-_MOST_OUTSIDE = 0.1  # largest fraction of an eigenvector in the outermost harmonics
-_SAME_RATE = 0.05  # difference of copies of one growth rate, over the resonance's contribution to it
+_MOST_OUTSIDE = 0.1  # largest share of an accepted eigenvector in the outermost harmonics
+_SAME_RATE = 0.05  # largest difference of copies of one growth rate, over the change by the resonance
 _NEAREST = 8  # number of eigenvalues followed from one number of interactions to the next
 _OFF = 1e-4  # relative offset of the shift from an eigenvalue, at which the matrix is singular
 _SINGULAR = (
@@ -61,7 +61,7 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     Parameters
     ----------
     system : PeriodicSystem
-        The equations, at S pairs of rates.
+        The equations, at S pairs of phase rates.
 
     Returns
     -------
@@ -103,7 +103,10 @@ def fastest_growth(parts: Sequence[PeriodicSystem]) -> tuple[np.ndarray, np.ndar
 
 
 def _combine(sigma: np.ndarray, shift: np.ndarray, resonances: list[_Resonance]) -> tuple[float, float]:
-    """Return the largest growth rate of resonant and other modes, and its error."""
+    """Return the largest growth rate of resonant and other modes, and its error [1/s].
+
+    The other modes have the eigenvalues sigma, and `shift` is the error of their growth rates.
+    """
     scale, resonant = np.abs(sigma).max(), {resonance.mode for resonance in resonances}
     alone = [a for a in range(len(sigma)) if np.imag(sigma[a]) >= 0 and a not in resonant]
     found = [resonance.growth_rate(scale) for resonance in resonances]
@@ -114,7 +117,7 @@ def _combine(sigma: np.ndarray, shift: np.ndarray, resonances: list[_Resonance])
 
 
 def _largest_real_part(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
-    """Return the largest real part of exponents s, or 0 where it is within rounding."""
+    """Return the largest real part of exponents s, or 0 where it is a rounding error of `scale`."""
     largest = np.real(s).max(axis=-1)
     return np.where(np.abs(largest) <= _ROUNDING * scale, 0.0, largest)
 
@@ -181,7 +184,7 @@ def _balance(
 
 @dataclass(frozen=True)
 class _MeanMotion:
-    """Free motion at S pairs of rates, in the modes of the mean equations.
+    """Free vibration at S pairs of phase rates, in the modes of the equations averaged over both phases.
 
     Parameters
     ----------
@@ -201,7 +204,7 @@ class _MeanMotion:
     V: list[tuple[np.ndarray, np.ndarray]]
 
     def __getitem__(self, chosen: np.ndarray) -> _MeanMotion:
-        """Select the free motion at the chosen pairs of rates."""
+        """Select the free vibration at the chosen pairs of phase rates."""
         V = [(spectrum[chosen], v[chosen]) for spectrum, v in self.V]
         return _MeanMotion(self.rates[chosen], self.coupling, self.sigma[chosen], V)
 
@@ -231,7 +234,7 @@ class _MeanMotion:
         return np.minimum(shift, self.radius)
 
     def _couple(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute the periodic coefficients between all pairs of modes, harmonic by harmonic."""
+        """Compute the periodic coefficients between all modes: (rates, modes, modes, harmonics)."""
         spectra = (convolution_matrix(f, [(0, 0), *harmonics])[:, 1:, 0] for f, _ in self.V)
         parts = (f[:, None, None] * v[..., None] for f, (_, v) in zip(spectra, self.V, strict=True))
         return reduce(np.add, parts)
@@ -251,7 +254,10 @@ class _MeanMotion:
         return np.where(between[:, None], radius, np.minimum(radius, scaled))
 
     def resonances(self, considered: np.ndarray) -> Iterator[tuple[int, list[_Resonance]]]:
-        """Yield index and resonances of each pair of rates at which discs of opposite energy overlap."""
+        """Yield index and resonances of each pair of phase rates at which discs of modes overlap.
+
+        Only modes of opposite energy sign, and pairs marked in `considered`, are compared.
+        """
         levels = generate_harmonics([(0, 0)], self.coupling, _TONGUE_ORDER)
         harmonics = [h for level in levels for h in level]
         overlap = self._overlap(harmonics, self.radius) & considered[:, None, None, None]
@@ -289,12 +295,12 @@ class _MeanMotion:
 
 @dataclass(frozen=True)
 class _Resonance:
-    """A mode that resonates with others through the periodic coefficients, at one pair of rates.
+    """A mode that resonates with others through the periodic coefficients, at one pair of phase rates.
 
     Parameters
     ----------
     rates, coupling, sigma, V
-        As for `_MeanMotion`, at one pair of rates.
+        As for `_MeanMotion`, at one pair of phase rates.
     mode : int
         Index of the mode, in the harmonic (0, 0).
     harmonics : set of pair
@@ -376,7 +382,10 @@ class _Resonance:
         return j - turns * a, k - turns * b
 
     def _folded_convolution(self, spectrum: np.ndarray, harmonics: list[Pair], phase: float) -> np.ndarray:
-        """Build the matrix of the product with a spectrum; harmonics of equal rate are added."""
+        """Build the matrix of the product with a spectrum, adding harmonics of equal rate.
+
+        `phase` is as for `_hill_matrix`.
+        """
         if self.stationary is None:
             return convolution_matrix(spectrum, harmonics)[0]
         most = 1 + (np.ptp(harmonics, axis=0).max() + spectrum.shape[-1] // 2) // max(

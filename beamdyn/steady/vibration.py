@@ -50,7 +50,7 @@ class Vibration:
     Parameters
     ----------
     parts : list of (PeriodicSystem, ndarray)
-        Equations that no term couples, each with its coordinates.
+        Equations that no term couples, each with the indices of its coordinates.
     tips : ndarray, shape (S, d, coordinates)
         Deflection of the tip per coordinate, in each of d directions.
     static : ndarray, shape (S, d)
@@ -68,7 +68,10 @@ class Vibration:
     lost: dict[str, np.ndarray]
 
     def stability(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Compute, at each speed, growth rate of free motion, its error, status, and if that is undecided."""
+        """Compute at each speed growth rate of free motion [1/s], its error, status, whether it is uncertain.
+
+        The status is uncertain where the growth rate is smaller than its error.
+        """
         rate, error = np.full((2, len(self.static)), np.nan)
         if (known := ~self.without_rate).any():
             rate[known], error[known] = fastest_growth([part[known] for part, _ in self.parts])
@@ -196,7 +199,7 @@ def solve_parts(
     Parameters
     ----------
     parts : list of (PeriodicSystem, ndarray)
-        Equations at S speeds, each with its coordinates.
+        Equations at S speeds, each with the indices of its coordinates.
     tips : ndarray, shape (S, d, coordinates)
         Tip deflection per coordinate in d directions.
     interactions : int, optional

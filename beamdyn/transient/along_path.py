@@ -52,7 +52,8 @@ _BY_CHANCE = 3.0
 # Largest ratio of the fast modes' amplitude to the difference from the larger model, for which amplitudes may
 # be added as random numbers.
 _MOST_RINGING = 0.1
-# Growth of the deflection at steady speed above which the oscillator equations are not valid.
+# Largest deflection in the last quarter of the run at steady speed, over that in its first half, above which
+# the oscillator equations are not valid.
 _MOST_GROWTH = 2.0
 
 
@@ -85,7 +86,7 @@ class _Residual:
 
     @classmethod
     def of(cls, system: ModalSystem, larger: ModalSystem) -> _Residual | None:
-        """Build the residual of a system's motion; None if `larger` lacks system modes or is gyroscopic."""
+        """Build the residual of a system's motion; None if `larger` lacks modes of it or is gyroscopic."""
         few, many = (_shapes(each.equations) for each in (system, larger))
         stiffness, damping, _ = larger.equations.matrices
         if few.shape[0] != many.shape[0] or not set(damping) <= {"unity"}:
@@ -153,8 +154,8 @@ def distance_along_path(
     float or None
         Distance [m]; None where the estimate by oscillators is not valid: gyroscopic coupling, coordinates
         that the larger model does not contain, a mode that diverges or is heavily damped, coupling of modes
-        that does not settle, a motion that grows, and where ringing counts most: after an abrupt start in
-        long steps, or in a record that is rough from sample to sample.
+        that does not settle, a motion that grows, or fast modes that vibrate with more than a tenth of the
+        distance: after an abrupt start in long steps, or in a record that is rough from sample to sample.
     """
     residual, start = _Residual.of(system, larger), max(system.motion.steady_start, path.start)
     times, coordinates, _ = path.samples
@@ -186,7 +187,9 @@ def distance_along_path(
 
 
 def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
-    """Estimate the tip's vibration amplitude [m] by jumps of the load's slope, added as random numbers.
+    """Estimate the tip's amplitude [m] of fast modes, excited by jumps of the load's slope at samples.
+
+    Contributions of modes too fast for the run's samples are added as random numbers.
 
     A change of slope excites a mode of angular frequency w with the amplitude change / w^3.  A jump of the
     load, spread over the time h between two samples, has w h times the effect.
@@ -213,9 +216,9 @@ def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_sta
 
 
 class _Followed(NamedTuple):
-    """Difference from the larger model in a stretch: largest at the tip, final coordinates and rates.
+    """Difference from the larger model in a stretch: largest at the tip [m], final coordinates e, velocities.
 
-    `ringing` is the tip's amplitude [m] by the fast modes, if the stretch begins with a jump.
+    `ringing` is the tip's vibration amplitude [m] in the fast modes, if the stretch begins with a load jump.
     """
 
     largest: float
@@ -227,7 +230,11 @@ class _Followed(NamedTuple):
 def _follow(
     residual: _Residual, t: np.ndarray, R: np.ndarray, values: np.ndarray, e: np.ndarray, rate: np.ndarray
 ) -> _Followed | None:
-    """Integrate the difference from the larger model over a stretch, mode by mode; None if that fails."""
+    """Integrate the difference from the larger model over a stretch, mode by mode; None if that fails.
+
+    It begins with coordinates e and velocities `rate`, and is driven by the residual R at times t.  The rows
+    of `values` are the functions of time that multiply the stiffness matrices.
+    """
     oscillators = _Oscillators.of(residual, t, values)
     if oscillators is None:
         return None
@@ -259,7 +266,7 @@ class _Oscillators:
     coupled : ndarray, shape (k, n, n)
         Stiffness matrices transformed to these modes, without their diagonals.
     stiff : ndarray, shape (N, n)
-        Stiffness of each mode.
+        Stiffness of each mode [1/s^2].
     decay : ndarray, shape (n,)
         Rate of decay of each mode [1/s].
     slow : ndarray of bool, shape (n,)
@@ -280,7 +287,10 @@ class _Oscillators:
 
     @classmethod
     def of(cls, residual: _Residual, t: np.ndarray, values: np.ndarray) -> _Oscillators | None:
-        """Build the oscillators; None if a mode diverges or is heavily damped."""
+        """Represent free vibration of the larger model by the modes of its mean stiffness at times t.
+
+        None if a mode diverges or is heavily damped.
+        """
         squares, modes = residual.mean_modes(values)
         matrices = modes.T @ residual.stiffness @ modes
         diagonals = np.diagonal(matrices, axis1=1, axis2=2)
@@ -303,7 +313,7 @@ class _Oscillators:
     def respond(
         self, force: np.ndarray, y0: np.ndarray, v0: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute the motion (times, modes) under forces of this shape, and the velocities at the end.
+        """Compute the motion from y0, v0 under forces, both (times, modes), and the velocities at the end.
 
         Fast modes are computed quasi-statically: the third result, a number for each mode, is the size of its
         jump from y0 at the start.

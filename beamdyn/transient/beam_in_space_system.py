@@ -36,7 +36,8 @@ class BeamInSpaceSystem:
     motion : Motion
         Motion of the root.
     branch : {"straight", "bent"}
-        Equilibrium (continued from rest, or the one next to it) from which a run in equilibrium starts.
+        Equilibrium from which a run in equilibrium starts: the one continued from rest as the speed rises, or
+        ("bent") another one that exists besides it.
     """
 
     elastica: RotatingBeam
@@ -135,7 +136,7 @@ class BeamInSpaceSystem:
         return self._moving(carrier, q, v).residual(a)
 
     def _steps(self, q: np.ndarray) -> np.ndarray:
-        """Choose difference steps of coordinates, rates, accelerations that change the shape equally."""
+        """Choose finite-difference steps (3,) of coordinates, rates, accelerations, by the size of q."""
         # With a unit mass matrix at rest, stiffness entries are squared frequencies.
         fastest = np.sqrt(np.diag(self.elastica.beam.stiffness).max()) or 1.0
         size = np.abs(q).max() + 1 / np.abs(self.elastica.beam.angles).max()
@@ -144,7 +145,7 @@ class BeamInSpaceSystem:
     def tangents(
         self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray, residual: np.ndarray
     ) -> np.ndarray:
-        """Compute derivatives of the residual at s times by coordinates, rates and accelerations.
+        """Compute derivatives of the residual at s times with respect to coordinates, rates, accelerations.
 
         Their shape is (3, s, n, n) for n coordinates.  They are computed by finite differences, which are
         exact for rates and accelerations: the residual is quadratic in the rates and linear in the
@@ -154,7 +155,7 @@ class BeamInSpaceSystem:
         still = np.zeros_like(dq)
         by_q = self.residual(carrier, q + dq, v + still, a + still) - residual
         rates, accelerations = np.concatenate([dv, -dv, still]), np.concatenate([still, still, da])
-        # Coordinates that stay are turned once.
+        # For unchanged coordinates, the rotations of the sections are computed only once.
         ahead, behind, by_a = np.split(self.residual(carrier, q, v + rates, a + accelerations), 3)
         changes = np.stack([by_q, (ahead - behind) / 2, by_a - residual])
         return np.moveaxis(changes, 1, 3) / self._steps(q)[:, None, None, None]

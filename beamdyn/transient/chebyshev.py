@@ -29,14 +29,14 @@ class Polynomials:
     allowed: float
 
     def shortened(self, rough: bool) -> Polynomials:
-        """Drop the last terms, if far below the size that may be left out; single precision if `rough`."""
+        """Drop the last terms if they are far below `allowed`; convert to single precision if `rough`."""
         left_out = np.cumsum(self.size[::-1])[::-1]
         count = max(1, int((left_out > NEGLIGIBLE * self.allowed).sum()))
         values = self.values[:count]
         return replace(self, values=values.astype(np.float32) if rough else values, size=self.size[:count])
 
     def over(self, local: np.ndarray) -> np.ndarray:
-        """Compute the coefficients over a part of [-1, 1] by the matrix of `to_part`, without small terms."""
+        """Compute the coefficients over a part of [-1, 1], without small terms; `local` is from `to_part`."""
         p = len(self.values)
         if p == 1:
             return self.values
@@ -61,12 +61,12 @@ def expand(values: np.ndarray) -> np.ndarray:
 
 @cache
 def _to_coefficients(points: int) -> np.ndarray:
-    """Build the matrix from P values at the extrema of a Chebyshev polynomial to P coefficients."""
+    """Build the matrix from values at P = `points` Chebyshev extrema to P Chebyshev coefficients."""
     return np.linalg.inv(polynomials(extrema(points), points))
 
 
 def extrema(points: int) -> np.ndarray:
-    """Compute the P extrema of a Chebyshev polynomial, from 1 to -1; the point 0 for P = 1."""
+    """Compute the P = `points` extrema of a Chebyshev polynomial, from 1 to -1; the point 0 for P = 1."""
     return np.cos(np.pi * np.arange(points) / (points - 1)) if points > 1 else np.zeros(1)
 
 

@@ -32,7 +32,7 @@ class SweepRequest(FieldsOnly):
 
     All cases share the modal basis: modes at rest, or at the slowest and the fastest speed of all cases.
     Where `modes_at` gives the numbers of modes that some speeds [rad/s] need, ascending, each case uses the
-    larger number of its two neighbours.
+    larger number of the two neighbouring speeds.
     """
 
     scene: Scene

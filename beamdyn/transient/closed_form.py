@@ -26,7 +26,7 @@ _ORDERS = (3, 5)  # highest powers of the stiffness variation e that are tried i
 _FIT_TIMES = 8  # number of times, for each harmonic, at which stiffness and load factors are fitted
 # Reciprocal of the golden ratio: spacing the sample times by it avoids coincidence with a period.
 _GOLDEN = 0.6180339887498949
-_FIT_ERROR = 1e-3  # error of the fitted stiffness and load factors, relative to the accuracy
+_FIT_ERROR = 1e-3  # largest relative error of fitted stiffness and load factors, over the accuracy
 _SAME = 1e-9  # relative difference of frequencies that count as equal
 _ABSENT = 1e-12  # factor of a harmonic, over the largest, below which it is a rounding error of the fit
 _MOST_HARMONICS = 400
@@ -92,7 +92,7 @@ class _Harmonics:
         return found
 
     def coupling(self, sums: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-        """Build the function from a motion q at k frequencies to forces of the varying stiffness.
+        """Build the function from a motion q at the k frequencies `sums` to forces of the varying stiffness.
 
         Motion and forces have the shape (..., k, coordinates).
         """
@@ -145,7 +145,10 @@ class _Exponentials:
 
 
 def _forced(harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int) -> _Exponentials | None:
-    """Compute the forced motion under the harmonic loads; None if the iteration fails."""
+    """Compute the forced motion under the harmonic loads, for damping C and constant stiffness K.
+
+    Terms up to the power `order` of the varying stiffness are included.  None if there are too many terms.
+    """
     loaded = np.abs(harmonics.load).any(axis=1)
     if not loaded.any():
         return _Exponentials(np.zeros(0, complex), np.zeros((0, len(K)), complex))
@@ -177,13 +180,14 @@ def _stiffness(s: np.ndarray, C: np.ndarray, K: np.ndarray) -> np.ndarray:
 def _free(
     harmonics: _Harmonics, C: np.ndarray, K: np.ndarray, order: int
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Compute exponents (n, k) and shapes (n, k, n) of n free vibrations; None if the iteration fails.
+    """Compute exponents (n, k) and shapes (n, k, n) of n free vibrations, each a sum of k exponentials.
 
-    Each vibration is a sum of k exponentials.
+    None if one does not oscillate, or if there are too many terms.  Arguments are as for `_forced`.
 
     Newton's method corrects each vibration until it satisfies the equations at all sums of frequencies.  It
-    keeps the inverse dynamic stiffness of the constant-coefficient equations; at the vibration's own exponent
-    this matrix is bordered by the mode shape, as the exponent is unknown there instead.
+    keeps the inverse dynamic stiffness of the constant-coefficient equations; at the exponent of
+    the unperturbed vibration, where it is singular, it is bordered by the mode shape: one more equation, for
+    the change of the exponent.
     """
     n, sums = len(K), harmonics.sums(order)
     values, vectors = np.linalg.eig(np.block([[np.zeros((n, n)), np.eye(n)], [-K, -C]]))
@@ -242,7 +246,8 @@ def propagate_in_closed_form(
     Returns
     -------
     SegmentWithError or None
-        None if the speed changes, if e or g contain unknown frequencies, or if no order is accurate.
+        None if the speed changes, if there are few steps, if e or g contain unknown frequencies, or if the
+        residual is too large.
     """
     if not system.steady or steps < _WORTH_IT:
         return None
@@ -290,7 +295,10 @@ def _solve(
 def _sample(
     motion: _Exponentials, t0: float, h: float, steps: int, stages: int, accuracy: float, missed: np.ndarray
 ) -> time_error.SegmentWithError:
-    """Sample the motion at ends and nodes of steps, without terms that are small or too fast for steps."""
+    """Sample the motion at ends and nodes of steps, without terms that are small or too fast for steps.
+
+    The error of the result includes `missed`, the error of each coordinate that the residual causes.
+    """
     growth = np.exp(np.maximum(np.real(motion.s), 0) * h * steps)
     size = np.abs(motion.b).max(axis=1) * growth
     rank = np.argsort(size)

@@ -48,16 +48,16 @@ from beamdyn.transient.trajectory import Trajectory
 
 _ITERATIONS = 30  # largest number of iterations of Newton's method in a step
 _CONVERGED = 1e-13  # relative error of the accelerations at which the iteration ends
-_LEAST_REDUCTION = 1e-3  # smallest reduction of the error by an iteration that is trusted
+_LEAST_REDUCTION = 1e-3  # smallest ratio of successive errors with which the next error is predicted
 _STALLED = 1e-9  # relative error of the accelerations below which a stalled iteration has converged
 # Ratio of residual to elastic force below which a stalled iteration has converged, if accelerations are
 # small.
 _BALANCED = 1e-12
-_FAST = 0.1  # error reduction by an iteration up to which the Jacobian is reused
+_FAST = 0.1  # ratio of successive errors up to which the Jacobian is reused
 _FEW = 4  # number of iterations up to which the next step starts with the same Jacobian
 _FINER = STAGES + 2  # number of stages of the second run
-_BALANCE = 1e-13  # residual in equilibrium, relative to the largest force or coordinate, that is rounding
-_TIMES_COMPARED = 257  # number of times at which forces are to be in equilibrium
+_BALANCE = 1e-13  # largest residual, over the largest force or coordinate, that counts as rounding error
+_TIMES_COMPARED = 257  # number of times at which the equilibrium of forces is checked
 _SHORTER = 0.5  # factor of the step's phase angle after a step that was not solved
 # Phase angle per step [rad] below which one more mode is resolved, rather than all steps shortened.
 _SHORT = 1.0
@@ -122,7 +122,10 @@ def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
 
 
 def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
-    """Estimate the error of the tip deflection as the distance between two runs, split among coordinates."""
+    """Estimate the error of the tip deflection as the distance between two runs, split among coordinates.
+
+    The run `fine` has the same steps as `coarse`, with more stages.
+    """
     straight, pairs = system.straight, [*zip(coarse, fine, strict=True)]
     change = np.max([np.abs(a.state - b.state).max(axis=0) for a, b in pairs], axis=0)[1 : system.size + 1]
     change *= np.abs(system.equations.tips).max(axis=0)
@@ -221,7 +224,7 @@ class _Step:
         self.system, self.h, self.table = system, h, table
         self.drift, self.end_v, self.end_q = h * table.c[:, None], h * table.b, h**2 * table.b2
         self.to_motion = np.concatenate([h**2 * table.A2, h * table.A, np.eye(len(table.c))])
-        # Derivatives (3, n, n) and LU factors that are reused.
+        # Derivatives of the residual with respect to q, q', q'' (3, n, n), and LU factors, to be reused.
         self.kept: tuple[np.ndarray, Factors] | None = None
 
     def advance(
@@ -244,7 +247,11 @@ class _Step:
     def _solve(
         self, carrier: Carrier, drifted: np.ndarray, v: np.ndarray, a: np.ndarray, factors: Factors | None
     ) -> np.ndarray:
-        """Solve for accelerations at the nodes by Newton's method; LU factors are reused while it is fast."""
+        """Solve for accelerations at the nodes by Newton's method, from a guess a.
+
+        LU factors are reused while it converges fast.  `drifted` are the coordinates at the nodes for zero
+        acceleration, v the velocities at the start of the step.
+        """
         start, last = np.stack([drifted, np.broadcast_to(v, a.shape), np.zeros_like(a)]), np.inf
         for iteration in range(_ITERATIONS):
             motion = start + self.to_motion.dot(a).reshape(start.shape)

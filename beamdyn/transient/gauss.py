@@ -221,7 +221,7 @@ def components(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
 
 
 def project(state: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Project augmented states on linear functions of the coordinates, and of the velocities."""
+    """Replace q and v of augmented states by linear functions of them, with coefficients `outputs` (rows)."""
     n = outputs.shape[1]
     q, v = state[..., 1 : n + 1], state[..., n + 1 :]
     return np.concatenate([state[..., :1], components(q, outputs), components(v, outputs)], axis=-1)
@@ -258,7 +258,7 @@ class Segment:
         )
 
     def samples(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Sample times, displacements, velocities at `count` equal parts of each step, without its end."""
+        """Sample times, displacements, velocities at the beginnings of `count` equal parts of each step."""
         theta = np.arange(count) / count
         q, v = interpolate(self.h, self.state[:-1], self.acceleration, theta)
         t = self.start + self.h * (np.arange(len(q))[:, None] + theta)

@@ -28,8 +28,8 @@ _POINTS = 4  # number of Gauss points between two samples of a run; each time st
 class TransientHarvest(JudgedByRepeating):
     """Electrical output of a harvester during a transient: voltage, current, power, energy; and strain.
 
-    `model_error` and `left_out`, computed at their first use, estimate how much the neglected physical
-    effects change the harvested energy.
+    `left_out` contains the estimated relative change of the harvested energy by each neglected physical
+    effect, `model_error` the magnitude of the sum of these changes; both are computed at first use.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ _BALANCE = 1e-13  # residual force, over the largest force, below which it is a 
 _SERIES_SHARE = 0.1
 _ORDER_ACROSS_SAMPLES = 3  # order of the error of steps across samples, where the acceleration has kinks
 _FEW_STEPS = 4  # ratio of step to sample spacing above which steps are first shortened to one sample
-_CEILED = 1.02  # margin of a step size, as rounding up the number of steps (some hundreds) shortens them
+_CEILED = 1.02  # factor that lengthens steps: rounding up their number (some hundreds) shortens them
 
 
 def integrate(
@@ -71,7 +71,7 @@ def integrate(
     TooManySteps
         If the steps of the run do not fit into memory.
     ArithmeticError
-        If the steps of a bent beam cannot be solved at any size.
+        If the steps of a beam with large deflection cannot be solved at any size.
     """
     if isinstance(system, BeamInSpaceSystem):
         path = rest_in_equilibrium(system, y0, t_end)

@@ -35,8 +35,8 @@ _MODES = 2  # number of lowest modes whose frequency changes decide whether an e
 _SHIFT, _PHASE = 1e-4, 1e-2
 _SHORT_RUN = 2000  # number of samples up to which a run is repeated with large deflection
 _BY_BACKBONE = (
-    "roughly estimated by the static deflection and the backbone: "
-    "where much of it vibrates, it may be off by a factor, or in sign"
+    "roughly estimated from the static deflection and the backbone curve: "
+    "where vibration is a large part of the deflection, it may be off by a factor, or in sign"
 )
 
 
@@ -72,7 +72,7 @@ def _peak(found: Solution, window: tuple[float, float] | None) -> float:
 
 
 def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str, float]:
-    """Compute relative changes of the first frequency by effects that hardly change the lowest ones."""
+    """Compute relative changes of the first frequency by the effects that hardly change the lowest two."""
     s = model.solver.solve(np.array([speed]), min(_MODES, model.solver.size)).eigenvalue
     omega, changes = np.abs(s).max(), left_out_of_modes(model, np.array([speed]), s).changes
     largest = {name: np.abs(each).max() for name, each in changes.items() if name != LARGE_DEFLECTION.name}

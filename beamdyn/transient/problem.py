@@ -42,7 +42,7 @@ _Found = TypeVar("_Found")
 
 
 class Solution(NamedTuple):
-    """Solution of a transient: equations, path, time errors [m], largest deflection [m] and method."""
+    """Solution of a transient: equations, path, time-integration error and size of tip deflection [m]."""
 
     system: AnySystem
     path: Path
@@ -155,7 +155,7 @@ class TransientProblem(FieldsOnly):
         return found._replace(largest=largest)
 
     def _refuse_past_critical(self) -> None:
-        """Refuse a motion that passes the critical speed, unless the beam has large deflection."""
+        """Raise `NoModelAnswer` if the motion passes the critical speed without large deflection."""
         t = np.linspace(0, self.t_end, SPEED_SAMPLES)
         speed = np.abs(self.motion.at(t).speed)
         if self.scene.physics.large_deflection:
@@ -229,7 +229,10 @@ class TransientProblem(FieldsOnly):
         return solved and (solved.system, solved.path)
 
     def distance_with_more_modes(self, path: Trajectory, own: ModalSystem) -> float | None:
-        """Estimate the distance [m] of a path's tip deflection from one with more modes, or None."""
+        """Estimate the distance [m] of a path's tip deflection from that of a motion with more modes.
+
+        `own` are the equations of the path.  None if there are no further modes, or no valid estimate.
+        """
         finer = self._refined_of_same_functions()
         if finer is None or not isinstance(system := finer.system(), ModalSystem):
             return None

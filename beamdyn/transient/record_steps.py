@@ -240,7 +240,7 @@ class RecordSegment:
         )
 
     def samples(self, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Sample times, displacements, velocities at `count` equal parts of each step, without its end."""
+        """Sample times, displacements, velocities at the beginnings of `count` equal parts of each step."""
         theta, h = np.arange(count) / count, self.steps.h[:, None, None]
         q, v = gauss.interpolate(h, self.state[:-1], self.acceleration, theta)
         t = self.steps.start[:, None] + self.steps.h[:, None] * theta

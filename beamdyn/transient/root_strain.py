@@ -40,7 +40,10 @@ class RootStrain:
 
     @classmethod
     def of_scene(cls, scene: Scene, discretization: Discretization, system: AnySystem) -> RootStrain:
-        """Build the strain for the coordinates of a scene's equations; ValueError without outer fibre."""
+        """Build the strain for the coordinates of a scene's equations.
+
+        A ValueError is raised for large deflection, a material that damps, or a beam without outer fibre.
+        """
         if isinstance(system, BeamInSpaceSystem):
             bound = "the root strain of a beam with large deflection is not computed"
             remedy = "leave large_deflection out where the deflection is small"

@@ -23,7 +23,8 @@ _MOST_WORK = 5e7
 # Largest work if the last added modes have divided the truncation error by less than _FAST.
 _SLOW_WORK = 5e6
 _FAST = 4.0
-# Up to the first number of modes, one more mode may divide the truncation error by the second number.
+# Up to the first number of modes, one mode is added instead of several, if the truncation error is at most
+# the second number times the tolerance.
 _FEW_MODES, _NEARLY = 4, 30.0
 _TIGHT = 1e-5  # tolerance that is tried too, if no basis meets a smaller requested tolerance
 

@@ -19,7 +19,7 @@ from beamdyn.transient.trajectory import Trajectory
 
 TOLERANCES = (1e-12, 0.1)  # smallest and largest tolerance; smaller ones are below the rounding error
 _REFERENCE_PHASE = 3.84  # phase advance per step [rad] that gives an error of 1e-5, measured on examples
-_LOOSEST_TOLERANCE = 0.01  # largest tolerance for the free vibration of a mode whose phase is resolved
+_LOOSEST_TOLERANCE = 0.01  # largest relative error of the free vibration of a mode whose phase is resolved
 _PARTS = 4  # number of parts of a segment of changing speed, each with its own step size
 _MOST_STEPS = 3_000_000  # largest number of steps of a run
 # Largest number of steps times coordinates of a run, which fits into some 3 GB of memory.

@@ -96,7 +96,7 @@ class Sweep(SceneResult, StatesModelError):
     t_end : float
         End of each run [s].
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
 
@@ -146,7 +146,7 @@ class Sweep(SceneResult, StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the largest peak (1,) by each neglected effect, found by repeating that run."""
+        """Relative changes of the largest peak (1,) by each neglected effect, found by repeating that run."""
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
@@ -194,8 +194,8 @@ def sweep(
     Each case has its own time steps, so that its result is bitwise the same for any number of workers,
     executor, order, interruption and chunk size.
 
-    With ``modes="auto"`` a case uses as many modes as the sampled cases next to it need.  So its result
-    depends, within `time_error` and `mode_error`, on which other speeds are requested.
+    With ``modes="auto"`` a case uses as many modes as its neighbours among the sampled cases need.  So its
+    result depends, within `time_error` and `mode_error`, on which other speeds are requested.
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ def sweep(
     runner = TaskRunner(workers, executor, store, _KIND, _VERSIONS, progress, SweepInterrupted)
     basis = given_basis(modes)
     scene = choose_for_motion(scene, end_speeds(request, cases), basis and basis.modes, request.tolerance)
-    # The recorded choice contains computing times, which must not change the keys of the store.
+    # The record of the choice of physics contains computing times, which must not change keys of the store.
     request = replace(request, scene=replace(scene, physics_choice=None))
     _check_speeds(request := replace(request, basis=basis or first_basis(request, cases)), cases)
     if store is not None or executor is not None or runner.workers > 1:
@@ -363,9 +363,10 @@ def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
 
 @contextmanager
 def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[float]]:
-    """Run a function in a thread, with an event that is set when its result is no longer needed.
+    """Run a function in a thread while the body of a `with` runs; yield the future of its result.
 
-    An error in the body of the `with`, such as an interrupt, sets the event without waiting for the function.
+    The last argument of the function is an event.  An error in the body, such as an interrupt, sets it: the
+    result is no longer needed.  The end of the body does not wait for the function.
     """
     thread, unwanted = ThreadPoolExecutor(1), Event()
     try:

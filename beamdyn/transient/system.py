@@ -160,7 +160,11 @@ class ModalSystem:
         excess: Callable[[MotionSample, RootMotion], list[np.ndarray]],
         lines: np.ndarray,
     ) -> ModulatedSystem:
-        """Build equations with a slowly varying stiffness, and varying quantities minus their slow values."""
+        """Build equations with slowly varying damping and stiffness, and a stiffness that varies about them.
+
+        `slow` evaluates the slowly varying matrices, which are constant if `steady`; `excess` evaluates the
+        quantities `varying` minus their slow values; `lines` are their known angular frequencies [rad/s].
+        """
         stiffness, loads = self.equations.matrices[0], self.equations.vectors
 
         def scalars(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

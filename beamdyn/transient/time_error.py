@@ -274,7 +274,11 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
 def _check_batch(
     system: ModalSystem, segment: RecordSegment, chosen: np.ndarray, outputs: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Compare steps with solutions of their pieces: local error, largest phase error, error between ends."""
+    """Compare the steps `chosen` with solutions of their pieces, which are more accurate.
+
+    Return the local errors (k, n), the largest phase error of each coordinate per step [rad], and the largest
+    error between the ends of steps, in units of the output.
+    """
     steps, state = segment.steps.select(chosen), segment.state[chosen]
     step = maps_of_record(system, steps, STAGES).step
     pieces = maps_of_record(system, steps.pieces(), steps.nodes_in_piece(STAGES + 2))

@@ -39,7 +39,7 @@ from beamdyn.transient.trajectory import Path, Trajectory, in_direction, magnitu
 _LIMIT_DIFFERENCE = 0.3
 _TIMES_COMPARED = 20_000  # largest number of times at which two runs are compared
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
-# Part of the time-integration error of a motion that is included in its modal truncation error.
+# Fraction of the time-integration error of a motion that is included in its modal truncation error.
 _OF_TIME_ERROR = 0.1
 # Computed attributes that are kept in a copy with further warnings.
 _COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"
@@ -66,7 +66,7 @@ class Transient(StatesModelError):
     largest : float
         Largest |tip deflection| of the run [m].
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
 
@@ -116,7 +116,7 @@ class Transient(StatesModelError):
         return Solution(self.system, self.path, self.time_error, self.largest)
 
     def without_waiting(self) -> Transient:
-        """Return a copy that can be shown at once: slow errors that are not computed yet are omitted."""
+        """Return a copy to show at once, without error estimates that take long and are not computed yet."""
         vars(shown := copy(super().without_waiting())).setdefault("mode_error", np.inf)
         return shown
 
@@ -164,7 +164,7 @@ class Transient(StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the largest deflection by each neglected effect, of shape ()."""
+        """Relative changes of the largest deflection by each neglected effect, of shape ()."""
         return left_out_of_transient(self.request, self.solution)
 
     def with_warnings(self, more: tuple[str, ...]) -> Transient:
@@ -419,7 +419,7 @@ def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator
 
 
 def _warn_of_missed(what: str, error: float, tolerance: float, said: str, remedy: str) -> Iterator[Statement]:
-    """Warn of an error, over the largest deflection, above the tolerance; `said` states its size."""
+    """Warn of an error, over the largest deflection, above the tolerance; the text `said` states its size."""
     if error > tolerance:
         yield Statement(
             f"tolerance = {tolerance:g} is not reached: the estimated {what} is {said}",

@@ -84,7 +84,9 @@ class _StepMapSeries:
     """Maps of steps that begin at P Chebyshev points, as a power series in the stiffness factors e.
 
     The accelerations at the nodes are a = (L + sum_m D_m Z_m)^-1 (R0 + sum_m D_m R_m) z, D_m = diag(e_m),
-    with z = (q, v, g at the nodes) of 2 n + s l entries.  To the second order in D,
+    with z = (q, v, g at the nodes) of 2 n + s l entries.  L is the matrix of the collocation equations and R0
+    that of their right-hand side, both for e = 0; Z_m and R_m are the contributions of G_m.  To the second
+    order in D,
     a = X0 z + Y D (R - Z X0) z - Y D Z Y D (R - Z X0) z, summed over m, with Y = L^-1 and X0 = Y R0.
 
     Parameters

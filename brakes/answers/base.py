@@ -126,7 +126,7 @@ class Answer(Result, ABC):
         return ()
 
     def branches(self) -> Mapping[str, Answer]:
-        """Return a copy of the answer for each solution, which draws it, by name; empty if only one."""
+        """Return, by name, a copy of the answer that draws each solution; empty if there is only one."""
         return {}
 
     def handles(self, place: float) -> Sequence[Handle]:
@@ -392,7 +392,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
     Attributes
     ----------
     model : type
-        Description of the file.
+        Pydantic model of the file.
     """
 
     model: type[FileModel]
@@ -450,7 +450,7 @@ class TableBrakeType(BrakeType[FileModel]):
         return made, made.warnings
 
     def solve_task(self, task: CaseTask) -> SolvedCases:
-        """Solve the designs of a task, in this process or in a worker process."""
+        """Compute the results of the designs of a task, in this process or in a worker process."""
 
         def solve_determined(tables: Mapping[str, Any]) -> Answer:
             answer = self.solve(self.read(tables, self.name))

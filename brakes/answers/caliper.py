@@ -125,7 +125,7 @@ class CaliperAnswer(planar.PlanarAnswer):
 
     @property
     def status(self) -> str:
-        """Status: whether statics determines the forces, and pads press; see `planar.Equilibrium`."""
+        """Status: whether statics determines the forces, and the pads press; see `planar.Equilibrium`."""
         return self.run.status
 
     @property
@@ -393,7 +393,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         return [(f"{load.name} {when}", planar.name_output(load.name)) for load in loads][:3]
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of joints, and of the vehicle of a caliper that has one."""
+        """Make drawings that explain the symbols of joints and, if a stop is described, of the vehicle."""
         return mechanism_sketch(any(text for path, text in entries.items() if path.startswith("stop.")))
 
     def outputs(self, design: CaliperInput | MechanismInput) -> Sequence[Output]:

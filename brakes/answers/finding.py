@@ -70,7 +70,7 @@ def find_in_file(
         how = "each whole number is tried"
         found = find_whole(answers, target, _whole_numbers(brake, axis), answers.reason)
     else:
-        how = "samples doubled until the pieces stay the same; roots by algorithm 748"
+        how = "samples doubled until the rising and falling pieces stay the same; roots by algorithm 748"
         found = find(answers, target, np.unique(axis.given), answers.reason, rounding=rounding)
     return replace(
         found,

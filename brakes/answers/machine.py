@@ -66,7 +66,7 @@ class MachineAnswer(RubbingAnswer):
         return (*self.result.brake.remarks(self.result.friction, self.result.reverse), *super().warnings)
 
     def by_law(self) -> dict[str, MachineResult]:
-        """Solve the brake under each pressure law; results by the law's words, the chosen law first.
+        """Solve the brake under each pressure law; results by description of the law, the chosen law first.
 
         Laws without a result, as for a block that would lift, are left out.
         """

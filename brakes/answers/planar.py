@@ -144,7 +144,7 @@ class MechanismFriction(Result):
     def locking(self, answered: bool) -> list[str]:
         """Return a sentence on each direction of motion whose forces statics does not determine.
 
-        These are the directions that have an answer nevertheless, or else those that have none.
+        If `answered`, these are the directions that have an answer nevertheless, else those that have none.
         """
         return [
             Words(name, ": ", way.message)

@@ -1,1 +1,1 @@
-"""The interactive program ``brakes app``: documents, screens and lists for all types of brakes."""
+"""The interactive program ``brakes app``: documents (input files with their screens), screens and lists."""

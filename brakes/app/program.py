@@ -1,4 +1,4 @@
-"""The program ``brakes app`` and its documents; screens and documents are made from the types of brakes."""
+"""The program ``brakes app``; its screens and documents (input files with screens) follow from brake types."""
 
 from __future__ import annotations
 

@@ -90,8 +90,10 @@ class EeBrake(Design):
     cable_anchor : tuple of 2 floats
         End of the inner wire on the panel, at the right pivot [m].
     split : {"equal force", "equal work"}
-        How the two pads share the load of the rim, which statics alone does not fix; "equal work" is the
-        reading T = 2 delta_R, which gives the published X = 0.875.
+        How the two pads share the load of the rim, which statics alone does not fix.  "equal work" means that
+        a force of 1 on the right pad needs the cable tension T = 2 delta_R, with the ratio delta_R of the
+        velocities of right pad and cable; this gives the published X = 0.875, the force on the left lever's
+        upper pin.
 
     Examples
     --------
@@ -104,7 +106,7 @@ class EeBrake(Design):
 
     pivot: Annotated[Point, _point("pivot of the right lever on the panel")] = (17.5 * MM, -19 * MM)
     pad: Annotated[Point, _point("right pad")] = (12.75 * MM, -45 * MM)
-    upper_pin: Annotated[Point, _point("pin of the strut on the right lever; mirrored, O")] = (
+    upper_pin: Annotated[Point, _point("pin of the strut on the right lever; its mirror image is pin O")] = (
         25.5 * MM,
         11.053947511008978 * MM,
     )

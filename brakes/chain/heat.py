@@ -257,6 +257,9 @@ def fade_of_stops(
 
 
 def _free_way(stop: Stop) -> np.ndarray:
-    """Compute the distance [m] before a sudden full force that gives length and heat of a gradual rise."""
+    """Compute the distance [m] that a truck rolls before a sudden full force replaces a gradual rise.
+
+    The stop then has the length and the heat of a stop with the gradual rise.
+    """
     way = np.where(stop.stops, stop.rise_distance + stop.braking_distance, np.nan)
     return np.nan_to_num(np.maximum(way - heat_of_stop(stop).energy / stop.brake_force, 0.0))

@@ -411,7 +411,7 @@ def keys(brake: Annotated[str, Parameter(name="COMMAND")], /) -> None:
 
 @app.command(help_epilogue=examples("brakes reproduce --output pictures"))
 def reproduce(*, output: SomeFolder = Path("brakes-reproduce")) -> None:
-    """Published numbers of brakes beside ours, what the papers' errors cost, and the pictures.
+    """Published numbers of brakes beside ours, consequences of the papers' errors, and the pictures.
 
     Parameters
     ----------

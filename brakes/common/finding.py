@@ -212,7 +212,10 @@ class _Run:
 
 
 def _settle(answers: _Answers, x: np.ndarray) -> tuple[Curve, bool]:
-    """Double the samples until the pieces stay the same; return the curve, and whether they settled."""
+    """Double the samples until the rising, level and falling pieces stay the same.
+
+    Return the curve, and whether the pieces stayed the same at the last doubling.
+    """
     y, settled = answers(x), False
     for _ in range(_DOUBLED):
         between, courses = (x[1:] + x[:-1]) / 2, _courses(y)

@@ -28,7 +28,7 @@ class PointQuantity(Quantity):
     """An input that is a point: two lengths."""
 
     def parse(self, given: object) -> Any:
-        """Return the coordinates of the point [m]."""
+        """Read a point, given as two lengths, and return its coordinates x, y [m]."""
         if isinstance(given, str):
             raise InvalidInput("", given, "no such point in [points]", 'name one, or give ["1 mm", "2 mm"]')
         point = tuple(quantity(value, "m") for value in _two(given, '["1 mm", "2 mm"]'))
@@ -42,7 +42,7 @@ class DirectionQuantity(Quantity):
     """An input that is a direction: two numbers, or an angle from x, anticlockwise."""
 
     def parse(self, given: object) -> Any:
-        """Return the components of the direction."""
+        """Read a direction, given as two numbers or an angle; return x and y components, not normalised."""
         if isinstance(given, str):
             angle = quantity(given, "rad")
             return math.cos(angle), math.sin(angle)

@@ -66,7 +66,7 @@ class CurveQuantity(Quantity):
         return _SUCH_AS
 
     def parse(self, given: object) -> Any:
-        """Return the rows as temperatures [K] and friction coefficients."""
+        """Read rows of a temperature and a friction coefficient; return them as pairs, temperatures in K."""
         if not isinstance(given, list) or any(not isinstance(row, list) or len(row) != 2 for row in given):
             raise InvalidInput("", given, f"give rows {_SUCH_AS}")
         return tuple((quantity(at, "K"), Quantity(least=self.least).parse(mu)) for at, mu in given)

@@ -225,7 +225,7 @@ def _solve_from_torque(
     Q, P_L, R_L, R_T = _forces_at_share(levers, P_T, T, u)
     r = levers.drum_radius
     B, D = T * (1 - u) / r, T * u / r
-    most = 1 - LEAST_MARGIN  # ratio of friction to resultant at which the lining friction becomes infinite
+    most = 1 - LEAST_MARGIN  # largest ratio of friction to resultant force; at 1, mu is infinite
     balanced = (most * R_L > B) & (most * R_T > D)
     status = np.where(balanced, "equilibrium", "no solution")
     with np.errstate(invalid="ignore"):

@@ -69,7 +69,7 @@ class Ring(Machine):
 
     @property
     def rubbing_radius(self) -> Numbers:
-        """Radius of the largest pressure times radius [m]: inner radius under wear, else outer radius."""
+        """Radius [m] at which pressure times radius is largest: inner one under wear, else outer one."""
         return self.inner_radius if self.law == "wear" else self.outer_radius
 
     def reach(self) -> tuple[Numbers, Numbers]:

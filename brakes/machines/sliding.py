@@ -178,7 +178,7 @@ class Sliding(Machine):
         return np.where((first * last < 0) & (end - begin > _LEAST_CONTACT), delta, np.nan)
 
     def _newton(self, delta: np.ndarray, mu: Numbers, s: float) -> Any:
-        """Improve the angle of zero pressure [rad] by a Newton step; complex friction adds its derivative."""
+        """Improve the angle of zero pressure [rad] by a Newton step; mu may be complex (complex step)."""
         with np.errstate(divide="ignore", invalid="ignore"):  # without equilibrium
             slope = self._residual(delta + 1j * _TURN_STEP, np.real(mu), s).imag / _TURN_STEP
             return delta - self._residual(delta, mu, s) / slope
@@ -210,9 +210,9 @@ class Sliding(Machine):
         return np.where(free.all(axis=0), np.inf, high)
 
     def _force(self, mu: np.ndarray, leads: bool) -> np.ndarray:
-        """Compute the actuating force over width, radius and pressure scale p0; nan without equilibrium.
+        """Compute the actuating force over width, radius and pressure scale p0.
 
-        There is no balance where no distribution of pressure keeps the shoe in equilibrium.
+        It is nan where no distribution of pressure keeps the shoe in equilibrium.
         """
         s, delta = -1.0 if leads else 1.0, self.zero(mu, leads)
         return self._moment(self._integrals(delta), mu, s) / self.arm
@@ -265,7 +265,8 @@ class Sliding(Machine):
     def _moment(self, integrals: tuple[Any, Any, Any], mu: Numbers, s: float) -> Any:
         """Compute the moment [m] of pressure and friction about the abutment over p0 and the area w r.
 
-        The scale p0 of the pressure is that of this module, w the width and r the radius of the drum.
+        The scale p0 of the pressure is that of this module, w the width and r the radius of the drum;
+        s is -1 on a leading shoe, 1 on a trailing one.
         """
         (K, S, C), b, c = integrals, self.abutment_offset, self.abutment_depth
         return c * S - b * C + s * mu * (self.drum_radius * K - b * S - c * C)
@@ -273,7 +274,7 @@ class Sliding(Machine):
     def _balance(self, integrals: tuple[Any, Any, Any], mu: Numbers, s: float) -> Any:
         """Compute the residual [m] of the balance of forces and moments, over p0 and the area w r.
 
-        It is linear in the integrals; p0, w and r are those of `_moment`.
+        It is linear in the integrals; p0, w, r and s are those of `_moment`.
         """
         (_, S, C), psi = integrals, self.abutment_angle
         along = np.sin(psi) * (S - s * mu * C) + np.cos(psi) * (C + s * mu * S)

@@ -23,7 +23,7 @@ _SETTLED = 1e-6
 _JAMMED = 1e9
 _TINY = np.finfo(float).tiny
 _UNPRESSED = 1e-7  # pressing force of a joint, relative to the largest force, below which it counts as zero
-_NOTHING = 1e-12  # force relative to the largest, below which the force's direction is only rounding
+_NOTHING = 1e-12  # force, over the largest, below which rounding errors make its direction meaningless
 _DISTURBANCE = 1e-3  # couple that disturbs a body, over the largest force and the length of the mechanism
 
 
@@ -173,7 +173,7 @@ def _jams_when_disturbed(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Find joints with friction that press with no force, and positions at which disturbances jam.
 
-    If loads act exactly in line, a joint may press with no force, whose direction is then only rounding.
+    If loads act exactly in line, a joint may press with no force, whose direction is then meaningless.
     There can be two equilibria: without pressure, and jammed.  The jammed one needs a disturbance, however
     small, such as an offset of a load. It is modelled by a couple on one body after another, in either sense.
     """
@@ -191,7 +191,7 @@ def _jams_when_disturbed(
             offset[:, [coordinate]] = sense * size
             without = _newton(system, balance, multiplier, np.where(unpressed, 0.0, law), offset)[0]
             pressed = unpressed & (_pressing(system, without) > _UNPRESSED)
-            if pressed.any():  # all other pressing forces are 0, their directions rounding
+            if pressed.any():  # all other pressing forces are 0, and their directions meaningless
                 rubbing = np.where(unpressed & ~pressed, 0.0, law)
                 jams |= pressed.any(axis=1) & _newton(system, balance, multiplier, rubbing, offset)[1]
     return unpressed & (jams[:, None] | (force <= _rounding(system))), jams
@@ -228,10 +228,11 @@ def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarr
 def _newton(
     system: System, balance: Balance, start: np.ndarray, full: np.ndarray, offset: np.ndarray | float = 0.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Solve for the multipliers (positions, rows) with friction; mark the positions where it jams.
+    """Solve for the Lagrange multipliers (positions, rows) of joints and loads in equilibrium with friction.
 
-    Friction is `full` times the pressing force of each joint; `offset` contains additional forces on the
-    bodies.
+    Also return at which positions the mechanism jams.  `start` contains the multipliers without friction,
+    `full` (positions, joints) the signed friction over the pressing force of each joint, and `offset`
+    additional generalised forces on the bodies.
     """
     multiplier = start.copy()
     sign = np.linalg.slogdet(balance.matrix).sign
@@ -258,13 +259,16 @@ def _newton(
 def _friction(
     system: System, balance: Balance, multiplier: np.ndarray, law: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Set the friction rows; return the residual of equilibrium and its Jacobian in the unknowns."""
+    """Set the multipliers of the friction forces in place, by friction over pressing force (`law`).
+
+    Return the residual of the equilibrium equations and its Jacobian with respect to the unknown multipliers.
+    """
     slope = balance.matrix.copy()
     largest = np.abs(multiplier).max(axis=1, keepdims=True)
     for k, (row, normal) in enumerate(zip(system.friction.values(), system.pressing, strict=True)):
         size = np.linalg.norm(multiplier[:, normal], axis=1, keepdims=True)
         multiplier[:, row] = law[:, k] * size[:, 0]
-        pressed = size > _rounding(system) * largest  # the direction of smaller forces is rounding
+        pressed = size > _rounding(system) * largest  # the direction of smaller forces is meaningless
         direction = np.where(pressed, law[:, [k]] * multiplier[:, normal] / np.maximum(size, _TINY), 0.0)
         slope[:, :, normal] += balance.rows.gradient[:, row, :, None] * direction[:, None, :]
     return balance.forces_on_bodies(multiplier), slope

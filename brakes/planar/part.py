@@ -309,7 +309,7 @@ class Joint(Part):
         return ()
 
     def size(self, multiplier: np.ndarray) -> np.ndarray:
-        """Compute the magnitude of the joint's force for multipliers (positions, rows) [N, N m]."""
+        """Compute the size of the joint's force from Lagrange multipliers (positions, its rows) [N, N m]."""
         return multiplier[:, 0] if multiplier.shape[1] == 1 else np.hypot.reduce(multiplier, axis=1)
 
     def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:

@@ -134,7 +134,7 @@ class _AtPoint(ABC):
 
     @property
     def bodies(self) -> tuple[str, str]:
-        """The body that has the point, and the other body."""
+        """Names of the body at whose point the force acts, and of the body that takes the reaction."""
         return self.body, self.other
 
     @property

@@ -282,7 +282,10 @@ def collect_result(
 
 
 def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
-    """Collect reactions, magnitudes, amplitudes and friction by name, from scaled multipliers."""
+    """Collect forces by name, from the Lagrange multipliers (positions, rows) in scaled units.
+
+    They are reactions and force magnitudes of joints, amplitudes of loads, and friction forces [N, N m].
+    """
     system, physical = mechanism.system, multiplier * mechanism.system.unit
     reactions, magnitudes = {}, {}
     for joint in mechanism.joints:

@@ -93,7 +93,7 @@ class Rows(NamedTuple):
     value : (S, R), lengths over the mechanism's length L, angles in rad.
     force : (S, R, n + 1) complex, the force of a unit row on each body, the ground last.
     couple : (S, R, n + 1), moment of a unit row about the body's centre, over L.
-    gradient : (S, R, 3 n), derivatives of the values by the coordinates y: the same forces, without the
+    gradient : (S, R, 3 n), derivatives of the values with respect to y: the same forces, without the
     ground.
     """
 

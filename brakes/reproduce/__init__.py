@@ -1,4 +1,4 @@
-"""Published numbers on brakes beside our results, with the consequences of the papers' errors, and figures.
+"""Published numbers on brakes beside computed ones, consequences of the papers' errors, and figures.
 
 The modules `*_as_printed` and `newton` contain the papers' own mechanics, which is partly wrong; the rest of
 `brakes` contains only the corrected mechanics.
@@ -20,7 +20,7 @@ _PAPERS = drum_as_printed, forklift_tables
 
 
 def compare_all(screen: Console, folder: Path) -> Sequence[Verdict]:
-    """Print the papers' numbers beside our results, and draw the figures.
+    """Print the papers' numbers beside computed ones, and draw the figures.
 
     Parameters
     ----------

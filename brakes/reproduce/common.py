@@ -1,4 +1,4 @@
-"""Printed numbers beside ours, tables of such numbers, and a paper's errors with their consequences."""
+"""Printed numbers beside computed ones, tables of them, and a paper's errors with their consequences."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from beamdyn.common.results.comparison import Verdict
 
 @dataclass(frozen=True)
 class Cell(Verdict):
-    """A printed number beside the number that we compute.
+    """A printed number beside the number that the paper's own method gives, and the corrected one.
 
     Parameters
     ----------
@@ -39,12 +39,12 @@ class Cell(Verdict):
 
     @property
     def agrees(self) -> bool:
-        """Whether our number rounds to the printed number."""
+        """Whether the number by the paper's method rounds to the printed number."""
         return abs(self.ours - float(self.printed)) <= self.step / 2 * (1 + 1e-12)
 
     @property
     def texts(self) -> list[str]:
-        """Texts of the printed number and, with one more digit, of our number and the right one, if any."""
+        """Texts of printed number and, with a digit more, that by the paper's method and corrected one."""
         decimals = max(0, 1 - round(math.log10(self.step)))
         numbers = [x for x in (self.ours, self.right) if x is not None]
         return [self.printed, *(f"{x:.{decimals}f}" if math.isfinite(x) else "never stops" for x in numbers)]
@@ -69,7 +69,7 @@ def step(printed: str, digits: int | None = None) -> float:
 
 @dataclass(frozen=True)
 class PrintedTable:
-    """A table of a paper, with our results beside its numbers.
+    """A table of a paper, with computed numbers beside the printed ones.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class PrintedTable:
         return [cell for _, cells in self.rows for cell in cells]
 
     def shown(self) -> Group:
-        """Make the table for the console: printed, our and right number of each quantity."""
+        """Make the table for the console: printed numbers, those by the paper's method, corrected ones."""
         heads = [*self.inputs]
         for name, cell in zip(self.quantities, self.cells, strict=False):
             heads += [name, "ours", "corrected"][: len(cell.texts)]

@@ -76,7 +76,7 @@ def table_1(arc: np.ndarray | None = None) -> Table1:
 
 
 def table_arm(arc: np.ndarray | float) -> np.ndarray:
-    """Compute the effective arm [m] of Table 1 at arcs [rad]; 0.87 is cos 30 deg; (12) gives 11.9 % less."""
+    """Compute the effective arm [m] that reproduces Table 1, at arcs [rad]; (12) gives 11.9 % less."""
     return _R * 0.87 * (np.cos(0.5236) - np.cos(_START + np.asarray(arc))) / 1.1485
 
 
@@ -156,7 +156,7 @@ def errata() -> tuple[Erratum, ...]:
 
 
 def tables() -> dict[str, PrintedTable]:
-    """Compare Table 1, and the largest difference of its torques, with our numbers."""
+    """Compare Table 1, and the largest difference of its torques, with numbers by the paper's own method."""
     printed, ours = PAPER["table_1"], table_1()
     columns = {"effective_arm": 1e3, "first_torque": 1.0, "second_torque": 1.0}
     rows: list[tuple[tuple[str, ...], list[Cell]]] = []

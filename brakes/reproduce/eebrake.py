@@ -20,7 +20,7 @@ _CABLE = 3.5e-3  # cable travel that closes the reconstruction's pads [m]
 
 
 def sections() -> dict[str, list[Comparison]]:
-    """Compare the published numbers with our results; return the comparisons by title of the table."""
+    """Compare the published numbers with the reconstruction; return the comparisons by title of the table."""
     page, printed = "eeBrake page", values_alone(PAPER)
     statics, travel, given = (printed[name] for name in ("statics", "travel", "stop"))
     (f_t, x_work), (_, x_equal) = tangential_forces("equal work"), tangential_forces("equal force")

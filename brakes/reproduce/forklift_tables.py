@@ -1,4 +1,4 @@
-"""Report on the forklift of Yoo et al. (1997): Tables 2-7, right numbers, and consequences of the errors."""
+"""Report on the forklift of Yoo et al. (1997): Tables 2-7, corrected numbers, consequences of errors."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ _WORDS = {
 
 
 def tables() -> dict[str, PrintedTable]:
-    """Compare Tables 2-7 with our numbers, and Tables 2-4 also with the right numbers."""
+    """Compare Tables 2-7 with numbers by the paper's own method, and Tables 2-4 also with corrected ones."""
     ours, right = as_printed.tables(), as_printed.corrected_tables()
     return {name: _table(name, ours, right) for name in (*VEHICLE, *BRAKE)}
 
 
 def _table(name: str, ours: as_printed.Tables, right: as_printed.Tables) -> PrintedTable:
-    """Compare one table of the paper with the numbers of its own method, and with the right ones, if any."""
+    """Compare one table with the numbers of the paper's method, and with the corrected ones, if any."""
     data, misfit, number = PAPER[name], PAPER["misfit"][0], name[-1]
     inputs, quantities = as_printed.inputs_of(name), as_printed.quantities_of(name)
     padded = data.get("padded", {"value": [], "digits": None})
@@ -95,7 +95,7 @@ def summary() -> list[str]:
 
 
 def notes() -> list[str]:
-    """Return notes on the tables, in the order of their numbers."""
+    """Return the notes on the tables, ordered by note number."""
     compared, misfit, forces = tables(), PAPER["misfit"][0], as_printed.base_forces()
     every = [cell for name in VEHICLE for cell in compared[name].cells]
     right = internal_forces(

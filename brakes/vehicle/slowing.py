@@ -74,8 +74,8 @@ class Approach:
         Described(
             "N",
             "B",
-            "force along the ground of all brakes; that of the lever, or without one the most at which no "
-            "wheel locks, if not given",
+            "force along the ground of all brakes; if not given, that of the lever or, without one, the "
+            "largest at which no wheel locks",
             above=0,
         ),
     ] = None
