@@ -127,7 +127,7 @@ class MeasuredHistory(MeasuredCurves):
 
 @dataclass(frozen=True)
 class MeasuredPeaks(MeasuredCurves):
-    """Largest deflections of the tip in a time window over speed, from a laboratory or another program.
+    """Largest tip deflection in a time window, at some speeds, from a laboratory or another program.
 
     Parameters
     ----------
@@ -251,7 +251,7 @@ class MeasuredResponse(MeasuredCurves):
     phase : array-like, shape (n,), optional
         Phase by which the output leads the input [rad]; without it magnitudes alone are compared.
     output, input : str
-        Observed quantity and excitation of the beam, in the words of `frequency_response`.
+        Observed quantity and excitation of the beam, by their names in `frequency_response`.
     speed : float, optional
         Speed [rad/s]; if not given, the final speed of the scene's motion, or at rest without one.
     uncertainty : float or array-like, broadcast to (n,)

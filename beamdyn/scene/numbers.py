@@ -52,7 +52,7 @@ _SIDE_POWERS = {
 
 @cache
 def units() -> dict[str, str]:
-    """Return the SI units of all numbers of scenes, by path; paths of list members have no index."""
+    """Return the SI units of all numbers of scenes, by path; paths of list members have "[]", no index."""
     of_beam = {"length": "m"} | SECTION_UNITS | PROPERTY_UNITS | ANGLE_UNITS
     found = {f"beam.{name}": unit for name, unit in of_beam.items()}
     found |= {SCALE + name: "" for name in (*SIDES, *PROPERTY_UNITS)} | dict(_numbers(TipMass, "beam.tip"))
@@ -78,7 +78,7 @@ def is_of_motion(path: str) -> bool:
 
 
 def is_speed(path: str) -> bool:
-    """Return whether a path names the speed, or a speed of the motion that replaces it in analyses."""
+    """Return whether a path is "speed", or that of a speed in the motion, for which analyses take "speed"."""
     return path == SPEED or (is_of_motion(path) and path.endswith(f".{SPEED}"))
 
 
@@ -104,7 +104,10 @@ def check_path(argument: str, path: object) -> str:
 
 
 def _numbers(made: type, path: str) -> Iterator[tuple[str, str]]:
-    """Yield paths and units of the numbers of a class and of its parts, without speeds."""
+    """Yield path and unit of each number among the fields of a class and of their classes, except speeds.
+
+    Each path starts with `path`.
+    """
     if not is_dataclass(made):
         return
     hints = get_type_hints(made, include_extras=True)
