@@ -48,8 +48,8 @@ class Circuit:
     resistance : float
         Load resistance R [ohm].
     bent : dict of str to ndarray
-        Residual flexibility g of each field: static deflection by a unit voltage of modes not in the
-        coordinates.
+        Residual flexibility g of each field: static deflection by a unit voltage of the modes that are not
+        among the coordinates.
     """
 
     coupling: np.ndarray
@@ -60,7 +60,7 @@ class Circuit:
 
 @dataclass(frozen=True)
 class Voltage:
-    """Voltage [V] or other output: coefficients (n,) times n coordinates (order 0) or rates (order 1)."""
+    """Voltage [V] or other output: `row` (n,) times the coordinates (order 0) or their rates (order 1)."""
 
     order: int
     row: np.ndarray

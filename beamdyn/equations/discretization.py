@@ -55,7 +55,7 @@ class ArcQuadrature:
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Weights of the integral from 0 to 1."""
+        """Gauss weights for integrals over x/L from 0 to 1."""
         return gauss_weights_on(self.cells.ends, self.cells.points)
 
     @cached_property
@@ -88,7 +88,7 @@ class ArcQuadrature:
         return scaled.reshape(*forces.shape[:-1], (len(self.cells.ends) - 1) * p)
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Compute weights (k, points) that integrate from the root to k positions xi, at Gauss points."""
+        """Compute weights (k, points) of values at Gauss points for integrals from the root to k xi."""
         cell, t, own = self._find(xi)
         length, p = np.diff(self.cells.ends)[cell], self.cells.points
         matrix = np.where(np.arange(len(self.xi)) < (cell * p)[:, None], self.weights, 0.0)
@@ -96,7 +96,7 @@ class ArcQuadrature:
         return matrix
 
     def interpolate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Compute weights (k, points) that interpolate from the points of each cell to k positions xi."""
+        """Compute weights (k, points) of values at Gauss points, which interpolate to k positions xi."""
         _, t, own = self._find(xi)
         matrix = np.zeros((len(xi), len(self.xi)))
         values = legendre.legvander(t, self.cells.points - 1) @ legendre_series(self.cells.points)
@@ -123,7 +123,7 @@ def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
     return legendre.legvander(t, points) @ integrals @ legendre_series(points)
 
 
-_OF_TENSION = 8  # polynomial degree of most properties and of the products with them
+_OF_TENSION = 8  # smallest degree up to which polynomials are cached: that of most weights of integrals
 
 
 class Sampler:
@@ -219,7 +219,7 @@ class SampledSpace(FieldsOnly, ABC):
 def product_of(
     rows: SampledSpace, columns: SampledSpace, weight: Profile, orders: tuple[int, int]
 ) -> np.ndarray:
-    """Integrate a weight times derivatives of each pair of functions, by a rule that both spaces share."""
+    """Integrate a weight times derivatives (`orders`) of function pairs, by the Gauss rule of both spaces."""
     return (rows.samples[orders[0]] * rows.weights(weight)) @ columns.samples[orders[1]].T
 
 
@@ -233,9 +233,9 @@ class RootConditions(NamedTuple):
     derivatives : int
         Highest order of a derivative that must be square-integrable.
     stiffness : str
-        Stiffness of the sections against the highest derivative, by name; functions may be adapted to it.
+        Name of the section stiffness that resists the highest derivative; functions may be adapted to it.
     direction : int
-        Direction of the displacement across the beam, 0 or 1.
+        Direction of the displacement: 0 for that of bending at the root, 1 for the one perpendicular to it.
     """
 
     held: int
@@ -347,7 +347,7 @@ class Discretization(Protocol):
 
     @property
     def order(self) -> int | None:
-        """Order p of convergence of eigenvalues: their error is as size^-p; None if it is not a power."""
+        """Order p of convergence: errors of eigenvalues are proportional to size^-p; None if they are not."""
         ...
 
     @property

@@ -49,8 +49,8 @@ class SteadyPencil:
         Squared first angular frequency of the beam with a clamped root [1/s2]; 0 if the root is clamped.
         K0 + shift M is positive definite.
     planes : int
-        Number of directions in which the beam bends, 1 or 2; with 2, the rounding of cancelling entries is
-        part of the error.
+        Number of directions in which the beam bends, 1 or 2; with 2, stated errors include rounding errors of
+        matrix entries that cancel.
     """
 
     M: np.ndarray
@@ -163,9 +163,9 @@ class Equations:
     # Deflection of the beam as a function of the coordinates ---------------------------------------
 
     def deflection(self, xi: np.ndarray, order: int = 0, direction: int = 0) -> np.ndarray:
-        """Evaluate derivatives with respect to x/L of the deflection by unit coordinates, at k positions xi.
+        """Evaluate the `order`-th x/L derivative of the deflection by unit coordinates at k xi: (n, k).
 
-        Direction 0 is that of the bending angle, direction 1 is across.
+        Direction 0 is that of the bending angle, direction 1 is perpendicular to it.
         """
         check_direction(direction)
         xi = np.asarray(xi, dtype=float)
@@ -174,7 +174,7 @@ class Equations:
     def surface(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
         """Evaluate a strip's deflection in the direction of bending by unit coordinates: (coordinates, k, l).
 
-        The points are xi = x/L (k,) along and eta = 2 y/b (l,) across, with y in the direction across.
+        The points are xi = x/L (k,) along and eta = 2 y/b (l,) across the width b.
         A ValueError is raised if an eta lies outside the strip.
         """
         eta = real_array("eta", eta)
@@ -189,7 +189,7 @@ class Equations:
         return values
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate second derivatives of deflections by eta = 2 y/b, averaged over the width, at xi = x/L."""
+        """Evaluate the deflections' second derivative in eta = 2 y/b, averaged over the width b, at xi."""
         values = np.zeros((self.size, len(xi)))
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -206,7 +206,7 @@ class Equations:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection of the tip's corner in the direction across, per unit of each coordinate."""
+        """Deflection of the tip's corner eta = 1 by unit coordinates; plus twist if the width is unknown."""
         values = self.tip.copy()
         for name, functions in self.sections:
             of_field = self.shapes[name]

@@ -47,7 +47,7 @@ class RootMoment:
     velocity: Mapping[Quantity, np.ndarray]
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Compute the moment [N m] at given coordinates and velocities; positive deflection if it is > 0."""
+        """Compute the moment [N m] at coordinates q and velocities v, positive for a positive deflection."""
         moment = np.zeros(root.unity.shape)
         for quantity, value in self.load.items():
             moment += getattr(root, quantity) * value

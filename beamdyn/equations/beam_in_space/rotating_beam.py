@@ -165,7 +165,7 @@ def _masses_of_sections(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def _tension(beam: Beam, xi: np.ndarray) -> np.ndarray:
-    """Evaluate offsets of tension centres [m] in the direction of bending and across (rows), at xi = x/L."""
+    """Evaluate offsets of tension centres [m] along e2, the direction of bending, and e3 (rows), at x/L."""
     if beam.matrices is not None:
         K = beam.matrices.at("stiffness", xi)
         return np.stack([-K[0, 5], K[0, 4]]) / K[0, 0]

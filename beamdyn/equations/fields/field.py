@@ -79,7 +79,7 @@ class Deflection:
     Q, Q_across : ndarray, shape (n,)
         Loads under a unit angular acceleration in the plane of the deflection, and in the other plane [kg m].
     direction : int
-        0 for deflection in the direction of the bending angle, 1 for the direction across.
+        0 for deflection in the direction of the bending angle, 1 for the perpendicular direction.
     """
 
     space: Functions
@@ -99,7 +99,7 @@ class SectionFunctions(Protocol):
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection per coordinate of the tip's corner in the direction across, up to a factor."""
+        """Deflection of the tip's corner eta = 1 by unit coordinates, or a quantity proportional to it."""
         ...
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:

@@ -84,7 +84,10 @@ class SectionMotion:
 
     @cached_property
     def beside(self) -> np.ndarray:
-        """Displacement of the mass centre relative to the axis, per component of the offsets c, t: (3, 4)."""
+        """Displacement of the mass centre relative to the axis along b1, e1, e2 by a unit motion: (3, 4).
+
+        The columns are its parts per unit of each component of the offsets c and t: c1, c2, t1, t2.
+        """
         moved = np.zeros((3, 4))
         # The displacement is K c: offset c of the mass centre, rotated by 90 degrees in the section.
         if self.rotation == _TURN:
@@ -95,7 +98,7 @@ class SectionMotion:
 
 
 def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
-    """Compute the second derivative of the mass centre's displacement by two rotations: shape (3, 4)."""
+    """Differentiate the mass centre's displacement with respect to both rotations: (3, 4) as `beside`."""
     i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
     assert i is not None and j is not None, "both are rotations"
     if i == j == _TURN:
@@ -130,7 +133,7 @@ def _pulled(beam: Beam) -> list[list[Profile | None]]:
 
 
 class _CoupledMatrix(NamedTuple):
-    """Matrix over the coordinates of two motions; the equations of both motions contain it, with a sign."""
+    """Matrix in the equations of `rows`; those of `columns` contain its transpose times `mirrored`."""
 
     rows: str
     columns: str
@@ -219,7 +222,7 @@ class Offsets:
 
     @cached_property
     def _beside_axis(self) -> list[tuple[Quantity, np.ndarray]]:
-        """Accelerations of the mass centre relative to the axis, by offsets of mass and tension centre."""
+        """Accelerations of the mass centre relative to the axis per component of the offsets: (3, 4) each."""
         (B, P), none = self.frame, np.zeros((3, 2))
         return [
             ("acceleration", np.hstack([B[:, 1:], none])),

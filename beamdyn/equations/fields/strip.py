@@ -289,7 +289,7 @@ class StackedSpace:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection per coordinate at the tip's corner in the direction across."""
+        """Deflection of the tip's corner at eta = 2 y/b = 1 per unit of each coordinate."""
         return np.kron(np.sqrt(2 * np.array(self.numbers) + 1), self.along.end(0))
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
