@@ -20,7 +20,7 @@ from beamdyn.scene.scene import Scene
 _SIZED_FOR = 5
 # x/L above which deflections are so large that rounding errors of short elements become visible.
 _NEAR_TIP = 0.5
-# Rounding error of an element, times the cube of the shortest element's relative length.
+# Relative rounding error of a critical speed, times the cube of the shortest element's length x/L.
 _OF_SHORTEST = 4 * float(np.finfo(float).eps)
 # Relative rounding error of a bent beam, whose stiffness is a small sum of large terms.
 _ROUNDING_OF_BENT = 1e-10
@@ -31,7 +31,7 @@ _TO_HALF = 4  # number of steps from a basis to a basis of about half the size
 
 @dataclass(frozen=True)
 class FoundSpeed:
-    """Critical speed of a model [rad/s], relative error of this speed, and the rounding part of the error."""
+    """Critical speed of a model [rad/s], its relative error by comparison with `coarse`, and its rounding."""
 
     model: Model
     coarse: Model

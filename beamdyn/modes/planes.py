@@ -23,14 +23,13 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
     scene : Scene
         The scene.
     spinning : bool
-        Whether the carrier rotates; if not, the bending angle does not couple the planes of a straight
-        section.
+        Whether the carrier rotates; if not, the bending angle and the precone do not couple the planes.
 
     Returns
     -------
     tuple of Scene
         The scene itself, if its beam is slender and modelled in one plane.  For two uncoupled planes of a
-        slender beam, a scene for the direction of bending at the root, and one for the direction across;
+        slender beam, a scene for the direction of bending at the root, and one for the perpendicular one;
         otherwise empty.
     """
     if scene.is_slender_beam_in_one_plane:

@@ -424,7 +424,7 @@ class CoupledRitzPart(RitzPart):
         return self._turned(fixed, rule, -1) - np.tensordot(answer, own, 1)
 
     def residuals(self, unbalanced: np.ndarray) -> np.ndarray:
-        """Integrate products of moments (moments, 2, points), weighted by upper bounds of the compliance."""
+        """Integrate products of moments (n, 2, points) times upper bounds of the compliance: (n, n)."""
         return self.gram(unbalanced, np.repeat(self.compliance, self.quadrature.cells.points, axis=1))
 
 

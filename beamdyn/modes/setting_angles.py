@@ -33,26 +33,26 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class SettingAngleLimits(JudgedByRepeating):
-    """Setting angles between which the first frequency rises and then falls with speed (unpacks as two).
+    """Setting angles between which the first frequency rises and then falls with speed.
 
     Below `first` the frequency falls from speed 0 on; between both angles it rises and then falls before the
-    top speed; above `second` it rises up to the top speed.
+    top speed; above `second` it rises up to the top speed.  ``first, second = limits`` unpacks both.
 
-    `model_error` (2,) and `left_out`, computed at their first use, estimate how much neglected physical
-    effects change the two angles.
+    `left_out` contains the estimated relative change of the two angles by each neglected physical effect,
+    `model_error` (2,) the magnitude of the sum of these changes; both are computed at first use.
 
     Parameters
     ----------
     first, second : float
         The limits [rad]; nan if there is none.
     error : float
-        Estimated error of both angles [rad].
+        Estimated absolute error of both angles [rad].
     top_speed : float
         The top speed [rad/s].
     static_deflection : float
         Static tip deflection at the second limit and the top speed, as a fraction of the length.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         Program version, discretization and computing time.
 

@@ -265,7 +265,10 @@ class BentBeam(FieldsOnly):
         return stretch, turn(self._within, bending)
 
     def shortening_rate(self, rates: np.ndarray) -> np.ndarray:
-        """Compute the part of the stretch's second time derivative (..., 3, points) by squared twist rates."""
+        """Compute the part of the stretch's second time derivative due to squared twist rates.
+
+        Its shape is (..., 3, points), with components along the axes at the root (trapeze effect).
+        """
         twist_rate = rates @ self.beam.functions[:, 3]
         return -(self.beam.fibres * twist_rate**2)[..., None, :] * self._within[..., 0, :]
 

@@ -45,7 +45,7 @@ def solve_diagonal(
     z : ndarray, shape (S, coordinates, modes)
         Mass-normalised modes.
     rounding : ndarray, shape (S, modes)
-        Relative error of w by the eigensolver.
+        Estimated relative error of w caused by the eigensolver.
     """
     stiff, lowest = stiffness.min(axis=1) >= LEAST_STIFFNESS, lowest_at_rest * np.ones(len(stiffness))
     if stiff.all():
@@ -60,7 +60,7 @@ def solve_diagonal(
 
 
 def inverse_squares(mass: np.ndarray, stiffness: np.ndarray, count: int) -> np.ndarray:
-    """Compute the largest 1/w^2 as `solve_diagonal` does, for stiffnesses from `LEAST_STIFFNESS` on."""
+    """Compute the largest 1/w^2 as `solve_diagonal` does, for stiffnesses of at least `LEAST_STIFFNESS`."""
     scale = 1 / np.sqrt(stiffness)
     mu = np.linalg.eigvalsh(scale[:, :, None] * mass * scale[:, None, :])
     return above_rounding(mu[:, : -count - 1 : -1])
@@ -115,7 +115,7 @@ def above_rounding(mu: np.ndarray) -> np.ndarray:
 
 
 def forward_error(mu: np.ndarray) -> np.ndarray:
-    """Estimate the relative error of 1/sqrt(mu) by the eigensolver, for descending mu."""
+    """Estimate the relative error that the eigensolver causes in w = 1/sqrt(mu), for descending mu."""
     return _FORWARD * mu[..., :1] / mu
 
 

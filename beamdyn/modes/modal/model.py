@@ -385,8 +385,8 @@ def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.
     Returns
     -------
     ndarray, shape (coordinates, shapes)
-        Shapes in columns, with unit mass and a diagonal stiffness at rest; m is smaller than the total
-        number of modes if those of different speeds are linearly dependent.
+        Shapes in columns, with unit mass and a diagonal stiffness at rest; fewer than all modes together if
+        those of different speeds are linearly dependent.
     """
     vectors = Solver(pencil).solve(np.asarray(speeds, dtype=float), min(modes, len(pencil.M))).vector
     if tuple(speeds) == (0.0,):
