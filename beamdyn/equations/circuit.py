@@ -42,7 +42,7 @@ class Circuit:
     Parameters
     ----------
     coupling : ndarray, shape (n,)
-        Coupling theta [N/V per coordinate].
+        Generalised force theta on each coordinate by a unit voltage [N/V].
     capacitance : float
         Capacitance Cp [F].
     resistance : float
@@ -98,7 +98,7 @@ def coupling_of(
 
 
 def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:
-    """Build the terms of the circuit's flux, and the voltage, from coupling vectors theta of blocks."""
+    """Build the terms of a circuit with its flux as coordinate, and the voltage, from theta of each block."""
     root = np.sqrt(circuit.capacitance)
     terms = [
         Term("capacitance", BLOCK, BLOCK, 2, np.eye(1)),
@@ -112,7 +112,7 @@ def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[lis
 
 
 def charge_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:
-    """Build the terms of the circuit's charge, and the voltage, from coupling vectors theta of blocks."""
+    """Build the terms of a circuit with its charge as coordinate, and the voltage, from theta by block."""
     C = circuit.capacitance
     terms = [
         Term("capacitance", BLOCK, BLOCK, 0, np.eye(1) / C),

@@ -148,7 +148,7 @@ class Sampler:
         return cls(cells.ends[:-1], cells.ends[1:], cells.points)
 
     def __call__(self, profile: Profile) -> np.ndarray:
-        """Evaluate a property at all Gauss points: shape (c points,)."""
+        """Evaluate a property at all Gauss points, cell by cell, in an array with one axis."""
         if profile not in self._known:
             segment, polynomials = self._place(profile.breakpoints, profile.degree)
             series = profile.series.T[segment]
@@ -331,7 +331,7 @@ class Discretization(Protocol):
        from that of `coarser`; a tolerance is met by repeating `finer`.  Where functions of a space span those
        of the coarser one, its `coarse` names them, and the coarser equations are a part of these.
     5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size;
-       `converges_regularly` says whether the estimate needs no further margin.
+       `converges_regularly` tells whether errors can be estimated without a further margin.
     6. An instance is passed as ``discretization=`` to any analysis.  To be chosen by name, it needs a line
        in `beamdyn.modes.modal.discretization_choice`.
 

@@ -250,7 +250,7 @@ class Equations:
 
     @cached_property
     def matrices(self) -> tuple[dict[Quantity, np.ndarray], ...]:
-        """Sums of the matrices multiplied by each quantity, for time derivatives of q of orders 0, 1, 2."""
+        """Matrix that each quantity multiplies, summed over terms, for q and its two time derivatives."""
         sums: tuple[dict[Quantity, np.ndarray], ...] = ({}, {}, {})
         for term in self.terms:
             total = sums[term.order].setdefault(term.quantity, np.zeros((self.size, self.size)))
@@ -259,7 +259,7 @@ class Equations:
 
     @cached_property
     def vectors(self) -> dict[Quantity, np.ndarray]:
-        """Sums of the load vectors multiplied by each quantity of the root's motion."""
+        """Load vector that each quantity of the root's motion multiplies, summed over the loads."""
         sums: dict[Quantity, np.ndarray] = {}
         for load in self.loads:
             total = sums.setdefault(load.quantity, np.zeros(self.size))

@@ -111,7 +111,7 @@ class StaticLoad:
     Parameters
     ----------
     accelerations : dict of str to complex
-        Quantities of the root's motion that load the beam in addition to the steady rotation.
+        Values of quantities of the root's motion that load the beam in addition to the steady rotation.
     force : tuple of (float, int), optional
         Position x/L and direction of a unit force.
     deflection : ndarray, shape (n,)

@@ -190,7 +190,8 @@ _STEADY = 1e-3  # relative difference of coefficients below which bases converge
 # Relative difference of coefficients that rounding may cause: rounding errors are divided by eps^2.
 _ROUNDED = 1e-7
 _SAMPLES = 16  # number of samples per period, which separate harmonics up to the seventh
-_RESONANT = 1e-3  # condition of the dynamic stiffness below which the second harmonic is resonant with a mode
+# Relative size of the dynamic stiffness, below which the second harmonic is resonant with another mode.
+_RESONANT = 1e-3
 
 
 @dataclass(frozen=True)

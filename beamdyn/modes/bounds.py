@@ -227,8 +227,8 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
 def bound_critical_speed(scene: Scene) -> float:
     """Compute a guaranteed lower bound of the critical speed of bending [rad/s]; 0 if none is proved.
 
-    The theorem, with z = 0 and k = 1, proves that the stiffness is positive definite at this speed and thus
-    at every lower one.
+    The theorem in `beamdyn.modes.residual_bound`, with z = 0 and k = 1, proves that the stiffness is positive
+    definite at this speed and thus at every lower one.
     """
     scaled, time = _nondimensional(scene)
     if (flexibility := bound_flexibility(scaled.beam.bending_stiffness)) is None:

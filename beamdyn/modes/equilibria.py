@@ -256,7 +256,7 @@ class EquilibriumBranch:
     Parameters
     ----------
     name : str
-        "straight" or "bent".
+        "straight" or "bent", as the branches of `equilibrium`.
     speeds : ndarray, shape (k,)
         Speeds [rad/s].
     tip : ndarray, shape (k, 3)

@@ -146,8 +146,8 @@ class Modes(TellsKinds, StatesModelError):
         """Compute mass-normalised modes' deflection over a strip: shape (m, len(x), len(eta)).
 
         The deflection is in the direction of bending, at positions x [m] along the beam and eta = 2 y/b
-        across its width b, from -1 to 1, where y points in the second direction of bending.  The mean over eta
-        is `shape`; where neither torsion nor camber is modelled, the deflection does not depend on eta.
+        across its width b, from -1 to 1, where y points in the second direction of bending.  The mean over
+        eta is `shape`; where neither torsion nor camber is modelled, the deflection does not depend on eta.
         """
         equations = self.model.equations_at(self.speed)
         return np.tensordot(self.vectors.T, equations.surface(self._over_length(x), np.asarray(eta)), 1)

@@ -92,7 +92,7 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
 
 
 def _quarter_turns(beam: Beam) -> int | None:
-    """Return the number of 90 degree turns by which all sections are rotated; None if it is not whole."""
+    """Return the number of 90 degree turns of all sections alike; None if it varies or is not whole."""
     if beam.twist is None:
         return 0
     if any(any(row[1:]) for row in beam.twist.coefficients):

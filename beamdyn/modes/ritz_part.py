@@ -139,7 +139,7 @@ def basis(beam: Beam, functions: int) -> Ritz:
 
 
 def _bends_by_moments(beam: Beam) -> bool:
-    """Return whether moments suit a beam better than polynomials: many segments, or very small stiffness."""
+    """Return whether moments suit a beam better than polynomials: many segments, or a strong taper."""
     if len(beam.breakpoints) - 1 > _FEW_SEGMENTS:
         return True
     stiffness = beam.bending_stiffness.at_points(_SAMPLES)
@@ -381,7 +381,7 @@ class CoupledRitzPart(RitzPart):
         return self.gram(self.curvature, self._both_at(self.quadrature))
 
     def forms(self, direction: np.ndarray) -> np.ndarray:
-        """Build the forms of tension by speed, by root acceleration, mass, directed mass."""
+        """Build the forms of tension by speed, by root acceleration, mass, and mass moving in a direction."""
         tension_b, tension_a, mass = self.loads
         slope, along = self.slope[..., :-1], direction @ self.deflection
         inertia = self.gram(self.deflection[..., :-1], mass) + self.tip.mass * self.centre @ self.centre.T

@@ -44,7 +44,7 @@ class SettingAngleLimits(JudgedByRepeating):
     Parameters
     ----------
     first, second : float
-        The limits [rad]; nan if there is none.
+        The two setting angles [rad]; nan if there is no such angle.
     error : float
         Estimated absolute error of both angles [rad].
     top_speed : float
@@ -200,7 +200,7 @@ def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
         return first, _arccos(float(eigh(A, B, eigvals_only=True)[0]), 1.0) if B.any() else np.nan
 
     def slope(phi: float) -> float:
-        """Compute the slope of the first squared frequency over the squared speed, at the top speed."""
+        """Differentiate the first squared frequency with respect to squared speed, at the top speed."""
         K2 = A - np.cos(phi) * B
         v = Solver(replace(pencil, K2=K2)).solve(np.array([top_speed]), 1).vector[0, :, 0]
         return float(v @ K2 @ v)

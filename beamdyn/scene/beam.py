@@ -61,7 +61,8 @@ class Beam(FieldsOnly, OneLine):
         Springs that hold points of the beam to the carrier; those at one place add up.
     section : rectangle, optional
         The rectangular section that the properties were derived from (`rectangular`); else None.
-        Its `width`, `thickness`, `youngs_modulus`, `density` and `poissons_ratio` are as given there.
+        Its `width`, `thickness`, `youngs_modulus`, `density` and `poissons_ratio` are as given to
+        `rectangular`.
     torsion_stiffness, warping_stiffness : Profile, optional
         Stiffness against torsion G J [N m2], and against warping E Cw [N m4], over x/L; those of a
         rectangular section follow from its sides.

@@ -274,7 +274,8 @@ class Electrodes(FieldsOnly):
     laminate : Laminate
         The strip with the layers, whose deflections may vary across.
     flat : Coupled or None
-        The two constants for sections that cannot camber; None where a Poisson's ratio is not known.
+        Coupling and capacitance per length of sections that cannot camber; None where a Poisson's ratio is
+        not known.
     across : bool
         Whether the deflections of the scene vary across the width: then the constants of `flat` hold, and
         camber is a deflection.
@@ -292,7 +293,7 @@ class Electrodes(FieldsOnly):
 
     @property
     def moment(self) -> float:
-        """Bending moment per voltage [N m/V], of sections held flat if camber is modelled, else of free."""
+        """Bending moment per voltage [N m/V]; if camber is modelled, that of sections that cannot camber."""
         return self.flat.moment if self.across and self.flat is not None else self.coupling
 
     @property
@@ -320,7 +321,7 @@ class Electrodes(FieldsOnly):
         return 0 < self.resistance < math.inf
 
     def inside(self, fraction: np.ndarray | float) -> Any:
-        """Convert fractions (0 to 1) of the layers' length to positions x/L just inside their ends."""
+        """Convert fractions (0 to 1) of the layers' length to positions x/L, kept just inside their ends."""
         first, last = self.span
         return first + (last - first) * (_EVEN + (1 - 2 * _EVEN) * fraction)
 
@@ -332,5 +333,5 @@ class Electrodes(FieldsOnly):
 
 
 def _added(profile: Profile, span: tuple[float, float], step: float) -> Profile:
-    """Add a constant to a property over a span of x/L."""
+    """Add the constant `step` to a property over a span of x/L."""
     return profile.stepped(np.array(span), np.array([-step, step]))

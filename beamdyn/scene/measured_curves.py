@@ -91,7 +91,7 @@ class MeasuredHistory(MeasuredCurves):
     Raises
     ------
     ValueError
-        If times do not ascend or values do not fit.
+        If times do not ascend, or the shape of the values does not fit times and names.
 
     Examples
     --------
@@ -149,7 +149,8 @@ class MeasuredPeaks(MeasuredCurves):
     Raises
     ------
     ValueError
-        If speeds do not ascend, the window does not end after it begins, or values do not fit.
+        If speeds do not ascend, the window does not end after it begins, or the shape of the values does not
+        fit the speeds.
 
     Examples
     --------
@@ -201,7 +202,7 @@ class MeasuredLoads(MeasuredCurves):
     Raises
     ------
     ValueError
-        If positions descend or values do not fit.
+        If positions descend, or the shape of the values does not fit positions and names.
 
     Examples
     --------
@@ -264,7 +265,7 @@ class MeasuredResponse(MeasuredCurves):
     Raises
     ------
     ValueError
-        If frequencies do not ascend, an amplitude is negative, or values do not fit.
+        If frequencies do not ascend, an amplitude is negative, or there is not one for each frequency.
 
     Examples
     --------

@@ -78,7 +78,7 @@ def is_of_motion(path: str) -> bool:
 
 
 def is_speed(path: str) -> bool:
-    """Return whether a path is "speed", or that of a speed in the motion, for which analyses take "speed"."""
+    """Return whether a path is "speed", or a speed in the motion, in whose place "speed" is to be given."""
     return path == SPEED or (is_of_motion(path) and path.endswith(f".{SPEED}"))
 
 
@@ -270,7 +270,7 @@ def _as_property(name: str, value: float) -> float | Profile:
 
 
 def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str, float]) -> None:
-    """Refuse a section's sides or material given together with derived properties, or without a rectangle."""
+    """Refuse a section's sides or material, given with derived properties or for a beam without section."""
     if not section:
         return
     name, value = next(iter(section.items()))

@@ -37,7 +37,7 @@ class Physics:
     rotary_inertia : bool
         Rotary inertia of the sections (Rayleigh).
     stretch : bool
-        Axial stretch and its Coriolis coupling with bending (Yoo and Shin), for comparison.
+        Axial stretch and its Coriolis coupling with bending (Yoo and Shin), for comparison with papers.
     large_deflection : bool
         Slopes and angles of any size: the beam vibrates about the equilibrium to which rotation bends it.
         In one plane, in or out of the plane of rotation, it is the inextensible elastica; with both planes,

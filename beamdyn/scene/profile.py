@@ -423,7 +423,7 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
 def check_positive(name: str, profile: Profile, power: int = 1) -> None:
     """Refuse a property that is not positive and finite everywhere; the message names it and the place.
 
-    A value counts as zero where its `power` is less than 5e-13 of the largest power on the segment.
+    A value counts as zero where value**power is less than 5e-13 of the largest such power on the segment.
     """
     ends, zero = np.array(profile.breakpoints), _ZERO ** (1 / power)
     values, where = np.stack(profile.end_values()), np.stack([ends[:-1], ends[1:]])

@@ -40,10 +40,10 @@ from beamdyn.scene.profile import ONE, Profile, as_profile, combine
 # cantilevers (CalculiX, see `benchmarks.solids`).  With the ratio r of thickness to width, the squared
 # Poisson's ratio is multiplied by 1 + a r + b r^2, and the warping constant by 1/(1 + c r^2).
 _THICK_CAMBER, _THICK_WARPING = (-0.975, 0.826), 7.0
-# Length of the root on which the clamp stiffens bending in the direction of the width, in widths and in
+# Length near the root over which the clamp stiffens bending in the direction of the width, in widths and in
 # thicknesses; fitted to solids of random cantilevers.
 _REACH_OF_WIDTH, _REACH_OF_THICKNESS = 0.195, 0.54
-# Largest length of the root on which the clamp stiffens bending, over the length of the beam.
+# Largest length near the root over which the clamp stiffens bending, over the length of the beam.
 _LONGEST_REACH = 0.7
 _POINTS_OF_WARPING, _TERMS_OF_WARPING = 40, 12
 _ZETA_5 = 1.036927755143369926  # 1 + 1/2^5 + 1/3^5 + ...; scipy.special is slow to import
@@ -136,12 +136,12 @@ class Rectangle:
 
     @cached_property
     def camber_stiffening(self) -> Profile:
-        """Ratio of the bending stiffness of a section that cannot camber to one that does, 1/(1 - nu^2)."""
+        """Bending stiffness of a section that cannot camber over that of a free one, 1/(1 - nu^2)."""
         return combine(lambda nu: 1 / (1 - nu**2)[None], self.camber_ratio)[0]
 
     @cached_property
     def reach_of_clamp(self) -> float:
-        """Length of the root on which the clamp stiffens bending in the direction of the width [m]."""
+        """Length near the root over which the clamp stiffens bending in the direction of the width [m]."""
         b, t = (float(side(np.zeros(1))[0]) for side in (self.width, self.thickness))
         return _REACH_OF_WIDTH * b + _REACH_OF_THICKNESS * t
 

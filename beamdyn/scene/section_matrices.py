@@ -215,7 +215,7 @@ def split_mass(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def strangeness(matrices: np.ndarray) -> np.ndarray:
-    """Compute the largest scaled difference of mass matrices (6, 6, sections) from rigid sections' ones."""
+    """Compute the largest difference of each scaled mass matrix (6, 6, sections) from a rigid section's."""
     m, (_, c2, c3), _ = split_mass(matrices)
     rigid = matrices.copy()
     rigid[:3, :3], rigid[:3, 3:] = m * np.eye(3)[..., None], 0.0

@@ -54,7 +54,7 @@ def inertia_about_shear_centre(beam: Beam) -> Tensor:
 
 
 def _turn(beam: Beam, name: str, lever: Profile | None) -> Tensor:
-    """Compute the tensor of a section property; add the mass at the distance `lever` across [m], if given."""
+    """Compute the tensor of a section property, plus the inertia of the mass at a distance `lever` [m]."""
     first, second = getattr(beam, name), getattr(beam, f"second_{name}")
     if first is None:
         return {}

@@ -54,7 +54,7 @@ STRAINS = "stretch", "shear", "second shear", "twist rate", "second curvature", 
 class BeamInSpace(FieldsOnly):
     """Beam, clamped or hinged at the root, with arbitrarily large bending, twist, shear and stretch.
 
-    The axes at the root are e1 along the beam, e2 in the direction of bending and e3 across.
+    The axes at the root are e1 along the beam, e2 in the direction of bending and e3 perpendicular to both.
 
     Parameters
     ----------
@@ -281,7 +281,7 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _mean_of_arc(self) -> np.ndarray:
-        """Mean rotation matrix (..., 3, 3) along the arc; it maps changes of the rotation vector."""
+        """Mean rotation matrix (..., 3, 3) along the arc: angular velocity per rotation vector's rate."""
         return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:

@@ -51,7 +51,7 @@ QUANTITIES: tuple[Quantity, ...] = "speed_squared", "acceleration", *_ROOT
 
 
 def _strains_of_fields(scene: Scene) -> dict[str, tuple[int, int, RootConditions]]:
-    """Find the strain that each displacement field causes: index in `STRAINS`, derivative order, and root."""
+    """Find each displacement field's strain: index in `STRAINS`, derivative order, and root conditions."""
     mount, warps = scene.mount, scene.modelled_beam.warping_stiffness is not None
     root, resists = (CLAMPED, "warping_stiffness") if warps else (FIXED, "torsion_stiffness")
     return {
@@ -326,7 +326,7 @@ class BentState(FieldsOnly):
         return euler - euler.T
 
     def steady(self) -> SteadyPencil:
-        """Return the equations of small motions at steady speed, in which inertial forces are the load."""
+        """Return the equations of small motions at steady speed; `f2` is the load by centrifugal forces."""
         linear, (force, K2) = self.of.linear, self.under(self.of.turning)
         K0 = linear.matrices[0]["unity"] + (self.under({"unity": 1.0}).change if self.of.load else 0.0)
         C = linear.matrices[1].get("unity", np.zeros_like(K0))
@@ -381,7 +381,7 @@ class DeflectedFunctions(FieldsOnly):
     place : slice
         Slice of the coordinates of one block.
     direction : int
-        0 for the direction of bending at the root, 1 for that across.
+        0 for the direction of bending at the root, 1 for the perpendicular direction.
     """
 
     bent: bent_beam.BentBeam

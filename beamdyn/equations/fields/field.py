@@ -112,7 +112,7 @@ class SectionFunctions(Protocol):
 
 
 class Coordinates(Protocol):
-    """Trial functions of a field, reduced to what the equations of motion use of a `Space`."""
+    """The part of the interface of trial functions (`Space`) that the equations of motion use."""
 
     @property
     def size(self) -> int:
@@ -159,7 +159,7 @@ class Field(ABC):
     In order to add a field, write a subclass in a module of its own in `beamdyn.equations.fields`, and
     name it in the list `FIELDS` there:
 
-    1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it.
+    1. `name` identifies the field in `Term.rows` and `Term.columns`.
     2. `requires` has the values of `Physics` with which a scene has the field, or `is_modelled` decides
        whether it has.  A scene without the field needs no extra computing time.
     3. `assemble` takes functions that satisfy the conditions at the root from the discretization, by

@@ -350,7 +350,7 @@ class Offsets:
                     yield _CoupledMatrix(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
 
     def _sheared(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices of the work of shear forces on the axis' displacement along bending's slope."""
+        """Yield matrices for the work of transverse forces, as tension centres' offsets change the slope."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for rows, columns in product(self.tilting, repeat=2):

@@ -26,7 +26,9 @@ _ZERO = 1e-12  # averages over the width below this fraction of the largest are 
 
 
 class Derivative(NamedTuple):
-    """Summand of a derivative of the deflection: factor(x), derivative of u_k(x), function of eta.
+    """Summand of a derivative of the deflection: factor(x) times derivative of u_k(x) times functions of eta.
+
+    The deflection is the sum over k of functions u_k along times functions p_k across the strip.
 
     Parameters
     ----------
@@ -34,8 +36,8 @@ class Derivative(NamedTuple):
         Factor along the beam.
     order : int
         Order of the derivative of u_k with respect to x.
-    across : ndarray, shape (k, q)
-        Functions of eta, for each k, at the Gauss points across.
+    across : ndarray, shape (functions, points)
+        Functions of eta = 2 y/b, for each k, at the Gauss points across the width b.
     """
 
     factor: Profile

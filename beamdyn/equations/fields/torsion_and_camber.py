@@ -230,7 +230,7 @@ class SectionField(Field):
     first: ClassVar[int]
 
     def complete(self, scene: Scene) -> Scene:
-        """Return the scene with this field and, if rectangular, as a flat strip with Poisson's ratio."""
+        """Return the scene with this field; a rectangular section gets Poisson's ratio, and no twist."""
         section = scene.beam.section
         if section is None:
             return scene

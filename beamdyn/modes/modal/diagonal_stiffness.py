@@ -14,7 +14,8 @@ _EPS = np.finfo(float).eps
 # Rounding errors in addition to those of `equations_of_motion`: ratios of the rounding errors of beams in two
 # planes, and of beams on root springs, to those of a clamped beam in one plane.
 _TWO_PLANES, _ON_SPRINGS = 3.0, 2.0
-_CANCELLED = 0.5 * _EPS  # relative error by stiffness entries that cancel if pretwist couples two planes
+# Relative rounding error of stiffness entries, which matters where they cancel, as in pretwisted beams.
+_CANCELLED = 0.5 * _EPS
 # Error of mu = 1/w^2 relative to the largest mu, five times the error measured at mode 100.
 _FORWARD = 0.5 * _EPS
 LEAST_STIFFNESS = 0.1  # ratio of stiffness to that at rest below which the eigenproblem is shifted

@@ -102,7 +102,7 @@ class Eigensolver(ABC):
     @property
     @abstractmethod
     def softening(self) -> float:
-        """Largest loss of stiffness per squared speed [s2], over that at rest; 0 if it is within rounding."""
+        """Largest relative loss of stiffness per squared speed [s2]; 0 if it is within rounding errors."""
 
     @property
     def critical_speed(self) -> float:
