@@ -206,7 +206,7 @@ class Equations:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection of the tip's corner eta = 1 by unit coordinates; plus twist if the width is unknown."""
+        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates; plus twist for unknown width."""
         values = self.tip.copy()
         for name, functions in self.sections:
             of_field = self.shapes[name]

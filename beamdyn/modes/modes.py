@@ -332,7 +332,7 @@ def natural_modes(
 def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | None) -> np.ndarray:
     """Scale modes (columns) by signs or phases that make the larger tip deflection real and positive.
 
-    For modes of torsion or camber, the deflection of the tip's corner eta = 1 is used.
+    For modes of torsion or camber, the deflection of the tip's corner at eta = 2 y/width = 1 is used.
     """
     tips = equations.tips @ vectors
     larger = tips[np.abs(tips).argmax(axis=0), np.arange(tips.shape[1])]

@@ -235,8 +235,8 @@ class PlaneRitzPart(RitzPart):
     def residuals(self, compliance: np.ndarray) -> np.ndarray:
         """Integrate products of unbalanced moments, with the compliance of each cell as weight.
 
-        The moment for the load j of the function i is F_ji - EI p, where p is the curvature of the Ritz
-        response to the load, by functions that are orthonormal in energy.
+        The unbalanced moment for the load j of the function i is the moment by this load minus EI p, where p
+        is the curvature of the Ritz response to the load, by functions that are orthonormal in energy.
         """
         own = self.at(self.beam.bending_stiffness) * self.bending
         left = (self.moments - self.forms @ own).reshape(-1, own.shape[1])
@@ -353,7 +353,7 @@ class CoupledRitzPart(RitzPart):
 
     @property
     def _all_moments(self) -> np.ndarray:
-        """Bending moments along e1, e2 at the nodes: polynomials, and those by inertia and tension.
+        """Bending moments along the fixed e1, e2 at the nodes: polynomials, and those by inertia and tension.
 
         The latter act in a beam that vibrates in the shapes caused by the first polynomials.
         """
@@ -370,7 +370,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def bending(self) -> np.ndarray:
-        """Curvatures of the functions along e1, e2 at the Gauss points, (functions, 2, points)."""
+        """Curvatures of the functions along the fixed e1, e2 at Gauss points, (functions, 2, points)."""
         return self._turned(self.curvature, self.quadrature, 1)
 
     # Forms and loads ------------------------------------------------------------------------------

@@ -68,7 +68,7 @@ def units() -> dict[str, str]:
 
 
 def unit_of(path: str) -> str | None:
-    """Return the SI unit of a number; None if no scene has such a number."""
+    """Return the SI unit of the number at a path; None if no scene has such a number."""
     return units().get(re.sub(r"\[\d+\]", "[]", path))
 
 

@@ -101,7 +101,7 @@ class Rectangle:
 
     @cached_property
     def torsion_factor(self) -> Profile:
-        """Torsional constant J of the section over b t^3/3, its value for infinite width (Saint-Venant)."""
+        """Torsional constant of the section over width thickness^3/3, its value for infinite width."""
         return combine(_torsion_factor, self.width, self.thickness)[0]
 
     @cached_property
@@ -123,9 +123,10 @@ class Rectangle:
 
     @cached_property
     def camber_ratio(self) -> Profile:
-        """Effective Poisson's ratio for camber, less than nu in thick sections.
+        """Effective Poisson's ratio for camber, less than Poisson's ratio nu in thick sections.
 
-        The formula nu (1 - 0.975 r + 0.826 r^2)^(1/2), r = t/b, was fitted to solids: docs/conventions.md.
+        The formula nu (1 - 0.975 r + 0.826 r^2)^(1/2), with r = thickness/width, was fitted to solids:
+        docs/conventions.md.
         """
 
         def ratio(b: np.ndarray, t: np.ndarray, nu: np.ndarray) -> np.ndarray:
@@ -136,7 +137,7 @@ class Rectangle:
 
     @cached_property
     def camber_stiffening(self) -> Profile:
-        """Bending stiffness of a section that cannot camber over that of a free one, 1/(1 - nu^2)."""
+        """Bending stiffness of sections that cannot camber over that of free ones, 1/(1 - camber_ratio^2)."""
         return combine(lambda nu: 1 / (1 - nu**2)[None], self.camber_ratio)[0]
 
     @cached_property
@@ -148,8 +149,8 @@ class Rectangle:
     def stiffening_across(self, length: float) -> Profile:
         """Compute the bending stiffness along the width near a clamped root over that of free sections.
 
-        The ratio is 1 + nu^2 (1 - x/c)^2 within the clamp's reach c, which follows from the sides at the root
-        and is at most 0.7 of the length [m] of the beam.
+        With Poisson's ratio nu it is 1 + nu^2 (1 - x/c)^2 within the clamp's reach c, which follows from the
+        sides at the root and is at most 0.7 of the length [m] of the beam.
         """
         nu, reach = self.poissons_ratio or 0.0, min(self.reach_of_clamp / length, _LONGEST_REACH)
         within = tuple(nu**2 * part for part in (1 / 3, -1 / 2, 1 / 6))  # Legendre series of (1 - x/c)^2
@@ -157,7 +158,7 @@ class Rectangle:
 
     @cached_property
     def warping_factor(self) -> Profile:
-        """Warping constant over that of a thin section, b^3 t^3/144, divided by 1 + 7 (t/b)^2 (fitted)."""
+        """Warping constant over width^3 thickness^3/144, that of a thin section; see `_warping_factor`."""
         return combine(_warping_factor, self.width, self.thickness)[0]
 
     def kinks_of_width(self, length: float) -> np.ndarray:

@@ -268,7 +268,7 @@ class RotatingBeam(FieldsOnly):
         return q @ self.beam.functions[:, -1] @ self.beam.stations.quadrature.interpolate_to(xi).T
 
     def tip_angle(self, q: np.ndarray) -> float:
-        """Compute the angle between the tip and e1 [rad] at q; signed only for bending in one plane."""
+        """Compute the angle between the tip and the root's axis e1 [rad]; signed for bending in one plane."""
         if self.beam.is_planar:
             return float(q @ self.beam.angles[:, -1])
         along = self.beam.at(q).rotations[:, 0, -1]

@@ -99,15 +99,15 @@ class SectionFunctions(Protocol):
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection of the tip's corner eta = 1 by unit coordinates, or a quantity proportional to it."""
+        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates, or one proportional to it."""
         ...
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Evaluate the functions at k positions x/L along and l positions 2 y/b across: (functions, k, l)."""
+        """Evaluate the functions at k positions x/L and l positions 2 y/width across: (functions, k, l)."""
         ...
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate second derivatives with respect to 2 y/b, averaged over the width, at positions x/L."""
+        """Evaluate second derivatives with respect to 2 y/width, averaged over the width, at x/L."""
         ...
 
 

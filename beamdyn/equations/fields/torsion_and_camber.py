@@ -188,7 +188,7 @@ def _tip_body(scene: Scene) -> TipMass:
 
 @lru_cache(maxsize=64)
 def _inertias(beam: Beam) -> tuple[Profile, Profile, Profile | None]:
-    """Compute R11 + R22, R22 - R11, and R12 if not 0, about the shear centre, the axis of twist."""
+    """Compute R11 + R22, R22 - R11, and R12 if not 0, of the rotary inertia R about the shear centre."""
     R = inertia_about_shear_centre(beam)
     return R[0, 0] + R[1, 1], R[1, 1] + R[0, 0].scaled(-1.0), R.get((0, 1))
 

@@ -134,7 +134,7 @@ class Point:
 
 
 def solve_at(load: Loading, q: np.ndarray, p: float, most: float = np.inf) -> np.ndarray:
-    """Solve r(q, p) = 0 for q by Newton's method.
+    """Solve the equilibrium equations r(q, p) = 0 of a load for the coordinates q, by Newton's method.
 
     Raises
     ------

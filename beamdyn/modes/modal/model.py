@@ -155,7 +155,7 @@ class Model(FieldsOnly):
         return self.deflected.tips(speeds)
 
     def over_strip(self, along: int, across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Compute n x k mesh points over a strip: x [m], eta from 1 to -1, and y = -eta b/2 [m] (n, k).
+        """Compute n x k mesh points over a strip: x [m], eta from 1 to -1, y = -eta width/2 [m] (n, k).
 
         Returns None if the sections keep their shape, or if their width is not known.
         """
@@ -263,7 +263,7 @@ def warn_of_rotation(model: Model, speed: float) -> Iterator[Statement]:
 
 
 def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[Statement]:
-    """Yield a warning at speeds at which the straight beam is unstable, as it bends at a lower speed."""
+    """Yield a warning at speeds at which the straight beam is unstable, if rotation bends it before that."""
     lost = np.isnan(deflection)
     if lost.any() and bends(model):
         end = f" the straight beam is unstable; the rotation bends it before: the answer is {OUTSIDE}"
